@@ -1,0 +1,34 @@
+// What a material's shader program needs beyond the geometry: compile-time choices, uniforms by name, tables.
+#pragma once
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <map>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "scene/material.h"
+
+namespace mesograin::physics {
+
+using UniformValue = std::variant<int, float, glm::vec2, glm::vec3, glm::vec4>;
+
+/// A 2-D table of RGBA float texels, row-major, sampled with linear filtering and clamped coordinates.
+struct Table {
+  int width = 0;
+  int height = 0;
+  std::vector<glm::vec4> texels;
+};
+
+struct MaterialInputs {
+  std::vector<std::string> defines;              ///< chosen at compile time: one program for each distinct set
+  std::map<std::string, UniformValue> uniforms;  ///< "material.sigma_a", ...
+  std::map<std::string, Table> tables;           ///< sampler name -> texels
+};
+
+/// Computed once for each material, in double. Throws Error if the material is not valid.
+MaterialInputs material_inputs(const scene::Material& material);
+
+}  // namespace mesograin::physics
