@@ -1,3 +1,4 @@
+// Ranges and names of a material's parameters.
 #include "scene/material.h"
 
 #include <fmt/ranges.h>
