@@ -1,0 +1,127 @@
+// Runs posted work in order on the thread that owns the context.
+#include "gl/context_thread.h"
+
+#include <epoxy/gl.h>
+
+#include <memory>
+
+#include "scene/error.h"
+
+namespace mesograin::gl {
+namespace {
+
+// Never destroyed by static destruction: the driver may already be gone by then. shut_down() ends it in order.
+std::mutex& instance_mutex() {
+  static auto* mutex = new std::mutex;
+  return *mutex;
+}
+
+std::unique_ptr<ContextThread>& instance_slot() {
+  static auto* slot = new std::unique_ptr<ContextThread>;
+  return *slot;
+}
+
+const char* error_name(GLenum error) {
+  switch (error) {
+    case GL_INVALID_ENUM:
+      return "GL_INVALID_ENUM";
+    case GL_INVALID_VALUE:
+      return "GL_INVALID_VALUE";
+    case GL_INVALID_OPERATION:
+      return "GL_INVALID_OPERATION";
+    case GL_INVALID_FRAMEBUFFER_OPERATION:
+      return "GL_INVALID_FRAMEBUFFER_OPERATION";
+    case GL_OUT_OF_MEMORY:
+      return "GL_OUT_OF_MEMORY";
+    default:
+      return "an unknown GL error";
+  }
+}
+
+}  // namespace
+
+ContextThread& ContextThread::instance() {
+  const std::lock_guard lock(instance_mutex());
+  std::unique_ptr<ContextThread>& slot = instance_slot();
+  if (!slot) slot.reset(new ContextThread);
+  return *slot;
+}
+
+void ContextThread::shut_down() {
+  const std::lock_guard lock(instance_mutex());
+  instance_slot().reset();
+}
+
+bool ContextThread::running() {
+  const std::lock_guard lock(instance_mutex());
+  return instance_slot() != nullptr;
+}
+
+ContextThread::ContextThread() {
+  std::promise<DeviceInfo> started;
+  std::future<DeviceInfo> info = started.get_future();
+  thread_ = std::thread([this, started = std::move(started)]() mutable { loop(std::move(started)); });
+  try {
+    device_info_ = info.get();
+  } catch (...) {
+    thread_.join();
+    throw;
+  }
+}
+
+ContextThread::~ContextThread() {
+  {
+    const std::lock_guard lock(mutex_);
+    stopping_ = true;
+  }
+  wake_.notify_all();
+  if (thread_.joinable()) thread_.join();
+}
+
+void ContextThread::enqueue(std::function<void()> work) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (stopping_) throw Error("The renderer has been shut down; start it again before asking for more.");
+    queue_.push_back(std::move(work));
+  }
+  wake_.notify_one();
+}
+
+void ContextThread::loop(std::promise<DeviceInfo> started) {
+  std::unique_ptr<EglContext> context;
+  try {
+    context = std::make_unique<EglContext>();
+    started.set_value(context->info());
+  } catch (...) {
+    started.set_exception(std::current_exception());
+    return;
+  }
+  for (;;) {
+    std::function<void()> work;
+    {
+      std::unique_lock lock(mutex_);
+      wake_.wait(lock, [this] { return stopping_ || !queue_.empty(); });
+      if (queue_.empty()) return;
+      work = std::move(queue_.front());
+      queue_.pop_front();
+    }
+    work();
+    collect_gl_errors();
+  }
+}
+
+void ContextThread::collect_gl_errors() {
+  for (GLenum error = glGetError(); error != GL_NO_ERROR; error = glGetError()) {
+    const std::lock_guard lock(mutex_);
+    gl_errors_.emplace_back(error_name(error));
+  }
+}
+
+std::vector<std::string> ContextThread::take_gl_errors() {
+  run([] {});  // whatever was posted before has been looked at once this returns
+  run([] {});
+  const std::lock_guard lock(mutex_);
+  return std::exchange(gl_errors_, {});
+}
+
+}  // namespace mesograin::gl

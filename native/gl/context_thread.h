@@ -1,0 +1,74 @@
+// The one thread that owns the one GL context for life. All GL work is posted to it; nothing else may call GL.
+//
+// Blender's own context is current on its main thread, where a second one cannot be made current; a thread of our own
+// leaves it unharmed.
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <future>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "gl/egl_context.h"
+
+namespace mesograin::gl {
+
+class ContextThread {
+ public:
+  /// Starts the thread and creates the context on first use. Throws Error if no device offers a context.
+  static ContextThread& instance();
+
+  /// Ends the thread and destroys the context, so that the driver unloads in order; a later instance() starts anew.
+  static void shut_down();
+
+  /// True while a thread is running; a destructor that runs after shut_down() has nothing left to free.
+  static bool running();
+
+  ContextThread(const ContextThread&) = delete;
+  ContextThread& operator=(const ContextThread&) = delete;
+  ~ContextThread();
+
+  /// Queues `work` and returns at once.
+  template <typename Work>
+  auto post(Work&& work) -> std::future<std::invoke_result_t<Work>> {
+    using Result = std::invoke_result_t<Work>;
+    auto task = std::make_shared<std::packaged_task<Result()>>(std::forward<Work>(work));
+    std::future<Result> result = task->get_future();
+    enqueue([task] { (*task)(); });
+    return result;
+  }
+
+  /// Queues `work` and waits for its result; what it throws is thrown here.
+  template <typename Work>
+  auto run(Work&& work) {
+    return post(std::forward<Work>(work)).get();
+  }
+
+  const DeviceInfo& device_info() const { return device_info_; }
+
+  /// The GL errors seen since the last call, oldest first, each with the work it was found after.
+  std::vector<std::string> take_gl_errors();
+
+ private:
+  ContextThread();
+  void enqueue(std::function<void()> work);
+  void loop(std::promise<DeviceInfo> started);
+  void collect_gl_errors();
+
+  DeviceInfo device_info_;
+  std::mutex mutex_;
+  std::condition_variable wake_;
+  std::deque<std::function<void()>> queue_;
+  std::vector<std::string> gl_errors_;
+  bool stopping_ = false;
+  std::thread thread_;
+};
+
+}  // namespace mesograin::gl

@@ -1,0 +1,54 @@
+// Attaches, clears and reads render targets.
+#include "gl/framebuffer.h"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+#include <vector>
+
+namespace mesograin::gl {
+
+GLuint Framebuffer::Traits::create() {
+  GLuint name = 0;
+  glCreateFramebuffers(1, &name);
+  return name;
+}
+
+void Framebuffer::Traits::destroy(GLuint name) { glDeleteFramebuffers(1, &name); }
+
+Framebuffer::Framebuffer(std::initializer_list<const Texture*> colours, const Texture* depth)
+    : width_(depth != nullptr ? depth->width() : (*colours.begin())->width()),
+      height_(depth != nullptr ? depth->height() : (*colours.begin())->height()),
+      colours_(static_cast<int>(colours.size())),
+      has_depth_(depth != nullptr) {
+  std::vector<GLenum> attachments;
+  for (const Texture* colour : colours) {
+    attachments.push_back(GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(attachments.size()));
+    glNamedFramebufferTexture(handle_.name(), attachments.back(), colour->name(), 0);
+  }
+  if (depth != nullptr) glNamedFramebufferTexture(handle_.name(), GL_DEPTH_ATTACHMENT, depth->name(), 0);
+  glNamedFramebufferDrawBuffers(handle_.name(), static_cast<GLsizei>(attachments.size()), attachments.data());
+  const GLenum status = glCheckNamedFramebufferStatus(handle_.name(), GL_DRAW_FRAMEBUFFER);
+  if (status != GL_FRAMEBUFFER_COMPLETE) throw std::logic_error(fmt::format("incomplete framebuffer ({:#x})", status));
+}
+
+void Framebuffer::bind() const {
+  glBindFramebuffer(GL_FRAMEBUFFER, handle_.name());
+  glViewport(0, 0, width_, height_);
+}
+
+void Framebuffer::clear() const {
+  constexpr float zero[4] = {0.0F, 0.0F, 0.0F, 0.0F};
+  for (int i = 0; i < colours_; ++i) glClearNamedFramebufferfv(handle_.name(), GL_COLOR, i, zero);
+  constexpr float far_plane = 1.0F;
+  if (has_depth_) glClearNamedFramebufferfv(handle_.name(), GL_DEPTH, 0, &far_plane);
+}
+
+void Framebuffer::read(float* pixels) const {
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, handle_.name());
+  glReadBuffer(GL_COLOR_ATTACHMENT0);
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glReadPixels(0, 0, width_, height_, GL_RGBA, GL_FLOAT, pixels);
+}
+
+}  // namespace mesograin::gl

@@ -1,0 +1,38 @@
+// Where a pass draws: colour textures and, if there is one, a depth texture, all of one size.
+#pragma once
+
+#include <initializer_list>
+
+#include "gl/handle.h"
+#include "gl/texture.h"
+
+namespace mesograin::gl {
+
+class Framebuffer {
+ public:
+  /// The textures must outlive the framebuffer. Throws std::logic_error if they do not make a complete one.
+  explicit Framebuffer(std::initializer_list<const Texture*> colours, const Texture* depth = nullptr);
+
+  /// Makes it the target of drawing and sets the viewport to its size.
+  void bind() const;
+
+  /// Clears every colour to zero and the depth to the far plane.
+  void clear() const;
+
+  /// Waits for the drawing and copies the first colour as float RGBA into `pixels`, (height, width, 4), first row y =
+  /// 0.
+  void read(float* pixels) const;
+
+ private:
+  struct Traits {
+    static GLuint create();
+    static void destroy(GLuint name);
+  };
+  Handle<Traits> handle_;
+  int width_;
+  int height_;
+  int colours_;
+  bool has_depth_;
+};
+
+}  // namespace mesograin::gl

@@ -1,0 +1,159 @@
+// Compiles, links and reflects shader programs.
+#include "gl/program.h"
+
+#include <fmt/format.h>
+
+#include <glm/gtc/type_ptr.hpp>
+#include <stdexcept>
+#include <utility>
+
+#include "scene/error.h"
+
+namespace mesograin::gl {
+namespace {
+
+struct ShaderTraits {
+  static GLuint create() { return 0; }
+  static void destroy(GLuint name) { glDeleteShader(name); }
+};
+
+using ShaderHandle = Handle<ShaderTraits>;
+
+const char* stage_name(GLenum stage) {
+  switch (stage) {
+    case GL_VERTEX_SHADER:
+      return "vertex";
+    case GL_FRAGMENT_SHADER:
+      return "fragment";
+    default:
+      return "compute";
+  }
+}
+
+ShaderHandle compile(const std::string& program, GLenum stage, const ShaderSource& source) {
+  ShaderHandle shader(glCreateShader(stage));
+  const char* text = source.text().c_str();
+  glShaderSource(shader.name(), 1, &text, nullptr);
+  glCompileShader(shader.name());
+  GLint compiled = GL_FALSE;
+  glGetShaderiv(shader.name(), GL_COMPILE_STATUS, &compiled);
+  if (compiled == GL_TRUE) return shader;
+  GLint length = 0;
+  glGetShaderiv(shader.name(), GL_INFO_LOG_LENGTH, &length);
+  std::string log(static_cast<std::size_t>(length), '\0');
+  glGetShaderInfoLog(shader.name(), length, nullptr, log.data());
+  throw Error("The {} shader of '{}' does not compile on this device: {}", stage_name(stage), program,
+              source.explain(log.c_str()));
+}
+
+}  // namespace
+
+GLuint Program::Traits::create() { return glCreateProgram(); }
+void Program::Traits::destroy(GLuint name) { glDeleteProgram(name); }
+
+Program::Program(std::string name, const ShaderSource& vertex, const ShaderSource& fragment) : name_(std::move(name)) {
+  const ShaderHandle vertex_shader = compile(name_, GL_VERTEX_SHADER, vertex);
+  const ShaderHandle fragment_shader = compile(name_, GL_FRAGMENT_SHADER, fragment);
+  glAttachShader(handle_.name(), vertex_shader.name());
+  glAttachShader(handle_.name(), fragment_shader.name());
+  link();
+  glDetachShader(handle_.name(), vertex_shader.name());
+  glDetachShader(handle_.name(), fragment_shader.name());
+  reflect();
+}
+
+Program::Program(std::string name, const ShaderSource& compute) : name_(std::move(name)) {
+  const ShaderHandle shader = compile(name_, GL_COMPUTE_SHADER, compute);
+  glAttachShader(handle_.name(), shader.name());
+  link();
+  glDetachShader(handle_.name(), shader.name());
+  reflect();
+}
+
+void Program::link() {
+  glLinkProgram(handle_.name());
+  GLint linked = GL_FALSE;
+  glGetProgramiv(handle_.name(), GL_LINK_STATUS, &linked);
+  if (linked == GL_TRUE) return;
+  GLint length = 0;
+  glGetProgramiv(handle_.name(), GL_INFO_LOG_LENGTH, &length);
+  std::string log(static_cast<std::size_t>(length), '\0');
+  glGetProgramInfoLog(handle_.name(), length, nullptr, log.data());
+  throw Error("The shader program '{}' does not link on this device: {}", name_, log.c_str());
+}
+
+void Program::reflect() {
+  GLint count = 0;
+  GLint longest = 0;
+  glGetProgramiv(handle_.name(), GL_ACTIVE_UNIFORMS, &count);
+  glGetProgramiv(handle_.name(), GL_ACTIVE_UNIFORM_MAX_LENGTH, &longest);
+  std::string buffer(static_cast<std::size_t>(longest), '\0');
+  GLuint next_unit = 0;
+  for (GLint i = 0; i < count; ++i) {
+    GLsizei length = 0;
+    GLint size = 0;
+    GLenum type = 0;
+    glGetActiveUniform(handle_.name(), static_cast<GLuint>(i), longest, &length, &size, &type, buffer.data());
+    const std::string uniform = buffer.substr(0, static_cast<std::size_t>(length));
+    const GLint location = glGetUniformLocation(handle_.name(), uniform.c_str());
+    if (location < 0) continue;  // a member of a block
+    GLuint unit = 0;
+    if (type == GL_SAMPLER_2D) {
+      unit = next_unit++;
+      glProgramUniform1i(handle_.name(), location, static_cast<GLint>(unit));
+    }
+    uniforms_.emplace(uniform, Uniform{location, type, unit});
+  }
+}
+
+void Program::use() const { glUseProgram(handle_.name()); }
+
+bool Program::has(std::string_view uniform) const { return uniforms_.find(uniform) != uniforms_.end(); }
+
+const Program::Uniform* Program::find(std::string_view uniform, GLenum type) const {
+  const auto found = uniforms_.find(uniform);
+  if (found == uniforms_.end()) return nullptr;
+  if (found->second.type != type)
+    throw std::logic_error(fmt::format("uniform '{}' of '{}' has type {:#x} and was given {:#x}", uniform, name_,
+                                       found->second.type, type));
+  return &found->second;
+}
+
+void Program::set(std::string_view uniform, int value) const {
+  if (const Uniform* found = find(uniform, GL_INT)) glProgramUniform1i(handle_.name(), found->location, value);
+}
+
+void Program::set(std::string_view uniform, float value) const {
+  if (const Uniform* found = find(uniform, GL_FLOAT)) glProgramUniform1f(handle_.name(), found->location, value);
+}
+
+void Program::set(std::string_view uniform, const glm::vec2& value) const {
+  if (const Uniform* found = find(uniform, GL_FLOAT_VEC2))
+    glProgramUniform2fv(handle_.name(), found->location, 1, glm::value_ptr(value));
+}
+
+void Program::set(std::string_view uniform, const glm::vec3& value) const {
+  if (const Uniform* found = find(uniform, GL_FLOAT_VEC3))
+    glProgramUniform3fv(handle_.name(), found->location, 1, glm::value_ptr(value));
+}
+
+void Program::set(std::string_view uniform, const glm::vec4& value) const {
+  if (const Uniform* found = find(uniform, GL_FLOAT_VEC4))
+    glProgramUniform4fv(handle_.name(), found->location, 1, glm::value_ptr(value));
+}
+
+void Program::set(std::string_view uniform, const glm::mat3& value) const {
+  if (const Uniform* found = find(uniform, GL_FLOAT_MAT3))
+    glProgramUniformMatrix3fv(handle_.name(), found->location, 1, GL_FALSE, glm::value_ptr(value));
+}
+
+void Program::set(std::string_view uniform, const glm::mat4& value) const {
+  if (const Uniform* found = find(uniform, GL_FLOAT_MAT4))
+    glProgramUniformMatrix4fv(handle_.name(), found->location, 1, GL_FALSE, glm::value_ptr(value));
+}
+
+void Program::set(std::string_view sampler, const Texture& texture) const {
+  if (const Uniform* found = find(sampler, GL_SAMPLER_2D)) texture.bind(found->unit);
+}
+
+}  // namespace mesograin::gl

@@ -1,0 +1,64 @@
+// A linked shader program whose uniforms are known by name and type.
+#pragma once
+
+#include <glm/mat3x3.hpp>
+#include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <map>
+#include <string>
+#include <string_view>
+
+#include "gl/handle.h"
+#include "gl/shader_source.h"
+#include "gl/texture.h"
+
+namespace mesograin::gl {
+
+class Program {
+ public:
+  /// `name` is used in messages. Throws Error with the file, the line and the driver's log if a stage does not compile.
+  Program(std::string name, const ShaderSource& vertex, const ShaderSource& fragment);
+  Program(std::string name, const ShaderSource& compute);
+
+  const std::string& name() const { return name_; }
+  void use() const;
+
+  /// True if the linker kept the uniform (or sampler) of that name.
+  bool has(std::string_view uniform) const;
+
+  /// Sets a uniform of the matching type. One that the linker dropped is passed over, since what a material supplies is
+  /// more than each of its programs reads; a wrong type throws std::logic_error.
+  void set(std::string_view uniform, int value) const;
+  void set(std::string_view uniform, float value) const;
+  void set(std::string_view uniform, const glm::vec2& value) const;
+  void set(std::string_view uniform, const glm::vec3& value) const;
+  void set(std::string_view uniform, const glm::vec4& value) const;
+  void set(std::string_view uniform, const glm::mat3& value) const;
+  void set(std::string_view uniform, const glm::mat4& value) const;
+
+  /// Binds the texture to the texture unit that belongs to the sampler of that name.
+  void set(std::string_view sampler, const Texture& texture) const;
+
+ private:
+  struct Traits {
+    static GLuint create();
+    static void destroy(GLuint name);
+  };
+  struct Uniform {
+    GLint location;
+    GLenum type;
+    GLuint unit;  // for samplers
+  };
+
+  void link();
+  void reflect();
+  const Uniform* find(std::string_view uniform, GLenum type) const;
+
+  std::string name_;
+  Handle<Traits> handle_;
+  std::map<std::string, Uniform, std::less<>> uniforms_;
+};
+
+}  // namespace mesograin::gl
