@@ -1,0 +1,40 @@
+// Chooses what each model's shader needs and rounds it to single precision only here, at the end.
+#include "physics/material_inputs.h"
+
+#include "scene/error.h"
+
+namespace mesograin::physics {
+namespace {
+
+using scene::Material;
+
+MaterialInputs lambert_inputs(const Material& material) {
+  MaterialInputs inputs;
+  inputs.uniforms["material.reflectance"] = glm::vec3(material.reflectance);
+  return inputs;
+}
+
+MaterialInputs conductor_inputs(const Material& material) {
+  MaterialInputs inputs;
+  if (material.masking == scene::Masking::separable) inputs.defines = {"MASKING_SEPARABLE"};
+  inputs.uniforms["material.reflectance"] = glm::vec3(material.reflectance);
+  inputs.uniforms["material.roughness"] = static_cast<float>(material.roughness);
+  return inputs;
+}
+
+}  // namespace
+
+MaterialInputs material_inputs(const Material& material) {
+  scene::validate(material);
+  switch (material.model) {
+    case scene::Model::lambert:
+      return lambert_inputs(material);
+    case scene::Model::conductor:
+      return conductor_inputs(material);
+    default:
+      throw Error("model must be lambert or conductor; got '{}', which this version cannot draw.",
+                  scene::model_names[static_cast<std::size_t>(material.model)]);
+  }
+}
+
+}  // namespace mesograin::physics

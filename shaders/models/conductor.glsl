@@ -1,0 +1,28 @@
+// A rough conductor whose Fresnel reflectance is a constant colour: one bounce off GGX microfacets.
+// Not physical: light that meets a second microfacet is lost (up to 69 % for white at roughness 1). Roughness 0 is drawn as
+// GGX_SMALLEST_ALPHA, the narrowest highlight that single precision resolves.
+#include "models/interface.glsl"
+#include "physics/prelude.glsl"
+#include "physics/ggx.glsl"
+
+struct Material {
+  vec3 reflectance;
+  float roughness;
+};
+uniform Material material;
+
+vec3 evaluate_model(SurfacePoint point, LightSample light) {
+  float mu_i = dot(point.normal, light.to_light);
+  if (mu_i <= 0.0) return vec3(0.0);
+  // A shading normal may turn away from a viewer who sees the triangle: there the surface is at grazing, not black.
+  float mu_o = max(dot(point.normal, point.to_viewer), 0.0);
+  vec3 sum = light.to_light + point.to_viewer;
+  vec3 half_vector = sum * inversesqrt(max(dot(sum, sum), 1e-12));
+  float alpha = max(material.roughness, GGX_SMALLEST_ALPHA);
+#ifdef MASKING_SEPARABLE
+  float visibility = ggx_visibility_separable(mu_i, mu_o, alpha);
+#else
+  float visibility = ggx_visibility_correlated(mu_i, mu_o, alpha);
+#endif
+  return material.reflectance * light.irradiance * (ggx_distribution(point.normal, half_vector, alpha) * visibility * mu_i);
+}
