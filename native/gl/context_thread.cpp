@@ -101,13 +101,15 @@ void ContextThread::loop(std::promise<DeviceInfo> started) {
     {
       std::unique_lock lock(mutex_);
       wake_.wait(lock, [this] { return stopping_ || !queue_.empty(); });
-      if (queue_.empty()) return;
+      if (queue_.empty()) break;
       work = std::move(queue_.front());
       queue_.pop_front();
     }
     work();
+    work = nullptr;
     collect_gl_errors();
   }
+  companions_.clear();
 }
 
 void ContextThread::collect_gl_errors() {

@@ -4,15 +4,17 @@
 // leaves it unharmed.
 #pragma once
 
-#include <chrono>
 #include <condition_variable>
 #include <deque>
 #include <functional>
 #include <future>
+#include <map>
+#include <memory>
 #include <mutex>
 #include <string>
 #include <thread>
 #include <type_traits>
+#include <typeindex>
 #include <utility>
 #include <vector>
 
@@ -51,6 +53,15 @@ class ContextThread {
     return post(std::forward<Work>(work)).get();
   }
 
+  /// The one object of this type that lives as long as the context and is destroyed on its thread, before the context.
+  /// To be called on that thread only.
+  template <typename Companion>
+  Companion& companion() {
+    std::shared_ptr<void>& slot = companions_[typeid(Companion)];
+    if (!slot) slot = std::make_shared<Companion>();
+    return *static_cast<Companion*>(slot.get());
+  }
+
   const DeviceInfo& device_info() const { return device_info_; }
 
   /// The GL errors seen since the last call, oldest first, each with the work it was found after.
@@ -67,6 +78,7 @@ class ContextThread {
   std::condition_variable wake_;
   std::deque<std::function<void()>> queue_;
   std::vector<std::string> gl_errors_;
+  std::map<std::type_index, std::shared_ptr<void>> companions_;
   bool stopping_ = false;
   std::thread thread_;
 };

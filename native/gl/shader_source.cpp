@@ -11,9 +11,9 @@
 
 namespace mesograin::gl {
 
-ShaderSource::ShaderSource(std::string_view path, const std::vector<std::string>& defines) {
+ShaderSource::ShaderSource(const std::vector<std::string>& paths, const std::vector<std::string>& defines) {
   begin(defines);
-  include(path, "the renderer");
+  for (const std::string& path : paths) include(path, "the renderer");
 }
 
 ShaderSource ShaderSource::from_text(std::string_view name, std::string_view text,

@@ -9,9 +9,10 @@ namespace mesograin::gl {
 
 class ShaderSource {
  public:
-  /// Assembles `path` (relative to shaders/): #version, one #define for each of `defines` ("NAME" or "NAME value"), the
-  /// file, with every #include "path" replaced by that file's text once. Throws Error for a file that does not exist.
-  ShaderSource(std::string_view path, const std::vector<std::string>& defines);
+  /// Assembles files (paths relative to shaders/): #version, one #define for each of `defines` ("NAME" or "NAME
+  /// value"), the files in order, with every #include "path" replaced by that file's text once. Throws Error for a file
+  /// that does not exist.
+  ShaderSource(const std::vector<std::string>& paths, const std::vector<std::string>& defines);
 
   /// As above for a text that is in no file, shown as `name` in messages.
   static ShaderSource from_text(std::string_view name, std::string_view text, const std::vector<std::string>& defines);

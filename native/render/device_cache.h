@@ -1,0 +1,71 @@
+// What is on the device already: meshes, programs and material tables, shared by all views and sent once.
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "gl/program.h"
+#include "gl/texture.h"
+#include "gl/vertex_array.h"
+#include "physics/material_inputs.h"
+#include "scene/scene.h"
+
+namespace mesograin::render {
+
+/// A material ready to draw with: its program, and the uniforms and tables that the program reads.
+class DeviceMaterial {
+ public:
+  DeviceMaterial(physics::MaterialInputs inputs, const gl::Program& program);
+
+  const gl::Program& program() const { return program_; }
+
+  /// Sets every uniform and binds every table on the program.
+  void bind() const;
+
+ private:
+  const gl::Program& program_;
+  std::map<std::string, physics::UniformValue> uniforms_;
+  std::map<std::string, gl::Texture> tables_;
+};
+
+/// Counts of what was sent to the device since it started.
+struct Sent {
+  std::size_t meshes = 0;
+  std::size_t materials = 0;
+  std::size_t programs = 0;
+  std::size_t bytes = 0;
+};
+
+/// Lives on the context's thread.
+class DeviceCache {
+ public:
+  std::shared_ptr<gl::VertexArray> mesh(const scene::MeshPointer& mesh);
+  std::shared_ptr<DeviceMaterial> material(const scene::Material& material);
+
+  /// Frees what no view holds any more.
+  void prune();
+
+  const Sent& sent() const { return sent_; }
+
+ private:
+  struct MeshEntry {
+    std::weak_ptr<const scene::Mesh> source;
+    std::shared_ptr<gl::VertexArray> device;
+  };
+  struct MaterialEntry {
+    scene::Material source;
+    std::shared_ptr<DeviceMaterial> device;
+  };
+
+  const gl::Program& program(scene::Model model, const std::vector<std::string>& defines);
+
+  std::map<const scene::Mesh*, MeshEntry> meshes_;
+  std::vector<MaterialEntry> materials_;
+  std::map<std::string, std::unique_ptr<gl::Program>> programs_;
+  Sent sent_;
+};
+
+}  // namespace mesograin::render

@@ -1,0 +1,84 @@
+// One view's graph of passes on the device: shade one jittered sample, add it to the sum, resolve the mean on demand.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "gl/framebuffer.h"
+#include "gl/program.h"
+#include "gl/texture.h"
+#include "gl/timer.h"
+#include "gl/vertex_array.h"
+#include "render/device_cache.h"
+#include "scene/camera.h"
+#include "scene/scene.h"
+
+namespace mesograin::render {
+
+struct PassTiming {
+  std::string pass;
+  double milliseconds;
+};
+
+/// Lives on the context's thread.
+class Frame {
+ public:
+  Frame(DeviceCache& cache, int width, int height, std::uint32_t seed);
+
+  void resize(int width, int height);
+  void set_scene(scene::Scene scene);
+  void set_camera(const scene::Camera& camera);
+
+  /// Adds one sample to the sum.
+  void add_sample();
+
+  /// Waits until the device has drawn what was asked for.
+  void finish() const;
+
+  /// The mean of the samples so far, (height, width, 4), first row at the top. Zero where there are none yet.
+  void read(float* pixels);
+
+  std::vector<PassTiming> timings() const;
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+
+ private:
+  struct Targets {
+    Targets(int width, int height);
+    gl::Texture sample;
+    gl::Texture depth;
+    gl::Texture sum;
+    gl::Framebuffer shade;
+    gl::Framebuffer accumulate;
+  };
+  struct Draw {
+    std::shared_ptr<gl::VertexArray> mesh;
+    std::shared_ptr<DeviceMaterial> material;
+    glm::dmat4 object_to_world;
+  };
+
+  void shade();
+  void accumulate();
+  gl::Buffer lights_in_camera_space() const;
+
+  DeviceCache& cache_;
+  int width_;
+  int height_;
+  std::uint32_t seed_;
+  int samples_ = 0;
+  scene::Camera camera_;
+  std::vector<scene::DirectionalLight> lights_;
+  std::vector<Draw> draws_;
+  std::unique_ptr<Targets> targets_;
+  gl::FullScreenTriangle full_screen_;
+  gl::Program accumulate_program_;
+  gl::Program resolve_program_;
+  gl::Timer shade_timer_;
+  gl::Timer accumulate_timer_;
+  bool timed_ = false;
+};
+
+}  // namespace mesograin::render

@@ -1,0 +1,40 @@
+// Additive recurrences with the generalised golden ratios.
+#include "render/sequence.h"
+
+#include <cmath>
+#include <glm/common.hpp>
+
+namespace mesograin::render {
+namespace {
+
+// The real root above 1 of x^(d+1) = x + 1 for d = 2 and d = 4.
+constexpr double plastic_number = 1.32471795724474602596;
+constexpr double four_dimensional_ratio = 1.16730397826141868426;
+
+// splitmix64 (Steele, Lea and Flood, "Fast splittable pseudorandom number generators", 2014).
+std::uint64_t mix(std::uint64_t value) {
+  value += 0x9e3779b97f4a7c15ULL;
+  value = (value ^ (value >> 30U)) * 0xbf58476d1ce4e5b9ULL;
+  value = (value ^ (value >> 27U)) * 0x94d049bb133111ebULL;
+  return value ^ (value >> 31U);
+}
+
+}  // namespace
+
+glm::dvec2 r2_point(std::uint32_t index, glm::dvec2 offset) {
+  const glm::dvec2 step(1.0 / plastic_number, 1.0 / (plastic_number * plastic_number));
+  return glm::fract(offset + static_cast<double>(index) * step);
+}
+
+glm::dvec2 r4_point(std::uint32_t index, glm::dvec2 offset) {
+  const glm::dvec2 step(std::pow(four_dimensional_ratio, -3.0), std::pow(four_dimensional_ratio, -4.0));
+  return glm::fract(offset + static_cast<double>(index) * step);
+}
+
+glm::dvec2 seeded_offset(std::uint32_t seed) {
+  constexpr double unit = 0x1.0p-53;
+  const std::uint64_t first = mix(seed);
+  return {static_cast<double>(first >> 11U) * unit, static_cast<double>(mix(first) >> 11U) * unit};
+}
+
+}  // namespace mesograin::render

@@ -1,0 +1,19 @@
+// Low-discrepancy points for antialiasing and for the sun's disc.
+#pragma once
+
+#include <cstdint>
+#include <glm/vec2.hpp>
+
+namespace mesograin::render {
+
+/// Point `index` of the additive recurrence in two dimensions (M. Roberts, "The Unreasonable Effectiveness of
+/// Quasirandom Sequences", 2018: the plastic number), rotated by `offset`; in [0, 1)^2.
+glm::dvec2 r2_point(std::uint32_t index, glm::dvec2 offset);
+
+/// Dimensions 3 and 4 of the same construction in four dimensions, to be paired with r2_point without correlation.
+glm::dvec2 r4_point(std::uint32_t index, glm::dvec2 offset);
+
+/// A pair in [0, 1)^2 that depends on nothing but `seed`.
+glm::dvec2 seeded_offset(std::uint32_t seed);
+
+}  // namespace mesograin::render

@@ -1,0 +1,100 @@
+// Posts a view's calls to its frame on the context's thread.
+#include "render/view.h"
+
+#include <map>
+#include <utility>
+
+#include "gl/context_thread.h"
+#include "scene/error.h"
+
+namespace mesograin::render {
+namespace {
+
+// All that lives on the device, so that it goes with the context whoever still holds a view.
+struct Device {
+  DeviceCache cache;
+  std::map<std::uint64_t, Frame> frames;
+};
+
+Device& device() { return gl::ContextThread::instance().companion<Device>(); }
+
+Frame& frame(std::uint64_t id) {
+  std::map<std::uint64_t, Frame>& frames = device().frames;
+  const auto found = frames.find(id);
+  if (found == frames.end()) throw Error("This view ended when the renderer was shut down; make a new one.");
+  return found->second;
+}
+
+std::uint64_t next_id() {
+  static std::atomic<std::uint64_t> last{0};
+  return ++last;
+}
+
+}  // namespace
+
+View::View(int width, int height, std::uint32_t seed) : id_(next_id()), width_(width), height_(height) {
+  gl::ContextThread::instance().run([&] {
+    Device& here = device();
+    here.frames.try_emplace(id_, here.cache, width, height, seed);
+  });
+}
+
+View::~View() {
+  cancel();
+  if (!gl::ContextThread::running()) return;
+  gl::ContextThread::instance().run([this] {
+    device().frames.erase(id_);
+    device().cache.prune();
+  });
+}
+
+void View::resize(int width, int height) {
+  gl::ContextThread::instance().run([&] { frame(id_).resize(width, height); });
+  if (width != width_ || height != height_) *samples_ = 0;
+  width_ = width;
+  height_ = height;
+}
+
+void View::set_scene(scene::Scene scene) {
+  validate(scene);
+  gl::ContextThread::instance().run([&] { frame(id_).set_scene(std::move(scene)); });
+  *samples_ = 0;
+}
+
+void View::set_camera(const scene::Camera& camera) {
+  validate(camera);
+  gl::ContextThread::instance().run([&] { frame(id_).set_camera(camera); });
+  *samples_ = 0;
+}
+
+void View::render(int samples) { start(samples).get(); }
+
+std::future<void> View::start(int samples) {
+  if (samples < 1) throw Error("A view needs at least one sample to render; got {}.", samples);
+  *cancelled_ = false;
+  return gl::ContextThread::instance().post([id = id_, samples, done = samples_, cancelled = cancelled_] {
+    Frame& target = frame(id);
+    for (int i = 0; i < samples && !*cancelled; ++i) {
+      target.add_sample();
+      // Without this the driver would queue samples faster than it draws them, and cancelling would come too late.
+      target.finish();
+      ++*done;
+    }
+  });
+}
+
+void View::cancel() { *cancelled_ = true; }
+
+void View::read(float* pixels) {
+  gl::ContextThread::instance().run([&] { frame(id_).read(pixels); });
+}
+
+std::vector<PassTiming> View::timings() {
+  return gl::ContextThread::instance().run([&] { return frame(id_).timings(); });
+}
+
+Sent View::sent() {
+  return gl::ContextThread::instance().run([] { return device().cache.sent(); });
+}
+
+}  // namespace mesograin::render

@@ -1,0 +1,66 @@
+// The renderer as other threads see it: an image of a scene through a camera that gets better with every sample.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <future>
+#include <memory>
+#include <vector>
+
+#include "gl/egl_context.h"
+#include "render/frame.h"
+#include "scene/camera.h"
+#include "scene/scene.h"
+
+namespace mesograin::render {
+
+/// May be used from any thread, by one at a time, except cancel() and samples(), which may be called at any time.
+/// Every call posts to the context's thread. Throws Error for what cannot be drawn, always before anything changes.
+class View {
+ public:
+  View(int width, int height, std::uint32_t seed = 0);
+  ~View();
+  View(const View&) = delete;
+  View& operator=(const View&) = delete;
+
+  void resize(int width, int height);
+
+  /// Restarts the accumulation. Meshes and materials already on the device are not sent again.
+  void set_scene(scene::Scene scene);
+
+  /// Restarts the accumulation and sends nothing.
+  void set_camera(const scene::Camera& camera);
+
+  /// Adds `samples` to the mean and returns when they are drawn.
+  void render(int samples);
+
+  /// As render(), without waiting; the future is ready when the samples are drawn or were cancelled.
+  std::future<void> start(int samples);
+
+  /// Ends the start() or render() under way after its current sample; without one it does nothing.
+  void cancel();
+
+  /// Samples in the mean so far.
+  int samples() const { return *samples_; }
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+
+  /// Fills (height, width, 4) floats: linear RGB premultiplied by coverage, and coverage; first row at the top.
+  void read(float* pixels);
+
+  /// Milliseconds of each pass of the last sample, in the order they ran; empty before the first.
+  std::vector<PassTiming> timings();
+
+  /// What all views together have sent to the device so far.
+  static Sent sent();
+
+ private:
+  std::uint64_t id_;
+  int width_;
+  int height_;
+  std::shared_ptr<std::atomic<int>> samples_ = std::make_shared<std::atomic<int>>(0);
+  std::shared_ptr<std::atomic<bool>> cancelled_ = std::make_shared<std::atomic<bool>>(false);
+};
+
+}  // namespace mesograin::render
