@@ -1,0 +1,141 @@
+// The renderer for Python: the GIL is released while the device works, and Ctrl-C ends a render after its sample.
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include <chrono>
+#include <optional>
+
+#include "gl/context_thread.h"
+#include "python/bindings.h"
+#include "render/view.h"
+#include "scene/error.h"
+
+namespace py = pybind11;
+
+namespace mesograin::python {
+namespace {
+
+using Pixels = py::array_t<float, py::array::c_style>;
+
+py::dict device_info() {
+  const gl::DeviceInfo& info = [] {
+    const py::gil_scoped_release release;
+    return gl::ContextThread::instance().device_info();
+  }();
+  py::list tried;
+  for (const gl::DeviceAttempt& attempt : info.tried) {
+    py::dict entry;
+    entry["device"] = attempt.device;
+    entry["hardware"] = attempt.hardware;
+    entry["result"] = attempt.result;
+    tried.append(entry);
+  }
+  py::dict result;
+  result["chosen"] = info.chosen;
+  result["renderer"] = info.renderer;
+  result["version"] = info.version;
+  result["hardware"] = info.hardware;
+  result["tried"] = tried;
+  return result;
+}
+
+// Waits without the GIL, but looks for Ctrl-C often enough that it seems immediate.
+void render(render::View& view, int samples) {
+  std::future<void> done = view.start(samples);
+  constexpr auto patience = std::chrono::milliseconds(20);
+  for (;;) {
+    {
+      const py::gil_scoped_release release;
+      if (done.wait_for(patience) == std::future_status::ready) break;
+    }
+    if (PyErr_CheckSignals() != 0) {
+      view.cancel();
+      const py::gil_scoped_release release;
+      done.wait();
+      break;
+    }
+  }
+  if (PyErr_Occurred() != nullptr) throw py::error_already_set();
+  done.get();
+}
+
+Pixels read(render::View& view, std::optional<Pixels> out) {
+  const auto height = static_cast<py::ssize_t>(view.height());
+  const auto width = static_cast<py::ssize_t>(view.width());
+  if (!out) out = Pixels({height, width, py::ssize_t{4}});
+  if (out->ndim() != 3 || out->shape(0) != height || out->shape(1) != width || out->shape(2) != 4)
+    throw Error("read() needs a C-contiguous float32 array of shape ({}, {}, 4).", height, width);
+  float* pixels = out->mutable_data();
+  const py::gil_scoped_release release;
+  view.read(pixels);
+  return *std::move(out);
+}
+
+py::list timings(render::View& view) {
+  std::vector<render::PassTiming> passes;
+  {
+    const py::gil_scoped_release release;
+    passes = view.timings();
+  }
+  py::list result;
+  for (const render::PassTiming& timing : passes) {
+    py::dict entry;
+    entry["pass"] = timing.pass;
+    entry["milliseconds"] = timing.milliseconds;
+    result.append(entry);
+  }
+  return result;
+}
+
+py::dict sent() {
+  const render::Sent counts = [] {
+    const py::gil_scoped_release release;
+    return render::View::sent();
+  }();
+  py::dict result;
+  result["meshes"] = counts.meshes;
+  result["materials"] = counts.materials;
+  result["programs"] = counts.programs;
+  result["bytes"] = counts.bytes;
+  return result;
+}
+
+}  // namespace
+
+void bind_view(py::module_& module) {
+  module.def("device_info", &device_info,
+             "The device that renders: {'chosen', 'renderer', 'version', 'hardware', 'tried': [{'device', 'hardware', "
+             "'result'}, ...]}. Raises Error, listing every device tried, if none offers OpenGL 4.5 through EGL.");
+  module.def(
+      "take_gl_errors", [] { return gl::ContextThread::instance().take_gl_errors(); },
+      py::call_guard<py::gil_scoped_release>(), "The OpenGL errors since the last call, oldest first; normally [].");
+  module.def("sent", &sent,
+             "What all views have sent to the device so far: {'meshes', 'materials', 'programs', 'bytes'}.");
+  module.def("shut_down", &gl::ContextThread::shut_down, py::call_guard<py::gil_scoped_release>(),
+             "Frees the device; views made before can no longer be used. Done by itself when Python ends.");
+
+  using Release = py::call_guard<py::gil_scoped_release>;
+  py::class_<render::View>(module, "View",
+                           "An image of a scene through a camera that gets better with every sample (box pixel filter, "
+                           "one pixel wide). Many views share one device and what was sent to it.")
+      .def(py::init<int, int, std::uint32_t>(), py::arg("width"), py::arg("height"), py::arg("seed") = 0, Release())
+      .def("resize", &render::View::resize, py::arg("width"), py::arg("height"), Release(),
+           "Reallocates the targets and nothing else.")
+      .def("set_scene", &render::View::set_scene, py::arg("scene"), Release(),
+           "Restarts the accumulation. Meshes and materials already on the device are not sent again.")
+      .def("set_camera", &render::View::set_camera, py::arg("camera"), Release(),
+           "Restarts the accumulation; sends nothing.")
+      .def("render", &render, py::arg("samples") = 1,
+           "Adds samples to the mean. Ctrl-C or cancel() ends it after the sample under way.")
+      .def("cancel", &render::View::cancel, "Ends a render() under way in another thread after its current sample.")
+      .def_property_readonly("samples", &render::View::samples, "Samples in the mean so far.")
+      .def_property_readonly("width", &render::View::width)
+      .def_property_readonly("height", &render::View::height)
+      .def(
+          "read", &read, py::arg("out") = py::none(),
+          "The mean: (height, width, 4) float32, linear RGB premultiplied by coverage, and coverage; row 0 at the top. "
+          "`out`, if given, is filled and returned.")
+      .def("timings", &timings, "[{'pass', 'milliseconds'}, ...] of the last sample, in the order the passes ran.");
+}
+
+}  // namespace mesograin::python

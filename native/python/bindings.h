@@ -1,0 +1,11 @@
+// Which parts of the native rooms reach Python; one file each.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+namespace mesograin::python {
+
+void bind_scene(pybind11::module_& module);
+void bind_view(pybind11::module_& module);
+
+}  // namespace mesograin::python
