@@ -207,8 +207,8 @@ ExrFile decode(std::string& bytes, const std::string& name) {
   int version = little_endian<std::int32_t>(bytes, 4);
   header.readFrom(stream, version);
   if (!Imf::isTiled(version)) header.erase("tiles");  // as OpenEXR does: the flag decides
-  header.sanityCheck(Imf::isTiled(version));
   check_header(header, bytes, chunk_table);
+  header.sanityCheck(Imf::isTiled(version));
 
   ExrFile file;
   for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel)
@@ -264,13 +264,16 @@ void require_name(std::string_view what, const std::string& name) {
                 one_line(name));
 }
 
-Imf::Header make_header(const ImageView& image, const std::vector<std::string>& channels,
-                        const std::map<std::string, std::string>& attributes, Imf::PixelType type) {
+void require_shape(const ImageView& image) {
   if (image.width < 1 || image.height < 1 || image.channels < 1)
     throw Error("An EXR needs at least one pixel and one channel; got {} x {} pixels of {} channels.", image.width,
                 image.height, image.channels);
   if (image.width > largest_side || image.height > largest_side)
     throw Error("An EXR may have at most {} pixels a side; got {} x {}.", largest_side, image.width, image.height);
+}
+
+Imf::Header make_header(const ImageView& image, const std::vector<std::string>& channels,
+                        const std::map<std::string, std::string>& attributes, Imf::PixelType type) {
   if (channels.size() != static_cast<std::size_t>(image.channels))
     throw Error("An EXR of {} channels needs as many names; got {}.", image.channels, channels.size());
   if (const std::set<std::string> distinct(channels.begin(), channels.end()); distinct.size() != channels.size())
@@ -317,6 +320,7 @@ ExrFile read_exr(const fs::path& path) {
 void write_exr(const fs::path& path, const ImageView& image, std::vector<std::string> channels,
                const std::map<std::string, std::string>& attributes, SampleFormat format) {
   try {
+    require_shape(image);
     if (channels.empty()) channels = default_channels(image.channels);
     const Imf::PixelType type = format == SampleFormat::half ? Imf::HALF : Imf::FLOAT;
     const Imf::Header header = make_header(image, channels, attributes, type);
