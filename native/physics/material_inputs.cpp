@@ -1,6 +1,7 @@
 // Chooses what each model's shader needs and rounds it to single precision only here, at the end.
 #include "physics/material_inputs.h"
 
+#include "physics/model_1_inputs.h"
 #include "scene/error.h"
 
 namespace mesograin::physics {
@@ -31,8 +32,10 @@ MaterialInputs material_inputs(const Material& material) {
       return lambert_inputs(material);
     case scene::Model::conductor:
       return conductor_inputs(material);
+    case scene::Model::model_1:
+      return model_1_inputs(material);
     default:
-      throw Error("model must be lambert or conductor; got '{}', which this version cannot draw.",
+      throw Error("model must be lambert, conductor or model_1; got '{}', which this version cannot draw.",
                   scene::model_names[static_cast<std::size_t>(material.model)]);
   }
 }

@@ -13,9 +13,9 @@ pure real refracted_versine(real3 w_i, real mu_i, real mu_i_refracted, real3 w_o
 
 // The factor in front of every order of scattering (Hanrahan & Krueger 1993 eq. 5 and Chandrasekhar 1960 section 39 for the
 // 1/(mu + mu_0); radiance that leaves a medium of index eta spreads by 1/eta^2): single scattering is this times albedo * p.
-pure real half_space_factor(real mu_i_refracted, real mu_o_refracted, real transmittance_i, real transmittance_o,
-                            real inverse_eta_squared) {
-  return transmittance_i * transmittance_o * inverse_eta_squared / max(mu_i_refracted + mu_o_refracted, 1e-9);
+// `transmittance` is the product of both passages.
+pure real half_space_factor(real mu_i_refracted, real mu_o_refracted, real transmittance, real inverse_eta_squared) {
+  return transmittance * inverse_eta_squared / max(mu_i_refracted + mu_o_refracted, 1e-9);
 }
 
 // Where the multiple-scattering table is looked up: the grazing end, where the medium answers like mu log(mu), is stretched.

@@ -1,0 +1,157 @@
+// Every order of scattering comes from exactly one place: the table, the closed form, or the analytic first order.
+#include "physics/model_1_inputs.h"
+
+#include <cmath>
+
+#include "physics/fresnel_moments.h"
+#include "physics/half_space.h"
+#include "physics/medium.h"
+#include "physics/physics.h"
+#include "physics/refracted_view.h"
+#include "scene/error.h"
+
+namespace mesograin::physics {
+namespace {
+
+using scene::Boundary;
+using scene::Material;
+using scene::Profile;
+
+constexpr int half_space_table_size = 64;
+constexpr int view_table_size = 128;
+
+// Calls `per_channel` for each channel, or only once for channels with the same medium.
+template <typename PerChannel>
+auto for_each_channel(const Material& material, PerChannel per_channel) {
+  std::array<decltype(per_channel(Medium{})), 3> results;
+  for (int channel = 0; channel < 3; ++channel) {
+    const Medium medium = half_space_medium(material, channel);
+    int same = 0;
+    while (half_space_medium(material, same) != medium) ++same;
+    results[channel] = same < channel ? results[same] : per_channel(medium);
+  }
+  return results;
+}
+
+Table pack(const std::array<std::vector<double>, 3>& channels, int width, int height) {
+  Table table{width, height, {}};
+  table.texels.reserve(channels[0].size());
+  for (std::size_t texel = 0; texel < channels[0].size(); ++texel)
+    table.texels.emplace_back(glm::dvec4(channels[0][texel], channels[1][texel], channels[2][texel], 1.0));
+  return table;
+}
+
+// The cosines inside at which the shader's coordinate (half_space_coordinate) is 0, 1/(n-1), ..., 1.
+std::vector<double> table_cosines(double eta) {
+  std::vector<double> mu;
+  for (int i = 0; i < half_space_table_size; ++i) {
+    const double coordinate = static_cast<double>(i) / (half_space_table_size - 1);
+    const double lesser = coordinate * coordinate;
+    mu.push_back(eta > 1.0 ? refracted_cosine(lesser, eta) : lesser);
+  }
+  return mu;
+}
+
+void add_single_scattering(const Material& material, MaterialInputs& inputs) {
+  glm::dvec3 albedo;
+  double g = 0.0;
+  for (int channel = 0; channel < 3; ++channel) {
+    const Medium medium = half_space_medium(material, channel);
+    albedo[channel] = medium.albedo;
+    g = medium.g;
+  }
+  inputs.defines.emplace_back("SINGLE_SCATTERING");
+  inputs.uniforms["material.albedo"] = glm::vec3(albedo);
+  inputs.uniforms["material.absolute_g"] = static_cast<float>(std::abs(g));
+  inputs.uniforms["material.one_minus_absolute_g"] = static_cast<float>(1.0 - std::abs(g));
+  inputs.uniforms["material.sign_g"] = g < 0.0 ? -1.0F : 1.0F;
+}
+
+void add_half_space(const Material& material, double eta, MaterialInputs& inputs) {
+  // Isotropic first-order scattering is as smooth as the rest and rides in the table.
+  const bool isotropic = material.g == 0.0;
+  const std::vector<double> mu = table_cosines(eta);
+  inputs.defines.emplace_back("MULTIPLE_TABLE");
+  inputs.tables["multiple_scattering"] =
+      pack(for_each_channel(material,
+                            [&](const Medium& medium) { return HalfSpace(medium, eta).interior_table(mu, isotropic); }),
+           half_space_table_size, half_space_table_size);
+  if (!isotropic) add_single_scattering(material, inputs);
+}
+
+void add_closed_form(const Material& material, double eta, MaterialInputs& inputs) {
+  const DiffusionBoundary boundary = diffusion_boundary(eta);
+  glm::dvec3 total;
+  for (int channel = 0; channel < 3; ++channel) {
+    const double one_minus_reduced_albedo = reduced_medium(material, channel).one_minus_albedo;
+    total[channel] = material.profile == Profile::dipole
+                         ? dipole_total(one_minus_reduced_albedo, boundary.a)
+                         : better_dipole_total(one_minus_reduced_albedo, boundary.a, boundary.c_phi, boundary.c_e);
+  }
+  inputs.defines.emplace_back("MULTIPLE_CONSTANT");
+  inputs.uniforms["material.diffuse"] = glm::vec3(total / (PI * boundary.exit_transmittance));
+  // Jensen's total stands for all orders (his R_d -> 1 for a conservative medium); the better dipole begins with the
+  // second.
+  if (material.profile == Profile::better_dipole) add_single_scattering(material, inputs);
+}
+
+MaterialInputs interface_inputs(const Material& material) {
+  MaterialInputs inputs;
+  const double eta = material.boundary == Boundary::dielectric ? material.eta : 1.0;
+  if (eta != 1.0) {
+    inputs.defines.emplace_back("REFRACTION");
+    inputs.uniforms["material.eta"] = static_cast<float>(eta);
+  }
+  inputs.uniforms["material.inverse_eta_squared"] = static_cast<float>(1.0 / (eta * eta));
+  if (material.profile == Profile::half_space)
+    add_half_space(material, eta, inputs);
+  else
+    add_closed_form(material, eta, inputs);
+  return inputs;
+}
+
+// The light enters by a cosine lobe and the viewer sees one: the spherical albedo of the half-space, over pi.
+MaterialInputs lambert_lambert_inputs(const Material& material) {
+  const std::array<double, 3> albedo =
+      for_each_channel(material, [](const Medium& medium) { return HalfSpaceInterior(medium).spherical_albedo(); });
+  MaterialInputs inputs;
+  inputs.defines.emplace_back("MULTIPLE_CONSTANT");
+  inputs.uniforms["material.diffuse"] = glm::vec3(glm::dvec3(albedo[0], albedo[1], albedo[2]) / PI);
+  return inputs;
+}
+
+// Followed from the viewer: refracted into the medium, out again by a cosine lobe towards the light.
+MaterialInputs lambert_refracted_inputs(const Material& material) {
+  const auto channels = for_each_channel(material, [&](const Medium& medium) {
+    const RefractedView view(medium, material.eta, material.roughness);
+    std::vector<double> values;
+    for (int i = 0; i < view_table_size; ++i) {
+      const double coordinate = static_cast<double>(i) / (view_table_size - 1);
+      values.push_back(view.albedo(coordinate * coordinate) / PI);
+    }
+    return values;
+  });
+  MaterialInputs inputs;
+  inputs.defines.emplace_back("VIEW_TABLE");
+  inputs.tables["multiple_scattering"] = pack(channels, view_table_size, 1);
+  return inputs;
+}
+
+}  // namespace
+
+MaterialInputs model_1_inputs(const Material& material) {
+  if (material.profile == Profile::photon_beam)
+    throw Error(
+        "profile for model_1 must be half_space, better_dipole or dipole; got 'photon_beam', which only model_3 "
+        "integrates.");
+  switch (material.boundary) {
+    case Boundary::lambert_lambert:
+      return lambert_lambert_inputs(material);
+    case Boundary::lambert_refracted:
+      return lambert_refracted_inputs(material);
+    default:
+      return interface_inputs(material);
+  }
+}
+
+}  // namespace mesograin::physics
