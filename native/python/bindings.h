@@ -5,6 +5,7 @@
 
 namespace mesograin::python {
 
+void bind_image(pybind11::module_& module);
 void bind_scene(pybind11::module_& module);
 void bind_view(pybind11::module_& module);
 

@@ -13,6 +13,7 @@ PYBIND11_MODULE(mesograin_native, module) {
   py::register_exception<mesograin::Error>(module, "Error", PyExc_RuntimeError).doc() =
       "What a user can cause: one sentence with what was needed, what came and what to do.";
 
+  mesograin::python::bind_image(module);
   mesograin::python::bind_scene(module);
   mesograin::python::bind_view(module);
 
