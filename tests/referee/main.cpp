@@ -1,0 +1,79 @@
+// mesograin-referee: the photon Monte Carlo that judges the product's physics, as a command.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <nlohmann/json.hpp>
+
+#include "half_space.h"
+#include "table_file.h"
+#include "tables.h"
+
+namespace {
+
+using namespace mesograin::referee;
+
+void add_effort(CLI::App* command, Effort& effort) {
+  command->add_option("--photons", effort.photons, "photons to trace")->capture_default_str();
+  command->add_option("--seed", effort.seed, "the answer depends on it alone")->capture_default_str();
+  command->add_option("--threads", effort.threads, "0: as many as the machine has")->capture_default_str();
+}
+
+void add_half_space(CLI::App& application) {
+  CLI::App* command =
+      application.add_subcommand("half-space", "reflectance of a half-space per transmitted flux, as JSON");
+  auto setup = std::make_shared<HalfSpaceCase>();
+  auto effort = std::make_shared<Effort>();
+  setup->albedos = {0.1, 0.5, 0.8, 0.9, 0.95, 0.99, 0.999};
+  command->add_option("--eta", setup->eta, "index inside over index outside")
+      ->check(CLI::Range(0.5, 4.0))
+      ->capture_default_str();
+  command->add_option("--g", setup->g, "mean cosine of scattering")
+      ->check(CLI::Range(-0.99, 0.99))
+      ->capture_default_str();
+  command->add_option("--albedo", setup->albedos, "sigma_s / sigma_t, any number of them")->check(CLI::Range(0.0, 1.0));
+  command->add_option("--cosine", setup->cosine, "of the incident beam, outside")
+      ->check(CLI::Range(0.01, 1.0))
+      ->capture_default_str();
+  command->add_flag("--diffuse", setup->diffuse, "cosine-weighted incidence instead of a beam");
+  add_effort(command, *effort);
+  command->callback([setup, effort] {
+    const HalfSpaceResult result = trace_half_space(*setup, *effort);
+    const nlohmann::json answer{{"albedos", setup->albedos},
+                                {"single", values(result.single)},
+                                {"single_noise", noises(result.single)},
+                                {"multiple", values(result.multiple)},
+                                {"multiple_noise", noises(result.multiple)},
+                                {"total", values(result.total)},
+                                {"total_noise", noises(result.total)}};
+    fmt::print("{}\n", answer.dump(1));
+  });
+}
+
+void add_tables(CLI::App& application) {
+  CLI::App* command = application.add_subcommand("tables", "make or complete the tables the tests read");
+  auto directory = std::make_shared<std::string>("tests/data/referee");
+  auto threads = std::make_shared<unsigned>(1);
+  command->add_option("--directory", *directory, "where the tables are")->capture_default_str();
+  command->add_option("--threads", *threads, "0: as many as the machine has")->capture_default_str();
+  command->callback([directory, threads] { make_half_space_table(*directory, *threads); });
+}
+
+}  // namespace
+
+int main(int argument_count, char** arguments) {
+  CLI::App application{"A double-precision photon Monte Carlo that shares no code with the product's physics.",
+                       "mesograin-referee"};
+  application.require_subcommand(1);
+  add_half_space(application);
+  add_tables(application);
+  try {
+    application.parse(argument_count, arguments);
+  } catch (const CLI::ParseError& error) {
+    return application.exit(error);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "mesograin-referee: {}\n", error.what());
+    return 1;
+  }
+  return 0;
+}

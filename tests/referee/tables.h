@@ -1,0 +1,11 @@
+// The tables stored in tests/data/referee: which cases, how many photons.
+#pragma once
+
+#include <filesystem>
+
+namespace mesograin::referee {
+
+/// half_space.json: reflectance per transmitted flux over albedo, eta and incidence.
+void make_half_space_table(const std::filesystem::path& directory, unsigned threads);
+
+}  // namespace mesograin::referee
