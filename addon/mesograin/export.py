@@ -1,0 +1,196 @@
+# From Blender's dependency graph to the native module's scene and camera: plain values, copied, nothing borrowed.
+import dataclasses
+import math
+import typing
+
+import numpy as np
+
+from . import meshes, native_module, properties
+
+
+@dataclasses.dataclass(frozen=True)
+class MaterialValues:
+    """A material as the native module takes it: coefficients per Blender unit. `name` is for messages."""
+
+    name: str
+    values: tuple  # (parameter, value) pairs
+
+    def to_native(self, native):
+        """Raises native.Error naming the material if a value is out of range."""
+        try:
+            return native.Material(**dict(self.values))
+        except native.Error as error:
+            raise native.Error(f"Material '{self.name}': {error}") from error
+
+
+@dataclasses.dataclass(frozen=True)
+class InstanceValues:
+    name: str
+    mesh: object  # native.Mesh, equal by identity
+    material: MaterialValues
+    object_to_world: bytes  # (4, 4) float64, row-major
+
+    def to_native(self, native, material):
+        transform = np.frombuffer(self.object_to_world).reshape(4, 4)
+        return native.Instance(self.mesh, material, transform)
+
+
+@dataclasses.dataclass(frozen=True)
+class LightValues:
+    name: str
+    direction_to_light: tuple
+    irradiance: tuple
+    angle: float
+
+    def to_native(self, native):
+        try:
+            return native.DirectionalLight(direction_to_light=self.direction_to_light, irradiance=self.irradiance,
+                                           angle=self.angle)
+        except native.Error as error:
+            raise native.Error(f"Light '{self.name}': {error}") from error
+
+
+@dataclasses.dataclass(frozen=True)
+class SceneValues:
+    """All that a picture depends on but its camera; two are equal if they look the same."""
+
+    instances: tuple
+    lights: tuple
+    warnings: tuple
+
+    def to_native(self):
+        """The native Scene. Raises native.Error with a sentence that names the datablock at fault."""
+        native = native_module.get()
+        materials = {values: values.to_native(native) for values in
+                     dict.fromkeys(instance.material for instance in self.instances)}
+        return native.Scene(
+            instances=[instance.to_native(native, materials[instance.material]) for instance in self.instances],
+            lights=[light.to_native(native) for light in self.lights])
+
+
+def scene_from_depsgraph(depsgraph, cache=None):
+    """(native.Scene, warnings) of an evaluated dependency graph; a warning is one sentence.
+    Raises native.Error if a value cannot be rendered, native_module.Unavailable without the native module."""
+    values = read_scene(depsgraph, cache or meshes.MeshCache())
+    return values.to_native(), values.warnings
+
+
+def camera_from_scene(depsgraph, width, height, camera=None):
+    """native.Camera of the scene's active camera (or `camera`) for a picture of width x height pixels: perspective or
+    orthographic, with sensor fit, shift and pixel aspect as Blender has them. Raises native.Error without a camera."""
+    native = native_module.get()
+    scene = depsgraph.scene
+    camera = camera or scene.camera
+    if camera is None:
+        raise native.Error("The scene has no active camera: add one (Add > Camera) and make it active.")
+    camera = camera.evaluated_get(depsgraph)
+    render = scene.render
+    to_clip = camera.calc_matrix_camera(depsgraph, x=width, y=height, scale_x=render.pixel_aspect_x,
+                                        scale_y=render.pixel_aspect_y)
+    # A camera's scale does not scale its view.
+    to_world = np.array(camera.matrix_world.normalized(), dtype=np.float64)
+    return native.Camera(np.linalg.inv(to_world), np.array(to_clip, dtype=np.float64))
+
+
+def material_values(material, millimetres_per_unit):
+    """MaterialValues of a Blender material, or of the default grain where a slot is empty (None)."""
+    if material is None:
+        return MaterialValues("(none)", tuple(_default_parameters(millimetres_per_unit)))
+    return MaterialValues(material.name, tuple(_parameters(material.mesograin, millimetres_per_unit)))
+
+
+def read_scene(depsgraph, cache):
+    """SceneValues of an evaluated dependency graph; `cache` spares reading meshes twice."""
+    reader = _Reader(depsgraph.scene.mesograin.millimetres_per_unit, cache)
+    for instance in depsgraph.object_instances:
+        if instance.show_self:
+            reader.read(instance)
+    return reader.scene_values(depsgraph.scene)
+
+
+def _parameters(grain, millimetres_per_unit):
+    for parameter in properties.MATERIAL_PARAMETERS:
+        value = getattr(grain, parameter)
+        if parameter in ("sigma_a", "sigma_s"):
+            value = tuple(channel * millimetres_per_unit for channel in value)
+        elif not isinstance(value, (str, float)):
+            value = tuple(value)
+        yield parameter, value
+
+
+def _default_parameters(millimetres_per_unit):
+    declared = properties.MaterialProperties.bl_rna.properties
+    default = {name: tuple(declared[name].default_array) if getattr(declared[name], "is_array", False)
+               else declared[name].default for name in properties.MATERIAL_PARAMETERS}
+    return _parameters(typing.NamedTuple("Grain", [(name, object) for name in default])(**default),
+                       millimetres_per_unit)
+
+
+class _Reader:
+    """Collects what one pass over the instances finds; complaints come once, however often an object is instanced."""
+
+    def __init__(self, millimetres_per_unit, cache):
+        self._millimetres_per_unit = millimetres_per_unit
+        self._cache = cache
+        self._materials = {}
+        self._instances = []
+        self._lights = []
+        self._warnings = {}
+
+    def read(self, instance):
+        kind = instance.object.type
+        if kind in meshes.DRAWABLE_TYPES:
+            self._read_drawable(instance.object, instance.matrix_world)
+        elif kind == "LIGHT":
+            self._read_light(instance.object, instance.matrix_world)
+        elif kind in ("CURVES", "POINTCLOUD", "VOLUME"):
+            self._warn(f"Object '{instance.object.name}' is a {kind.lower()} object, which Mesograin does not draw: "
+                       "convert it to a mesh.")
+
+    def scene_values(self, scene):
+        if not self._instances:
+            self._warn("There is nothing to draw: add a mesh that is visible in renders.")
+        if not self._lights:
+            self._warn("The scene has no sun light, so everything is black: add one (Add > Light > Sun).")
+        camera = scene.camera
+        if camera is not None and camera.type == "CAMERA" and camera.data.type == "PANO":
+            self._warn(f"Camera '{camera.name}' is panoramic, which Mesograin draws as perspective.")
+        return SceneValues(tuple(self._instances), tuple(self._lights), tuple(self._warnings))
+
+    def _read_drawable(self, evaluated_object, matrix_world):
+        parts = self._cache.parts(evaluated_object)
+        if not parts:
+            if evaluated_object.type == "META":
+                return  # a family of metaballs is drawn with its first member
+            self._warn(f"Object '{evaluated_object.name}' has no faces, so nothing of it is drawn.")
+            return
+        to_world = np.array(matrix_world, dtype=np.float64)
+        if not np.linalg.det(to_world[:3, :3]):
+            self._warn(f"Object '{evaluated_object.name}' is scaled to nothing, so it is not drawn.")
+            return
+        for part in parts:
+            self._instances.append(InstanceValues(evaluated_object.name, part.mesh,
+                                                  self._material(evaluated_object, part.slot), to_world.tobytes()))
+
+    def _material(self, evaluated_object, slot):
+        slots = evaluated_object.material_slots
+        # Faces may name a slot that is gone; Blender then shows the last one.
+        material = slots[min(slot, len(slots) - 1)].material if slots else None
+        key = material and material.name_full
+        if key not in self._materials:
+            self._materials[key] = material_values(material, self._millimetres_per_unit)
+        return self._materials[key]
+
+    def _read_light(self, evaluated_object, matrix_world):
+        light = evaluated_object.data
+        if light.type != "SUN":
+            self._warn(f"Light '{evaluated_object.name}' is a {light.type.lower()} light; only sun lights are rendered.")
+            return
+        # A sun shines along its -z axis, and its strength is irradiance already.
+        direction = matrix_world.to_3x3().col[2].normalized()
+        self._lights.append(LightValues(evaluated_object.name, tuple(direction),
+                                        tuple(channel * light.energy for channel in light.color),
+                                        min(light.angle, math.pi)))
+
+    def _warn(self, sentence):
+        self._warnings.setdefault(sentence)

@@ -1,0 +1,108 @@
+# Evaluated Blender geometry as native meshes, one for each material slot; what did not change is neither read nor sent.
+import hashlib
+import typing
+import weakref
+
+import numpy as np
+
+from . import compat, native_module
+
+DRAWABLE_TYPES = ("MESH", "CURVE", "SURFACE", "FONT", "META")
+
+
+class MeshPart(typing.NamedTuple):
+    """The triangles of one material slot; `mesh` is a native Mesh and equal parts share it."""
+
+    slot: int
+    mesh: object
+
+
+# Equal content is one native mesh, wherever it comes from: undo, a second viewport or a final render resend nothing.
+_by_content = weakref.WeakValueDictionary()
+
+
+class MeshCache:
+    """What one engine has read. Addresses of evaluated data serve as keys, so `forget` must be called whenever Blender
+    may have replaced any of it: on a geometry update, on undo and redo, and when a file is loaded."""
+
+    def __init__(self):
+        self._by_address = {}
+
+    def forget(self):
+        self._by_address.clear()
+
+    def parts(self, evaluated_object):
+        """The MeshParts of an evaluated object, none if it has no faces. Raises native.Error naming the object if its
+        coordinates are not finite."""
+        key = _address(evaluated_object)
+        if key not in self._by_address:
+            self._by_address[key] = _read_object(evaluated_object)
+        return self._by_address[key]
+
+
+def _address(evaluated_object):
+    # A mesh carries its modifiers' result; curves, text and metaballs are turned into one object by object.
+    data = evaluated_object.data.as_pointer()
+    return (data,) if evaluated_object.type == "MESH" else (data, evaluated_object.original.as_pointer())
+
+
+def _read_object(evaluated_object):
+    mesh = evaluated_object.to_mesh()
+    if mesh is None:
+        return ()
+    try:
+        return _read_mesh(mesh, evaluated_object.name)
+    finally:
+        evaluated_object.to_mesh_clear()
+
+
+def _read_mesh(mesh, name):
+    if not mesh.polygons:
+        return ()
+    compat.calculate_corners(mesh)
+    corners = _corners(mesh)
+    triangles = np.empty((len(mesh.loop_triangles), 3), dtype=np.int32)
+    mesh.loop_triangles.foreach_get("loops", triangles.ravel())
+    slots = np.empty(len(mesh.loop_triangles), dtype=np.int32)
+    mesh.loop_triangles.foreach_get("material_index", slots)
+    used = np.unique(slots)
+    if len(used) == 1:
+        return (MeshPart(int(used[0]), _native_mesh(name, corners, triangles)),)
+    parts = []
+    for slot in used:
+        kept, compact = np.unique(triangles[slots == slot], return_inverse=True)
+        parts.append(MeshPart(int(slot), _native_mesh(name, [None if array is None else array[kept] for array in corners],
+                                                      compact.reshape(-1, 3))))
+    return tuple(parts)
+
+
+def _corners(mesh):
+    """Positions, normals and UVs (or None), one row for each corner: flat faces and UV seams need vertices of their own."""
+    positions = np.empty((len(mesh.vertices), 3), dtype=np.float32)
+    mesh.vertices.foreach_get("co", positions.ravel())
+    vertex_of_corner = np.empty(len(mesh.loops), dtype=np.int32)
+    mesh.loops.foreach_get("vertex_index", vertex_of_corner)
+    layer = next((layer for layer in mesh.uv_layers if layer.active_render), None)
+    uvs = None
+    if layer is not None:
+        uvs = np.empty((len(mesh.loops), 2), dtype=np.float32)
+        layer.data.foreach_get("uv", uvs.ravel())
+    return positions[vertex_of_corner], compat.corner_normals(mesh), uvs
+
+
+def _native_mesh(name, corners, triangles):
+    native = native_module.get()
+    positions, normals, uvs = corners
+    triangles = np.ascontiguousarray(triangles, dtype=np.uint32)
+    digest = hashlib.blake2b(digest_size=16)
+    for array in (positions, normals, uvs, triangles):
+        digest.update(b"none" if array is None else array.tobytes())
+    key = digest.digest()
+    mesh = _by_content.get(key)
+    if mesh is None:
+        try:
+            mesh = native.Mesh(positions, normals, triangles, uvs)
+        except native.Error as error:
+            raise native.Error(f"Object '{name}' cannot be drawn: {error}") from error
+        _by_content[key] = mesh
+    return mesh
