@@ -87,9 +87,9 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
                 now = time.perf_counter()
                 if now - chunk_started < POLL_SECONDS:
                     chunk *= 2
-                left = (now - started) / max(view.samples, 1) * (target - view.samples)
-                self.update_stats("", f"Sample {view.samples}/{target}, {left:.1f} s left")
                 if now - shown > SHOW_SECONDS and view.samples < target:
+                    left = (now - started) / max(view.samples, 1) * (target - view.samples)
+                    self.update_stats("", f"Sample {view.samples}/{target}, {left:.1f} s left")
                     yield view.samples
                     shown = time.perf_counter()
 

@@ -184,7 +184,7 @@ class _Reader:
     def _read_light(self, evaluated_object, matrix_world):
         light = evaluated_object.data
         if light.type != "SUN":
-            self._warn(f"Light '{evaluated_object.name}' is a {light.type.lower()} light; only sun lights are rendered.")
+            self._warn(f"Light '{evaluated_object.name}' is a {light.type.lower()} light; only suns are rendered.")
             return
         # A sun shines along its -z axis, and its strength is irradiance already.
         direction = matrix_world.to_3x3().col[2].normalized()

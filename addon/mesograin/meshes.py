@@ -71,13 +71,13 @@ def _read_mesh(mesh, name):
     parts = []
     for slot in used:
         kept, compact = np.unique(triangles[slots == slot], return_inverse=True)
-        parts.append(MeshPart(int(slot), _native_mesh(name, [None if array is None else array[kept] for array in corners],
-                                                      compact.reshape(-1, 3))))
+        kept_corners = [None if array is None else array[kept] for array in corners]
+        parts.append(MeshPart(int(slot), _native_mesh(name, kept_corners, compact.reshape(-1, 3))))
     return tuple(parts)
 
 
 def _corners(mesh):
-    """Positions, normals and UVs (or None), one row for each corner: flat faces and UV seams need vertices of their own."""
+    """Positions, normals and UVs (or None), one row for each corner: flat faces and UV seams share no vertices."""
     positions = np.empty((len(mesh.vertices), 3), dtype=np.float32)
     mesh.vertices.foreach_get("co", positions.ravel())
     vertex_of_corner = np.empty(len(mesh.loops), dtype=np.int32)

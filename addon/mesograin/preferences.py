@@ -23,8 +23,8 @@ class MESOGRAIN_OT_self_test(bpy.types.Operator):
             self.report({"ERROR"}, str(problem))
             return {"CANCELLED"}
         if not error < 1e-5:
-            self.report({"ERROR"}, f"{info['renderer']} renders a lit square wrongly, by {error:.2g}: update the graphics "
-                        "driver, or set MESOGRAIN_GL_DEVICE=software to render without it.")
+            self.report({"ERROR"}, f"{info['renderer']} renders a lit square wrongly, by {error:.2g}: update the "
+                        "graphics driver, or set MESOGRAIN_GL_DEVICE=software to render without it.")
             return {"CANCELLED"}
         self.report({"INFO"}, f"Mesograin renders correctly on {info['renderer']}.")
         return {"FINISHED"}

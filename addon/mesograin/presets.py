@@ -37,8 +37,8 @@ OPAQUE_MODELS = ("lambert", "conductor")
 class MESOGRAIN_OT_apply_preset(bpy.types.Operator):
     bl_idname = "mesograin.apply_preset"
     bl_label = "Apply Measured Material"
-    bl_description = ("Set sigma_s, sigma_a and eta to a measured material's, and g to 0 because the table gives reduced "
-                      "scattering")
+    bl_description = ("Set sigma_s, sigma_a and eta to a measured material's, and g to 0 because the table gives "
+                      "reduced scattering")
     bl_options = {"REGISTER", "UNDO"}
 
     preset: EnumProperty(name="Material", items=tuple(

@@ -31,6 +31,7 @@ PROFILES = (
     ("photon_beam", "Photon beam", "Photon beam diffusion of Habel and others", 3),
 )
 
+
 # Blender tags nothing when a script sets a value of ours; an update function does, and redraws follow.
 def _tag(properties, _context):
     properties.id_data.update_tag()
