@@ -1,4 +1,4 @@
-# Finds the native module, checks that it belongs to this add-on, and says in one sentence what is wrong when it does not.
+# Finds the native module, checks that it belongs to this add-on, and says in one sentence what is wrong if not.
 import importlib.machinery
 import importlib.util
 import os
@@ -21,7 +21,7 @@ def folder():
 
 
 def get():
-    """The native module. Raises Unavailable if it is missing, built for another Python, broken or of another version."""
+    """The native module. Raises Unavailable if it is missing, foreign to this Python, broken or of another version."""
     # It registers its types once a process, so it has one name whoever imports it and survives Reload Scripts.
     module = sys.modules.get(NAME) or _load()
     found = getattr(module, "__version__", "unknown")

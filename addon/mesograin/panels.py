@@ -1,4 +1,4 @@
-# What the artist sees in the Properties editor: the grain of a material, the light, the render settings and what is wrong.
+# What the artist sees in the Properties editor: the grain of a material, the sun, render settings and complaints.
 import textwrap
 
 import bpy

@@ -3,7 +3,6 @@ import pathlib
 import sys
 
 import bpy
-import numpy as np
 import pytest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -43,7 +42,7 @@ def blend_files():
 
 
 @pytest.fixture
-def render(tmp_path):
+def render(native, tmp_path):
     """Renders the current scene with F12 and reads the picture back, (h, w, 4) float32 with row 0 at the top."""
 
     def do(layer=""):
@@ -52,17 +51,6 @@ def render(tmp_path):
         settings.file_format, settings.color_mode, settings.color_depth = "OPEN_EXR", "RGBA", "32"
         scene.render.filepath = str(tmp_path / "picture.exr")
         bpy.ops.render.render(write_still=True, layer=layer)
-        return read_picture(tmp_path / "picture.exr")
+        return native.read_exr(str(tmp_path / "picture.exr"))[0]
 
     return do
-
-
-def read_picture(path):
-    image = bpy.data.images.load(str(path))
-    try:
-        width, height = image.size
-        pixels = np.empty(width * height * 4, dtype=np.float32)
-        image.pixels.foreach_get(pixels)
-        return pixels.reshape(height, width, 4)[::-1]
-    finally:
-        bpy.data.images.remove(image)
