@@ -28,6 +28,18 @@ Framebuffer::Framebuffer(std::initializer_list<const Texture*> colours, const Te
   }
   if (depth != nullptr) glNamedFramebufferTexture(handle_.name(), GL_DEPTH_ATTACHMENT, depth->name(), 0);
   glNamedFramebufferDrawBuffers(handle_.name(), static_cast<GLsizei>(attachments.size()), attachments.data());
+  require_complete();
+}
+
+Framebuffer::Framebuffer(const TextureArray& colours, int layer, const Texture& depth)
+    : width_(colours.width()), height_(colours.height()), colours_(1), has_depth_(true) {
+  glNamedFramebufferTextureLayer(handle_.name(), GL_COLOR_ATTACHMENT0, colours.name(), 0, layer);
+  glNamedFramebufferTexture(handle_.name(), GL_DEPTH_ATTACHMENT, depth.name(), 0);
+  glNamedFramebufferDrawBuffer(handle_.name(), GL_COLOR_ATTACHMENT0);
+  require_complete();
+}
+
+void Framebuffer::require_complete() const {
   const GLenum status = glCheckNamedFramebufferStatus(handle_.name(), GL_DRAW_FRAMEBUFFER);
   if (status != GL_FRAMEBUFFER_COMPLETE) throw std::logic_error(fmt::format("incomplete framebuffer ({:#x})", status));
 }
@@ -37,9 +49,12 @@ void Framebuffer::bind() const {
   glViewport(0, 0, width_, height_);
 }
 
-void Framebuffer::clear() const {
-  constexpr float zero[4] = {0.0F, 0.0F, 0.0F, 0.0F};
-  for (int i = 0; i < colours_; ++i) glClearNamedFramebufferfv(handle_.name(), GL_COLOR, i, zero);
+void Framebuffer::clear(const float (&colour)[4]) const {
+  for (int i = 0; i < colours_; ++i) glClearNamedFramebufferfv(handle_.name(), GL_COLOR, i, colour);
+  clear_depth();
+}
+
+void Framebuffer::clear_depth() const {
   constexpr float far_plane = 1.0F;
   if (has_depth_) glClearNamedFramebufferfv(handle_.name(), GL_DEPTH, 0, &far_plane);
 }

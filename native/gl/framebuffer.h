@@ -5,6 +5,7 @@
 
 #include "gl/handle.h"
 #include "gl/texture.h"
+#include "gl/texture_array.h"
 
 namespace mesograin::gl {
 
@@ -13,11 +14,15 @@ class Framebuffer {
   /// The textures must outlive the framebuffer. Throws std::logic_error if they do not make a complete one.
   explicit Framebuffer(std::initializer_list<const Texture*> colours, const Texture* depth = nullptr);
 
+  /// One layer of a texture array with a depth texture of the same size.
+  Framebuffer(const TextureArray& colours, int layer, const Texture& depth);
+
   /// Makes it the target of drawing and sets the viewport to its size.
   void bind() const;
 
-  /// Clears every colour to zero and the depth to the far plane.
-  void clear() const;
+  /// Clears every colour, to zero unless said otherwise, and the depth to the far plane.
+  void clear(const float (&colour)[4] = {0.0F, 0.0F, 0.0F, 0.0F}) const;
+  void clear_depth() const;
 
   /// Waits for the drawing and copies the first colour as float RGBA into `pixels`, (height, width, 4), first row y =
   /// 0.
@@ -28,6 +33,8 @@ class Framebuffer {
     static GLuint create();
     static void destroy(GLuint name);
   };
+  void require_complete() const;
+
   Handle<Traits> handle_;
   int width_;
   int height_;

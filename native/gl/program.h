@@ -13,6 +13,7 @@
 #include "gl/handle.h"
 #include "gl/shader_source.h"
 #include "gl/texture.h"
+#include "gl/texture_array.h"
 
 namespace mesograin::gl {
 
@@ -40,6 +41,7 @@ class Program {
 
   /// Binds the texture to the texture unit that belongs to the sampler of that name.
   void set(std::string_view sampler, const Texture& texture) const;
+  void set(std::string_view sampler, const TextureArray& textures) const;
 
  private:
   struct Traits {

@@ -26,6 +26,7 @@ struct MaterialInputs {
   std::vector<std::string> defines;              ///< chosen at compile time: one program for each distinct set
   std::map<std::string, UniformValue> uniforms;  ///< "material.sigma_a", ...
   std::map<std::string, Table> tables;           ///< sampler name -> texels
+  bool light_maps = false;                       ///< the model reads shaders/models/light_map.glsl
 };
 
 /// Computed once for each material, in double. Throws Error if the material is not valid.

@@ -9,7 +9,7 @@
 namespace mesograin::render {
 
 DeviceMaterial::DeviceMaterial(physics::MaterialInputs inputs, const gl::Program& program)
-    : program_(program), uniforms_(std::move(inputs.uniforms)) {
+    : program_(program), uniforms_(std::move(inputs.uniforms)), light_maps_(inputs.light_maps) {
   for (const auto& [name, table] : inputs.tables) {
     gl::Texture texture(GL_RGBA32F, table.width, table.height);
     texture.upload(GL_RGBA, GL_FLOAT, table.texels.data());
@@ -53,14 +53,22 @@ void DeviceCache::prune() {
   std::erase_if(materials_, [](const MaterialEntry& entry) { return entry.device.use_count() == 1; });
 }
 
+const gl::Program& DeviceCache::light_map_program() {
+  return program("light_map", gl::ShaderSource({"passes/light_map.vert"}, {}),
+                 gl::ShaderSource({"passes/light_map.frag"}, {}));
+}
+
 const gl::Program& DeviceCache::program(scene::Model model, const std::vector<std::string>& defines) {
   const std::string model_name(scene::model_names[static_cast<std::size_t>(model)]);
-  const std::string key = fmt::format("{} {}", model_name, fmt::join(defines, " "));
-  std::unique_ptr<gl::Program>& slot = programs_[key];
+  return program(fmt::format("{} {}", model_name, fmt::join(defines, " ")), gl::ShaderSource({"passes/shade.vert"}, {}),
+                 gl::ShaderSource({"passes/shade.frag", "models/" + model_name + ".glsl"}, defines));
+}
+
+const gl::Program& DeviceCache::program(const std::string& name, const gl::ShaderSource& vertex,
+                                        const gl::ShaderSource& fragment) {
+  std::unique_ptr<gl::Program>& slot = programs_[name];
   if (!slot) {
-    slot = std::make_unique<gl::Program>(
-        key, gl::ShaderSource({"passes/shade.vert"}, {}),
-        gl::ShaderSource({"passes/shade.frag", "models/" + model_name + ".glsl"}, defines));
+    slot = std::make_unique<gl::Program>(name, vertex, fragment);
     ++sent_.programs;
   }
   return *slot;

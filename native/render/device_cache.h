@@ -22,6 +22,9 @@ class DeviceMaterial {
 
   const gl::Program& program() const { return program_; }
 
+  /// Whether its model reads light maps.
+  bool light_maps() const { return light_maps_; }
+
   /// Sets every uniform and binds every table on the program.
   void bind() const;
 
@@ -29,6 +32,7 @@ class DeviceMaterial {
   const gl::Program& program_;
   std::map<std::string, physics::UniformValue> uniforms_;
   std::map<std::string, gl::Texture> tables_;
+  bool light_maps_;
 };
 
 /// Counts of what was sent to the device since it started.
@@ -44,6 +48,9 @@ class DeviceCache {
  public:
   std::shared_ptr<gl::VertexArray> mesh(const scene::MeshPointer& mesh);
   std::shared_ptr<DeviceMaterial> material(const scene::Material& material);
+
+  /// The program that draws a light map; compiled when the first material needs one.
+  const gl::Program& light_map_program();
 
   /// Frees what no view holds any more.
   void prune();
@@ -61,6 +68,7 @@ class DeviceCache {
   };
 
   const gl::Program& program(scene::Model model, const std::vector<std::string>& defines);
+  const gl::Program& program(const std::string& name, const gl::ShaderSource& vertex, const gl::ShaderSource& fragment);
 
   std::map<const scene::Mesh*, MeshEntry> meshes_;
   std::vector<MaterialEntry> materials_;

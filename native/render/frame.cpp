@@ -59,10 +59,40 @@ void Frame::resize(int width, int height) {
   samples_ = 0;
 }
 
+glm::dmat4 Frame::Draw::object_to_grain() const {
+  glm::dmat4 matrix = object_to_world;
+  matrix[3] -= glm::dvec4(centre, 0.0);
+  return matrix;
+}
+
+Frame::Draw Frame::make_draw(const scene::Instance& instance) {
+  const glm::dvec3 lower(instance.mesh->lower());
+  const glm::dvec3 upper(instance.mesh->upper());
+  const glm::dmat3 linear(instance.object_to_world);
+  const glm::dvec3 half = 0.5 * (upper - lower);
+  Draw draw;
+  draw.mesh = cache_.mesh(instance.mesh);
+  draw.material = cache_.material(instance.material);
+  draw.object_to_world = instance.object_to_world;
+  draw.centre = glm::dvec3(instance.object_to_world * glm::dvec4(0.5 * (lower + upper), 1.0));
+  draw.radius = glm::length(
+      glm::dvec3(glm::length(linear[0] * half.x), glm::length(linear[1] * half.y), glm::length(linear[2] * half.z)));
+  const scene::Material& material = instance.material;
+  const glm::dvec3 reduced = material.scale * (material.sigma_a + (1.0 - material.g) * material.sigma_s);
+  draw.mean_free_paths_across = 2.0 * draw.radius * std::max({reduced.r, reduced.g, reduced.b});
+  if (draw.material->light_maps()) draw.light_maps = take_light_maps(instance.mesh, draw.object_to_grain());
+  return draw;
+}
+
+std::unique_ptr<LightMaps> Frame::take_light_maps(const scene::MeshPointer& mesh, const glm::dmat4& object_to_grain) {
+  for (Draw& draw : draws_)
+    if (draw.light_maps && draw.light_maps->are_of(mesh, object_to_grain)) return std::move(draw.light_maps);
+  return std::make_unique<LightMaps>(mesh, object_to_grain);
+}
+
 void Frame::set_scene(scene::Scene scene) {
   std::vector<Draw> draws;
-  for (const scene::Instance& instance : scene.instances)
-    draws.push_back({cache_.mesh(instance.mesh), cache_.material(instance.material), instance.object_to_world});
+  for (const scene::Instance& instance : scene.instances) draws.push_back(make_draw(instance));
   // Neighbours that share a material need it bound once.
   std::stable_sort(draws.begin(), draws.end(),
                    [](const Draw& a, const Draw& b) { return a.material.get() < b.material.get(); });
@@ -78,8 +108,12 @@ void Frame::set_camera(const scene::Camera& camera) {
 }
 
 void Frame::add_sample() {
+  const std::vector<glm::dvec3> to_light = sample_light_directions();
+  light_map_timer_.start();
+  update_light_maps(to_light);
+  light_map_timer_.stop();
   shade_timer_.start();
-  shade();
+  shade(to_light);
   shade_timer_.stop();
   accumulate_timer_.start();
   accumulate();
@@ -88,7 +122,41 @@ void Frame::add_sample() {
   ++samples_;
 }
 
-void Frame::shade() {
+std::vector<glm::dvec3> Frame::sample_light_directions() const {
+  std::vector<glm::dvec3> directions;
+  for (std::size_t i = 0; i < lights_.size(); ++i) {
+    const scene::DirectionalLight& light = lights_[i];
+    glm::dvec3 to_light = glm::normalize(light.direction_to_light);
+    if (light.angle > 0.0) {
+      const glm::dvec2 offset = seeded_offset(seed_ + 0x10000U + static_cast<std::uint32_t>(i));
+      to_light = sample_cone(to_light, light.angle, r4_point(static_cast<std::uint32_t>(samples_), offset));
+    }
+    directions.push_back(to_light);
+  }
+  return directions;
+}
+
+double Frame::pixels_across(const Draw& draw) const {
+  const glm::dvec4 centre = camera_.world_to_camera * glm::dvec4(draw.centre, 1.0);
+  // w of a point at the centre's depth; a grain that the camera is inside of counts as filling the picture.
+  const double w = camera_.camera_to_clip[2][3] * centre.z + camera_.camera_to_clip[3][3];
+  const double largest = std::max(width_, height_);
+  if (w <= 0.0) return largest;
+  const double half_image = draw.radius / w;
+  return std::min(largest, std::max(half_image * std::abs(camera_.camera_to_clip[0][0]) * width_,
+                                    half_image * std::abs(camera_.camera_to_clip[1][1]) * height_));
+}
+
+void Frame::update_light_maps(const std::vector<glm::dvec3>& to_light) {
+  light_maps_drawn_ = 0;
+  for (const Draw& draw : draws_) {
+    if (!draw.light_maps) continue;
+    const int resolution = light_map_resolution(pixels_across(draw), draw.mean_free_paths_across);
+    light_maps_drawn_ += draw.light_maps->update(*draw.mesh, cache_.light_map_program(), to_light, resolution);
+  }
+}
+
+void Frame::shade(const std::vector<glm::dvec3>& to_light) {
   targets_->shade.bind();
   targets_->shade.clear();
   glEnable(GL_DEPTH_TEST);
@@ -98,10 +166,15 @@ void Frame::shade() {
   // Uniform over the pixel: the box filter, one pixel wide.
   const glm::dvec2 point = r2_point(static_cast<std::uint32_t>(samples_), seeded_offset(seed_));
   const glm::vec2 jitter((2.0 * point - 1.0) / glm::dvec2(width_, height_));
-  const gl::Buffer lights = lights_in_camera_space();
+  std::vector<DeviceLight> device_lights;
+  for (std::size_t i = 0; i < lights_.size(); ++i)
+    device_lights.push_back({glm::vec4(to_light[i], 0.0), glm::vec4(lights_[i].irradiance, 0.0)});
+  const gl::Buffer lights(device_lights);
   lights.bind_storage(0);
-  // A perspective projection takes its w from depth, an orthographic one is affine.
-  const int orthographic = camera_.camera_to_clip[2][3] == 0.0 ? 1 : 0;
+
+  const glm::dmat4 camera_to_world = glm::inverse(camera_.world_to_camera);
+  // A perspective projection takes its w from depth; an orthographic one is affine and sees along one direction.
+  const bool orthographic = camera_.camera_to_clip[2][3] == 0.0;
 
   const DeviceMaterial* bound = nullptr;
   for (const Draw& draw : draws_) {
@@ -109,33 +182,22 @@ void Frame::shade() {
     if (draw.material.get() != bound) {
       bound = draw.material.get();
       bound->bind();
-      program.set("camera_to_clip", glm::mat4(camera_.camera_to_clip));
       program.set("jitter", jitter);
       program.set("light_count", static_cast<int>(lights_.size()));
-      program.set("orthographic", orthographic);
+      program.set("sample_index", samples_);
     }
-    const glm::dmat4 object_to_camera = camera_.world_to_camera * draw.object_to_world;
-    const glm::dmat3 linear(object_to_camera);
-    program.set("object_to_camera", glm::mat4(object_to_camera));
-    program.set("normal_to_camera", glm::mat3(glm::transpose(glm::inverse(linear))));
-    glFrontFace(glm::determinant(linear) < 0.0 ? GL_CW : GL_CCW);
+    if (draw.light_maps) draw.light_maps->bind(program);
+    const glm::dmat4 object_to_grain = draw.object_to_grain();
+    const glm::dmat3 linear(object_to_grain);
+    program.set("object_to_clip", glm::mat4(camera_.camera_to_clip * (camera_.world_to_camera * draw.object_to_world)));
+    program.set("object_to_grain", glm::mat4(object_to_grain));
+    program.set("normal_to_grain", glm::mat3(glm::transpose(glm::inverse(linear))));
+    program.set("viewer", orthographic ? glm::vec4(glm::normalize(glm::dvec3(camera_to_world[2])), 0.0)
+                                       : glm::vec4(glm::dvec3(camera_to_world[3]) - draw.centre, 1.0));
+    const glm::dmat3 to_camera = glm::dmat3(camera_.world_to_camera) * linear;
+    glFrontFace(glm::determinant(to_camera) < 0.0 ? GL_CW : GL_CCW);
     draw.mesh->draw();
   }
-}
-
-gl::Buffer Frame::lights_in_camera_space() const {
-  const glm::dmat3 rotation(camera_.world_to_camera);
-  std::vector<DeviceLight> lights;
-  for (std::size_t i = 0; i < lights_.size(); ++i) {
-    const scene::DirectionalLight& light = lights_[i];
-    glm::dvec3 to_light = glm::normalize(rotation * light.direction_to_light);
-    if (light.angle > 0.0) {
-      const glm::dvec2 offset = seeded_offset(seed_ + 0x10000U + static_cast<std::uint32_t>(i));
-      to_light = sample_cone(to_light, light.angle, r4_point(static_cast<std::uint32_t>(samples_), offset));
-    }
-    lights.push_back({glm::vec4(to_light, 0.0), glm::vec4(light.irradiance, 0.0)});
-  }
-  return gl::Buffer(lights);
 }
 
 void Frame::accumulate() {
@@ -169,7 +231,11 @@ void Frame::read(float* pixels) {
 
 std::vector<PassTiming> Frame::timings() const {
   if (!timed_) return {};
-  return {{"shade", shade_timer_.milliseconds()}, {"accumulate", accumulate_timer_.milliseconds()}};
+  std::vector<PassTiming> passes;
+  if (light_maps_drawn_ > 0) passes.push_back({"light_maps", light_map_timer_.milliseconds()});
+  passes.push_back({"shade", shade_timer_.milliseconds()});
+  passes.push_back({"accumulate", accumulate_timer_.milliseconds()});
+  return passes;
 }
 
 }  // namespace mesograin::render

@@ -1,4 +1,5 @@
-// One view's graph of passes on the device: shade one jittered sample, add it to the sum, resolve the mean on demand.
+// One view's graph of passes on the device: light maps where a material needs them, shade one jittered sample, add it
+// to the sum, resolve the mean on demand.
 #pragma once
 
 #include <cstdint>
@@ -12,6 +13,7 @@
 #include "gl/timer.h"
 #include "gl/vertex_array.h"
 #include "render/device_cache.h"
+#include "render/light_maps.h"
 #include "scene/camera.h"
 #include "scene/scene.h"
 
@@ -58,11 +60,22 @@ class Frame {
     std::shared_ptr<gl::VertexArray> mesh;
     std::shared_ptr<DeviceMaterial> material;
     glm::dmat4 object_to_world;
+    glm::dvec3 centre;                      // middle of its bounds, world space
+    double radius;                          // of the sphere around its bounds
+    double mean_free_paths_across;          // of the bounds' diameter, reduced, in the densest channel
+    std::unique_ptr<LightMaps> light_maps;  // only if its material reads them
+    glm::dmat4 object_to_grain() const;
   };
 
-  void shade();
+  Draw make_draw(const scene::Instance& instance);
+
+  /// Those of the scene before, if they serve, so that a change elsewhere costs no light map.
+  std::unique_ptr<LightMaps> take_light_maps(const scene::MeshPointer& mesh, const glm::dmat4& object_to_grain);
+  void update_light_maps(const std::vector<glm::dvec3>& to_light);
+  void shade(const std::vector<glm::dvec3>& to_light);
   void accumulate();
-  gl::Buffer lights_in_camera_space() const;
+  std::vector<glm::dvec3> sample_light_directions() const;
+  double pixels_across(const Draw& draw) const;
 
   DeviceCache& cache_;
   int width_;
@@ -76,9 +89,11 @@ class Frame {
   gl::FullScreenTriangle full_screen_;
   gl::Program accumulate_program_;
   gl::Program resolve_program_;
+  gl::Timer light_map_timer_;
   gl::Timer shade_timer_;
   gl::Timer accumulate_timer_;
   bool timed_ = false;
+  int light_maps_drawn_ = 0;  // in the last sample
 };
 
 }  // namespace mesograin::render

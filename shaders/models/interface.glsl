@@ -1,15 +1,16 @@
 // What every model is given and gives: one signature, so that a pass can call any of them.
-// All vectors are unit length and in camera space.
+// All vectors are in grain space: the world's axes, the scene's unit, the origin in the middle of the grain.
 
 struct SurfacePoint {
   vec3 position;
-  vec3 normal;
-  vec3 to_viewer;
+  vec3 normal;     // unit length
+  vec3 to_viewer;  // unit length; dot(normal, to_viewer) > 0
 };
 
 struct LightSample {
-  vec3 to_light;
+  vec3 to_light;    // unit length
   vec3 irradiance;  // linear RGB, on a plane that faces the light
+  int index;        // which light this is, for its light map
 };
 
 // Radiance that leaves the point towards the viewer because of this light; the cosine on the light's side is inside.

@@ -4,34 +4,33 @@
 #include "models/interface.glsl"
 
 struct DirectionalLight {
-  vec4 to_light;    // xyz, camera space
+  vec4 to_light;    // xyz
   vec4 irradiance;  // rgb
 };
 
 layout(std430, binding = 0) readonly buffer Lights { DirectionalLight lights[]; };
 
 uniform int light_count;
-uniform int orthographic;
+uniform vec4 viewer;  // xyz: the pinhole in grain space if w is 1, the direction towards the viewer if w is 0
 
-in vec3 camera_position;
-in vec3 camera_normal;
+in vec3 grain_position;
+in vec3 grain_normal;
 
 out vec4 radiance;
 
 void main() {
   SurfacePoint point;
-  point.position = camera_position;
-  point.to_viewer = orthographic != 0 ? vec3(0.0, 0.0, 1.0) : normalize(-camera_position);
-  point.normal = normalize(gl_FrontFacing ? camera_normal : -camera_normal);
+  point.position = grain_position;
+  point.to_viewer = normalize(viewer.xyz - viewer.w * grain_position);
+  point.normal = normalize(gl_FrontFacing ? grain_normal : -grain_normal);
 
-  // Near a silhouette the interpolated normal can point away from the viewer although the surface does not. Models may
-  // count on dot(normal, to_viewer) > 0.
+  // Near a silhouette the interpolated normal can point away from the viewer although the surface does not.
   const float least_cosine = 1e-4;
   float cosine = dot(point.normal, point.to_viewer);
   if (cosine < least_cosine) point.normal = normalize(point.normal + (least_cosine - cosine) * point.to_viewer);
 
   vec3 sum = vec3(0.0);
   for (int i = 0; i < light_count; ++i)
-    sum += evaluate_model(point, LightSample(lights[i].to_light.xyz, lights[i].irradiance.rgb));
+    sum += evaluate_model(point, LightSample(lights[i].to_light.xyz, lights[i].irradiance.rgb, i));
   radiance = vec4(sum, 1.0);
 }

@@ -1,20 +1,20 @@
-// Brings a mesh to camera space, and to clip space with the sample's sub-pixel offset.
+// Brings a mesh to clip space, and to grain space for shading: the world's axes, the origin in the middle of the grain.
+// Both matrices are composed in double precision, so a grain far from the world's origin loses nothing.
 
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 
-uniform mat4 object_to_camera;
-uniform mat3 normal_to_camera;
-uniform mat4 camera_to_clip;
+uniform mat4 object_to_clip;
+uniform mat4 object_to_grain;
+uniform mat3 normal_to_grain;
 uniform vec2 jitter;  // in normalised device coordinates
 
-out vec3 camera_position;
-out vec3 camera_normal;
+out vec3 grain_position;
+out vec3 grain_normal;
 
 void main() {
-  vec4 in_camera = object_to_camera * vec4(position, 1.0);
-  camera_position = in_camera.xyz;
-  camera_normal = normal_to_camera * normal;
-  gl_Position = camera_to_clip * in_camera;
+  grain_position = (object_to_grain * vec4(position, 1.0)).xyz;
+  grain_normal = normal_to_grain * normal;
+  gl_Position = object_to_clip * vec4(position, 1.0);
   gl_Position.xy += jitter * gl_Position.w;
 }

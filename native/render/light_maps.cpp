@@ -1,0 +1,145 @@
+// Fits an orthographic picture around the grain for every light and draws it.
+#include "render/light_maps.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+#include <utility>
+
+#include "gl/framebuffer.h"
+
+namespace mesograin::render {
+
+struct LightMaps::LightSpace {
+  glm::dmat4 object_to_light;
+  glm::dmat4 light_to_clip;
+  glm::dvec3 x_axis;
+  glm::dvec3 y_axis;
+  glm::dvec3 z_axis;
+  glm::dvec2 centre;
+  double half_width;
+};
+
+namespace {
+
+struct DeviceLightFrame {
+  glm::vec4 x_axis;
+  glm::vec4 y_axis;
+  glm::vec4 z_axis;
+};
+
+}  // namespace
+
+LightMaps::LightMaps(scene::MeshPointer mesh, const glm::dmat4& object_to_grain)
+    : mesh_(std::move(mesh)), object_to_grain_(object_to_grain) {}
+
+bool LightMaps::are_of(const scene::MeshPointer& mesh, const glm::dmat4& object_to_grain) const {
+  return mesh == mesh_ && object_to_grain == object_to_grain_;
+}
+
+LightMaps::LightSpace LightMaps::fit(const glm::dvec3& to_light, int resolution) const {
+  LightSpace space;
+  space.z_axis = to_light;
+  const glm::dvec3 helper = std::abs(to_light.x) < 0.5 ? glm::dvec3(1.0, 0.0, 0.0) : glm::dvec3(0.0, 1.0, 0.0);
+  space.x_axis = glm::normalize(glm::cross(helper, to_light));
+  space.y_axis = glm::cross(to_light, space.x_axis);
+  const glm::dmat3 to_axes = glm::transpose(glm::dmat3(space.x_axis, space.y_axis, space.z_axis));
+  space.object_to_light = glm::dmat4(to_axes) * object_to_grain_;
+
+  const glm::dmat4& transform = space.object_to_light;
+  const auto place = [&](const glm::vec3& position) { return glm::dvec3(transform * glm::dvec4(position, 1.0)); };
+  glm::dvec3 lower = place(mesh_->positions().front());
+  glm::dvec3 upper = lower;
+  for (const glm::vec3& position : mesh_->positions()) {
+    const glm::dvec3 placed = place(position);
+    lower = glm::min(lower, placed);
+    upper = glm::max(upper, placed);
+  }
+  const glm::dvec3 middle = 0.5 * (lower + upper);
+  const glm::dvec3 half = 0.5 * (upper - lower);
+  // A texel of margin keeps the silhouette inside.
+  constexpr double smallest = 1e-300;
+  space.half_width = std::max({half.x, half.y, smallest}) * (1.0 + 2.0 / resolution);
+  space.centre = glm::dvec2(middle);
+  const double half_depth = std::max(half.z, smallest) * 1.01;
+
+  glm::dmat4 scale(1.0);
+  scale[0][0] = 1.0 / space.half_width;
+  scale[1][1] = 1.0 / space.half_width;
+  scale[2][2] = -1.0 / half_depth;
+  glm::dmat4 move(1.0);
+  move[3] = glm::dvec4(-middle, 1.0);
+  space.light_to_clip = scale * move;
+  return space;
+}
+
+int LightMaps::update(const gl::VertexArray& device_mesh, const gl::Program& program,
+                      const std::vector<glm::dvec3>& to_light, int resolution) {
+  if (maps_ && to_light == to_light_ && resolution <= resolution_) return 0;
+  if (to_light.empty()) return 0;
+  const auto layers = static_cast<int>(to_light.size());
+  if (!maps_ || maps_->layers() != layers || resolution > resolution_) {
+    maps_.emplace(GL_RGBA32F, resolution, resolution, layers);
+    resolution_ = resolution;
+  }
+  const gl::Texture depth(GL_DEPTH_COMPONENT32F, resolution_, resolution_);
+  std::vector<DeviceLightFrame> frames;
+  for (int layer = 0; layer < layers; ++layer) {
+    const LightSpace space = fit(to_light[static_cast<std::size_t>(layer)], resolution_);
+    draw(device_mesh, program, space, layer, depth);
+    frames.push_back({glm::vec4(space.x_axis, space.centre.x), glm::vec4(space.y_axis, space.centre.y),
+                      glm::vec4(space.z_axis, space.half_width)});
+  }
+  frames_.emplace(frames);
+  to_light_ = to_light;
+  return layers;
+}
+
+void LightMaps::draw(const gl::VertexArray& device_mesh, const gl::Program& program, const LightSpace& space, int layer,
+                     const gl::Texture& depth) const {
+  const gl::Framebuffer target(*maps_, layer, depth);
+  target.bind();
+  constexpr float nothing[4] = {-3e38F, 0.0F, 0.0F, -3e38F};
+  target.clear(nothing);
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_LESS);
+  glDisable(GL_BLEND);
+  glEnable(GL_CULL_FACE);
+  const glm::dmat3 linear(space.object_to_light);
+  glFrontFace(glm::determinant(linear) < 0.0 ? GL_CW : GL_CCW);
+  program.use();
+  program.set("object_to_clip", glm::mat4(space.light_to_clip * space.object_to_light));
+  program.set("object_to_light", glm::mat4(space.object_to_light));
+  program.set("normal_to_light", glm::mat3(glm::transpose(glm::inverse(linear))));
+
+  glCullFace(GL_BACK);
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_FALSE);
+  device_mesh.draw();
+
+  target.clear_depth();
+  glCullFace(GL_FRONT);
+  glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_TRUE);
+  device_mesh.draw();
+
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  glDisable(GL_CULL_FACE);
+}
+
+void LightMaps::bind(const gl::Program& program) const {
+  if (!maps_) return;
+  program.set("light_maps", *maps_);
+  frames_->bind_storage(1);
+}
+
+int light_map_resolution(double pixels_across, double mean_free_paths_across) {
+  constexpr double least = 64.0;
+  constexpr double most = 1024.0;
+  const double wanted = std::clamp(std::max(0.5 * pixels_across, mean_free_paths_across), least, most);
+  return static_cast<int>(std::bit_ceil(static_cast<unsigned>(std::ceil(wanted))));
+}
+
+}  // namespace mesograin::render

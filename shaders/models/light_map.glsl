@@ -1,0 +1,50 @@
+// What a light sees of the grain: the first surface it meets, and where it would leave the grain again.
+//
+// Each light has a light space: grain space turned so that z points towards the light. Its map is an orthographic
+// picture of the grain from there, so equal texels are equal projected areas: a sum over texels already holds the
+// cosine on the light's side.
+
+struct LightFrame {
+  vec4 x_axis;  // xyz: light space's x axis in grain space; w: centre of the map, x
+  vec4 y_axis;  // likewise y
+  vec4 z_axis;  // xyz: towards the light; w: half the map's width
+};
+layout(std430, binding = 1) readonly buffer LightFrames { LightFrame light_frames[]; };
+
+// Per texel: z of the first front face, its normal's x and y, z of the first back face; all in light space.
+uniform sampler2DArray light_maps;
+
+struct LightMapTexel {
+  bool lit;          // false where the light passes the grain by; nothing else is then defined
+  vec3 position;     // light space, on the tangent plane at exactly the coordinates asked for
+  vec3 normal;       // light space, z > 0
+  float exit_depth;  // z of the first back face behind it
+};
+
+vec3 to_light_space(int light, vec3 vector) {
+  LightFrame frame = light_frames[light];
+  return vec3(dot(frame.x_axis.xyz, vector), dot(frame.y_axis.xyz, vector), dot(frame.z_axis.xyz, vector));
+}
+
+// Half the width of the square that the map covers, in scene units.
+float light_map_half_width(int light) { return light_frames[light].z_axis.w; }
+
+LightMapTexel light_map_at(int light, vec2 xy) {
+  LightFrame frame = light_frames[light];
+  float resolution = float(textureSize(light_maps, 0).x);
+  vec2 in_texels = ((xy - vec2(frame.x_axis.w, frame.y_axis.w)) * (0.5 / frame.z_axis.w) + 0.5) * resolution;
+  vec2 texel = clamp(floor(in_texels), 0.0, resolution - 1.0);
+  vec4 stored = texelFetch(light_maps, ivec3(ivec2(texel), light), 0);
+
+  LightMapTexel result;
+  result.lit = stored.x > -1e30;
+  float height = sqrt(max(1.0 - dot(stored.yz, stored.yz), 1e-4));
+  result.normal = vec3(stored.yz, height);
+  // Within half a texel the surface is its tangent plane; near the silhouette that plane runs away and is cut short.
+  float texel_width = 2.0 * frame.z_axis.w / resolution;
+  vec2 offset = (in_texels - texel - 0.5) * texel_width;
+  float rise = clamp(-dot(stored.yz, offset) / height, -texel_width, texel_width);
+  result.position = vec3(xy, stored.x + rise);
+  result.exit_depth = stored.w;
+  return result;
+}

@@ -1,0 +1,24 @@
+// Numbers that differ from pixel to pixel and from sample to sample, to turn low-discrepancy points with.
+
+uniform int sample_index;
+
+// Four well mixed words from three (Jarzynski and Olano, "Hash Functions for GPU Rendering", JCGT 2020: pcg4d).
+uvec4 pcg4d(uvec4 v) {
+  v = v * 1664525u + 1013904223u;
+  v.x += v.y * v.w;
+  v.y += v.z * v.x;
+  v.z += v.x * v.y;
+  v.w += v.y * v.z;
+  v ^= v >> 16u;
+  v.x += v.y * v.w;
+  v.y += v.z * v.x;
+  v.z += v.x * v.y;
+  v.w += v.y * v.z;
+  return v;
+}
+
+// In [0, 1)^4; `stream` tells apart several uses in one pixel.
+vec4 pixel_random(int stream) {
+  uvec4 bits = pcg4d(uvec4(uvec2(gl_FragCoord.xy), uint(sample_index), uint(stream)));
+  return vec4(bits >> 8u) * (1.0 / 16777216.0);
+}
