@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <glm/gtc/type_ptr.hpp>
 #include <stdexcept>
 #include <utility>
@@ -18,6 +19,17 @@ struct ShaderTraits {
 };
 
 using ShaderHandle = Handle<ShaderTraits>;
+
+// A log of several lines as a part of one sentence.
+std::string in_one_line(std::string_view log) {
+  std::string line;
+  while (!log.empty()) {
+    const std::size_t end = std::min(log.find('\n'), log.size());
+    if (end > 0) line += (line.empty() ? "" : "; ") + std::string(log.substr(0, end));
+    log.remove_prefix(std::min(end + 1, log.size()));
+  }
+  return line;
+}
 
 const char* stage_name(GLenum stage) {
   switch (stage) {
@@ -42,8 +54,8 @@ ShaderHandle compile(const std::string& program, GLenum stage, const ShaderSourc
   glGetShaderiv(shader.name(), GL_INFO_LOG_LENGTH, &length);
   std::string log(static_cast<std::size_t>(length), '\0');
   glGetShaderInfoLog(shader.name(), length, nullptr, log.data());
-  throw Error("The {} shader of '{}' does not compile on this device: {}", stage_name(stage), program,
-              source.explain(log.c_str()));
+  throw Error("The {} shader of '{}' does not compile on this device: {}.", stage_name(stage), program,
+              in_one_line(source.explain(log.c_str())));
 }
 
 }  // namespace
@@ -79,7 +91,7 @@ void Program::link() {
   glGetProgramiv(handle_.name(), GL_INFO_LOG_LENGTH, &length);
   std::string log(static_cast<std::size_t>(length), '\0');
   glGetProgramInfoLog(handle_.name(), length, nullptr, log.data());
-  throw Error("The shader program '{}' does not link on this device: {}", name_, log.c_str());
+  throw Error("The shader program '{}' does not link on this device: {}.", name_, in_one_line(log.c_str()));
 }
 
 void Program::reflect() {

@@ -28,4 +28,10 @@ TextureArray::TextureArray(GLenum format, int width, int height, int layers)
   glTextureParameteri(handle_.name(), GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
 }
 
+void TextureArray::read(int layer, float* texels) const {
+  const GLsizei bytes = width_ * height_ * 4 * static_cast<GLsizei>(sizeof(float));
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glGetTextureSubImage(handle_.name(), 0, 0, 0, layer, width_, height_, 1, GL_RGBA, GL_FLOAT, bytes, texels);
+}
+
 }  // namespace mesograin::gl

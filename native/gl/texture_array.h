@@ -15,6 +15,9 @@ class TextureArray {
   int height() const { return height_; }
   int layers() const { return layers_; }
 
+  /// Waits for the drawing and copies one layer as float RGBA into `texels`, first row y = 0.
+  void read(int layer, float* texels) const;
+
   void bind(GLuint unit) const { glBindTextureUnit(unit, handle_.name()); }
 
  private:

@@ -135,6 +135,13 @@ void LightMaps::bind(const gl::Program& program) const {
   frames_->bind_storage(1);
 }
 
+std::vector<float> LightMaps::read(int light) const {
+  const auto side = static_cast<std::size_t>(resolution_);
+  std::vector<float> texels(side * side * 4);
+  maps_->read(light, texels.data());
+  return texels;
+}
+
 int light_map_resolution(double pixels_across, double mean_free_paths_across) {
   constexpr double least = 64.0;
   constexpr double most = 1024.0;

@@ -33,6 +33,9 @@ class LightMaps {
 
   int resolution() const { return resolution_; }
 
+  /// The map of one light, (resolution, resolution, 4) floats as light_map.glsl documents them; for tests and reports.
+  std::vector<float> read(int light) const;
+
  private:
   struct LightSpace;
 

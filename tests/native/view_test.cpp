@@ -1,0 +1,245 @@
+// A view's pictures against what can be computed by hand, and what it sends to the device and when.
+#include "render/view.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+#include <limits>
+#include <thread>
+
+#include "expect_error.h"
+#include "gl/context_thread.h"
+
+namespace mesograin::render {
+namespace {
+
+using test::expect_error;
+
+constexpr double pi = 3.14159265358979323846;
+
+scene::MeshPointer square(double half = 1.0) {
+  const auto h = static_cast<float>(half);
+  return std::make_shared<scene::Mesh>(std::vector<glm::vec3>{{-h, -h, 0}, {h, -h, 0}, {h, h, 0}, {-h, h, 0}},
+                                       std::vector<glm::vec3>(4, glm::vec3(0, 0, 1)),
+                                       std::vector<glm::uvec3>{{0, 1, 2}, {0, 2, 3}});
+}
+
+scene::Camera straight_camera() { return scene::Camera::look_at({0, 0, 4}, {0, 0, 0}, {0, 1, 0}, 45.0); }
+
+std::vector<float> picture(View& view, int samples = 4) {
+  view.render(samples);
+  std::vector<float> pixels(static_cast<std::size_t>(view.width()) * static_cast<std::size_t>(view.height()) * 4);
+  view.read(pixels.data());
+  return pixels;
+}
+
+const float* pixel(const std::vector<float>& pixels, int width, int x, int y) {
+  return pixels.data() +
+         (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)) * 4;
+}
+
+class ViewTest : public testing::Test {
+ protected:
+  void TearDown() override { EXPECT_TRUE(gl::ContextThread::instance().take_gl_errors().empty()); }
+
+  scene::Material lambert_;
+  scene::Scene one_square_{{{square(), lambert_}}, {{{0, 0, 1}, {pi, 2 * pi, 3 * pi}}}};
+};
+
+TEST_F(ViewTest, LambertSquareHasTheRadianceOfLambertsLaw) {
+  View view(32, 32);
+  view.set_scene(one_square_);
+  view.set_camera(straight_camera());
+  const std::vector<float> pixels = picture(view);
+  const float* centre = pixel(pixels, 32, 16, 16);
+  EXPECT_FLOAT_EQ(centre[0], 0.5F);
+  EXPECT_FLOAT_EQ(centre[1], 1.0F);
+  EXPECT_FLOAT_EQ(centre[2], 1.5F);
+  EXPECT_FLOAT_EQ(centre[3], 1.0F);
+  const float* corner = pixel(pixels, 32, 0, 0);
+  for (int channel = 0; channel < 4; ++channel) EXPECT_EQ(corner[channel], 0.0F);
+}
+
+TEST_F(ViewTest, RowZeroIsTheTop) {
+  scene::Scene scene = one_square_;
+  scene.instances[0].object_to_world = glm::translate(glm::dmat4(1.0), glm::dvec3(0, 0.7, 0));
+  View view(32, 32);
+  view.set_scene(scene);
+  view.set_camera(straight_camera());
+  const std::vector<float> pixels = picture(view);
+  EXPECT_EQ(pixel(pixels, 32, 16, 2)[3], 1.0F);
+  EXPECT_EQ(pixel(pixels, 32, 16, 29)[3], 0.0F);
+}
+
+TEST_F(ViewTest, CoverageOfAnEdgePixelIsItsCoveredArea) {
+  // An orthographic picture 4 units wide and 4 pixels wide; the square ends a quarter into a pixel.
+  const scene::Camera camera{glm::translate(glm::dmat4(1.0), glm::dvec3(0, 0, -4)),
+                             glm::ortho(-2.0, 2.0, -2.0, 2.0, 0.1, 10.0)};
+  View view(4, 4);
+  scene::Scene scene{{{square(1.25), lambert_}}, {{{0, 0, 1}, {1, 1, 1}}}};
+  view.set_scene(scene);
+  view.set_camera(camera);
+  const std::vector<float> pixels = picture(view, 1024);
+  EXPECT_NEAR(pixel(pixels, 4, 0, 1)[3], 0.25F, 0.005F);
+  EXPECT_NEAR(pixel(pixels, 4, 0, 0)[3], 0.0625F, 0.005F);
+}
+
+TEST_F(ViewTest, AGrainAKilometreAwayIsAsExactAsOneAtTheOrigin) {
+  const glm::dvec3 far_away(1e6, -2e6, 3e6);  // a kilometre in millimetres
+  scene::Scene far_scene = one_square_;
+  far_scene.instances[0].object_to_world = glm::translate(glm::dmat4(1.0), far_away);
+  scene::Camera far_camera = straight_camera();
+  far_camera.world_to_camera = glm::translate(far_camera.world_to_camera, -far_away);
+  View here(16, 16);
+  here.set_scene(one_square_);
+  here.set_camera(straight_camera());
+  View there(16, 16);
+  there.set_scene(far_scene);
+  there.set_camera(far_camera);
+  const std::vector<float> expected = picture(here);
+  const std::vector<float> found = picture(there);
+  for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_NEAR(found[i], expected[i], 1e-6F);
+}
+
+TEST_F(ViewTest, MirroredInstancesFaceTheSameWay) {
+  scene::Scene scene = one_square_;
+  scene.instances[0].object_to_world = glm::scale(glm::dmat4(1.0), glm::dvec3(-1, 1, 1));
+  View view(16, 16);
+  view.set_scene(scene);
+  view.set_camera(straight_camera());
+  EXPECT_FLOAT_EQ(pixel(picture(view), 16, 8, 8)[0], 0.5F);
+}
+
+TEST_F(ViewTest, BothSidesOfAnOpenMeshAreLit) {
+  scene::Scene scene = one_square_;
+  scene.lights[0].direction_to_light = {0, 0, -1};
+  View view(16, 16);
+  view.set_scene(scene);
+  view.set_camera(scene::Camera::look_at({0, 0, -4}, {0, 0, 0}, {0, 1, 0}, 45.0));
+  EXPECT_FLOAT_EQ(pixel(picture(view), 16, 8, 8)[0], 0.5F);
+}
+
+TEST_F(ViewTest, LightsAddUpAndNoneIsBlack) {
+  scene::Scene scene = one_square_;
+  scene.lights.push_back(scene.lights[0]);
+  View view(16, 16);
+  view.set_scene(scene);
+  view.set_camera(straight_camera());
+  EXPECT_FLOAT_EQ(pixel(picture(view), 16, 8, 8)[0], 1.0F);
+  scene.lights.clear();
+  view.set_scene(scene);
+  const std::vector<float> dark = picture(view);
+  EXPECT_EQ(pixel(dark, 16, 8, 8)[0], 0.0F);
+  EXPECT_EQ(pixel(dark, 16, 8, 8)[3], 1.0F);
+}
+
+TEST_F(ViewTest, AWideSunGivesTheMeanCosineOverItsDisc) {
+  scene::Scene scene = one_square_;
+  const double angle = 1.0;
+  scene.lights[0].angle = angle;
+  View view(8, 8);
+  view.set_scene(scene);
+  view.set_camera(straight_camera());
+  // The mean of cos over a cone of half-angle a is (1 + cos a) / 2.
+  EXPECT_NEAR(pixel(picture(view, 512), 8, 4, 4)[0], 0.5 * (1.0 + std::cos(angle / 2.0)) / 2.0, 1e-3);
+}
+
+TEST_F(ViewTest, CameraMotionSendsNothing) {
+  View view(16, 16);
+  view.set_scene(one_square_);
+  view.set_camera(straight_camera());
+  view.render(1);
+  const Sent before = View::sent();
+  view.set_camera(scene::Camera::look_at({1, 1, 4}, {0, 0, 0}, {0, 1, 0}, 45.0));
+  EXPECT_EQ(view.samples(), 0);
+  view.render(1);
+  const Sent after = View::sent();
+  EXPECT_EQ(after.bytes, before.bytes);
+  EXPECT_EQ(after.meshes, before.meshes);
+  EXPECT_EQ(after.materials, before.materials);
+  EXPECT_EQ(after.programs, before.programs);
+}
+
+TEST_F(ViewTest, AnUnchangedMeshIsNotSentAgainWithAChangedMaterial) {
+  View view(16, 16);
+  view.set_scene(one_square_);
+  const Sent before = View::sent();
+  one_square_.instances[0].material.reflectance = glm::dvec3(0.25);
+  view.set_scene(one_square_);
+  EXPECT_EQ(View::sent().meshes, before.meshes);
+  EXPECT_EQ(View::sent().materials, before.materials + 1);
+}
+
+TEST_F(ViewTest, TheSameSeedGivesTheSamePictureBitForBit) {
+  View first(24, 24, 7);
+  View second(24, 24, 7);
+  for (View* view : {&first, &second}) {
+    view->set_scene(one_square_);
+    view->set_camera(scene::Camera::look_at({0.3, 0.2, 4}, {0, 0, 0}, {0, 1, 0}, 45.0));
+  }
+  EXPECT_EQ(picture(first), picture(second));
+}
+
+TEST_F(ViewTest, ResizeKeepsTheSceneAndRestarts) {
+  View view(16, 16);
+  view.set_scene(one_square_);
+  view.set_camera(straight_camera());
+  view.render(2);
+  const Sent before = View::sent();
+  view.resize(20, 12);
+  EXPECT_EQ(view.samples(), 0);
+  EXPECT_EQ(View::sent().bytes, before.bytes);
+  view.set_camera(scene::Camera::look_at({0, 0, 4}, {0, 0, 0}, {0, 1, 0}, 45.0, 20.0 / 12.0));
+  EXPECT_FLOAT_EQ(pixel(picture(view), 20, 10, 6)[0], 0.5F);
+}
+
+TEST_F(ViewTest, CancelEndsARenderEarly) {
+  View view(256, 256);
+  view.set_scene(one_square_);
+  view.set_camera(straight_camera());
+  std::future<void> done = view.start(1'000'000);
+  while (view.samples() == 0) std::this_thread::yield();
+  view.cancel();
+  done.get();
+  EXPECT_GE(view.samples(), 1);
+  EXPECT_LT(view.samples(), 1'000'000);
+}
+
+TEST_F(ViewTest, TimingsNameThePassesThatRan) {
+  View view(16, 16);
+  EXPECT_TRUE(view.timings().empty());
+  view.set_scene(one_square_);
+  view.set_camera(straight_camera());
+  view.render(1);
+  const std::vector<PassTiming> timings = view.timings();
+  ASSERT_EQ(timings.size(), 2U);
+  EXPECT_EQ(timings[0].pass, "shade");
+  EXPECT_EQ(timings[1].pass, "accumulate");
+  for (const PassTiming& timing : timings) EXPECT_GT(timing.milliseconds, 0.0);
+}
+
+TEST_F(ViewTest, WhatCannotBeDrawnIsRefusedAndChangesNothing) {
+  View view(16, 16);
+  view.set_scene(one_square_);
+  view.set_camera(straight_camera());
+  scene::Scene broken = one_square_;
+  broken.instances[0].material.reflectance.g = std::numeric_limits<double>::quiet_NaN();
+  expect_error([&] { view.set_scene(broken); }, "reflectance (channel G)");
+  broken = one_square_;
+  broken.instances[0].object_to_world = glm::dmat4(0.0);
+  expect_error([&] { view.set_scene(broken); }, "invertible");
+  broken = one_square_;
+  broken.lights[0].direction_to_light = glm::dvec3(0.0);
+  expect_error([&] { view.set_scene(broken); }, "direction_to_light");
+  scene::Camera camera = straight_camera();
+  camera.camera_to_clip[1][1] = std::numeric_limits<double>::infinity();
+  expect_error([&] { view.set_camera(camera); }, "camera_to_clip");
+  expect_error([&] { view.render(0); }, "at least one sample");
+  expect_error([&] { view.resize(0, 5); }, "between 1 and");
+  expect_error([&] { view.resize(1 << 20, 5); }, "between 1 and");
+  EXPECT_FLOAT_EQ(pixel(picture(view), 16, 8, 8)[0], 0.5F);
+}
+
+}  // namespace
+}  // namespace mesograin::render
