@@ -1,0 +1,149 @@
+# The help texts: everything that a user has to know about the launcher.
+
+help_overview() {
+  cat <<'TEXT'
+Mesograin renders granular materials in real time and compares every picture with Cycles.
+
+  ./mesograin COMMAND [argument ...]
+
+  compare   render a scene with Mesograin and with Cycles; pictures, numbers and a report
+  render    render a scene described in JSON to EXR, without Blender
+  test      run the tests
+  bench     measure speed and accuracy
+  build     build the native module, and nothing else
+  package   make a zip of the add-on
+  install   install the add-on into Blender and enable it
+  help      this text; `./mesograin help COMMAND` or `./mesograin COMMAND --help` for more
+
+Each command first makes sure of what it needs: Debian packages (through apt, with sudo when not root) and an up-to-date
+build of the native module. It says a line for each such step, and nothing when all is there. It runs from any folder.
+
+Environment:
+  MESOGRAIN_BLENDER      the Blender to use (default: blender on the PATH; --blender PATH goes before it)
+  MESOGRAIN_PYTHON       a Python with headers, of the version that Blender embeds (default: /usr/bin/python3.X)
+  MESOGRAIN_GL_DEVICE    the EGL device to render on (default: the first that works, hardware before software)
+  XDG_CACHE_HOME         where caches live (default: ~/.cache; Mesograin's are in its folder mesograin)
+
+Exit codes:
+  0 done   1 failed, or tests failed   2 wrong usage   3 something needed is missing   130 interrupted
+TEXT
+}
+
+help_compare() {
+  cat <<'TEXT'
+Renders a scene with Mesograin's models and with Cycles, and says how far apart they are.
+
+  ./mesograin compare [SCENE.blend] [option ...]
+
+  SCENE.blend             default: blend_files/sphere.blend
+  --models MODEL ...      which models to compare: lambert, conductor, model_1 (default: all)
+  --reference-samples N   samples per pixel of each Cycles reference
+  --out DIR               where results go (default: out/compare)
+  --size WxH              resolution in pixels (default: the scene's)
+  --blender PATH          the Blender to use
+
+DIR receives report.html (open it from disk), results.json, results.csv, and EXR and PNG pictures of every model,
+reference and error. Cycles references are cached; a second run takes seconds. Ctrl-C stops at once, leaves no half file,
+and the next run goes on with what is cached.
+
+  ./mesograin compare
+  ./mesograin compare my_grain.blend --models lambert model_1 --size 640x480 --out /tmp/mine
+TEXT
+}
+
+help_render() {
+  cat <<'TEXT'
+Renders a scene described in JSON to an EXR file; needs no Blender.
+
+  ./mesograin render SCENE.json -o OUT.exr [--model MODEL] [--samples N]
+
+  SCENE.json       geometry, camera, resolution, lights and material; docs/scene.md describes it
+  -o OUT.exr       linear RGBA, 32-bit float; replaced only when the picture is complete
+  --model MODEL    lambert, conductor or model_1 (default: the best for the material's kind)
+  --samples N      samples per pixel
+
+  ./mesograin render tests/data/sphere.json --model lambert -o sphere.exr
+TEXT
+}
+
+help_test() {
+  cat <<'TEXT'
+Runs the tests; the last line printed is their sum, `N passed, M failed`.
+
+  ./mesograin test [PART ...] [--blender PATH] [--blender-4]
+
+  lint       formatting, static analysis, shader validation, shell scripts, what every file must keep to
+  physics    the physics library against itself in double precision and against independent oracles
+  native     the native module's rooms, and again under the address and undefined-behaviour sanitizers
+  python     the Python module and the report, without Blender
+  blender    the add-on inside a Blender without a window
+  window     the add-on in a real Blender window on a virtual screen
+
+  PART             one or more of the above (default: all)
+  --blender PATH   the Blender to test with
+  --blender-4      also runs python, blender and window with Blender 4.3 in a Debian 13 root; the first time this sets
+                   the root up in the cache folder, which takes a few minutes, 3 GB and root's rights
+
+A part that crashes or runs no test counts as a failure. Logs and JUnit files: build/release/test-results. Exit code: 0 when all
+passed, 1 when not.
+TEXT
+}
+
+help_bench() {
+  cat <<'TEXT'
+Measures. Times are given as ratios within one run, so that they mean the same on another machine.
+
+  ./mesograin bench [frame]
+
+  frame    what each model costs relative to lambert: shade pass, 400x400, sphere, two lights, median of 100 frames
+TEXT
+}
+
+help_build() {
+  cat <<'TEXT'
+Builds the native module and the command-line renderer; silent when they are up to date.
+
+  ./mesograin build [--blender PATH]
+
+  --blender PATH   the Blender whose Python the module is built for
+
+The module lands in build/release and beside the add-on, so that both can import it.
+TEXT
+}
+
+help_package() {
+  cat <<'TEXT'
+Makes a zip of the add-on that Blender installs: build/package/mesograin-VERSION.zip.
+
+  ./mesograin package [--blender PATH] [--blender-4] [-o FILE.zip]
+
+  --blender PATH   the Blender whose Python the native module is built for
+  --blender-4      also builds the module for Blender 4.3 of Debian 13, in a root in the cache folder (see ./mesograin test --help)
+  -o FILE.zip      where the zip goes
+
+The one zip works as an add-on for Blender 3.4 to 4.1 and as an extension for Blender 4.2 and later. Its native modules run
+on the Debian they were built for.
+TEXT
+}
+
+help_install() {
+  cat <<'TEXT'
+Installs the add-on into the user's Blender and enables it.
+
+  ./mesograin install [--blender PATH]
+  ./mesograin install --remove [--blender PATH]
+
+  --blender PATH   the Blender to install into
+  --remove         takes the add-on out again
+
+Close Blender first: it saves its preferences when it quits.
+TEXT
+}
+
+help_about() {
+  case $1 in
+    overview | help) help_overview ;;
+    compare | render | test | bench | build | package | install) "help_$1" ;;
+    *) fail "$exit_usage" "There is no help about '$1'; the commands are compare, render, test, bench, build, package and install." ;;
+  esac
+}

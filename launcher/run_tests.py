@@ -1,0 +1,227 @@
+"""Runs the parts of the test suite one after the other, sums what their JUnit files say, and prints the sum last.
+
+A part that crashes, hangs or runs no test counts as a failure.
+"""
+import argparse
+import json
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import sys
+import time
+import xml.etree.ElementTree as ElementTree
+from dataclasses import asdict, dataclass, field
+
+SOURCE = pathlib.Path(__file__).resolve().parent.parent
+PARTS = ("lint", "physics", "native", "python", "blender", "window")
+LIMIT = 40 * 60  # seconds for one suite; only a hang takes so long
+
+
+@dataclass
+class Suite:
+    """One process that writes one JUnit file."""
+    name: str
+    command: list
+    environment: dict = field(default_factory=dict)
+
+
+@dataclass
+class Result:
+    name: str
+    passed: int = 0
+    failed: int = 0
+    skipped: int = 0
+    seconds: float = 0.0
+    failures: list = field(default_factory=list)  # [(test, first lines of what it said)]
+
+
+def google_tests(part, folder, environment):
+    """One suite for each GoogleTest executable below a folder."""
+    executables = sorted(path for path in folder.rglob("*") if path.is_file() and os.access(path, os.X_OK)
+                         and path.suffix == "" and "CMakeFiles" not in path.parts)
+    return [Suite(f"{part}/{path.name}", [str(path), "--gtest_output=xml:{junit}"], environment) for path in executables]
+
+
+def pytest_suite(part, python, folder):
+    return Suite(part, [python, "-m", "pytest", "-q", "-p", "no:cacheprovider", str(folder), "--junitxml={junit}"])
+
+
+def suites_of(part, options):
+    """The suites that make up a part; an empty list when there is nothing to run."""
+    build = pathlib.Path(options.build)
+    if part == "lint":
+        return [pytest_suite("lint", options.python, SOURCE / "tests/lint")]
+    if part == "physics":
+        return google_tests(part, build / "tests/physics", {}) + google_tests(part, build / "tests/referee", {})
+    if part == "native":
+        leaks = {"LSAN_OPTIONS": f"suppressions={SOURCE}/tests/native/leaks.supp:print_suppressions=0",
+                 "ASAN_OPTIONS": "detect_stack_use_after_return=1", "UBSAN_OPTIONS": "print_stacktrace=1"}
+        plain = google_tests(part, build / "tests/native", {})
+        sanitized = google_tests("native, sanitized", SOURCE / "build/sanitize/tests/native", leaks)
+        return plain + sanitized
+    if part == "python":
+        return [pytest_suite("python", options.python, SOURCE / "tests/python")]
+    if part == "blender":
+        return [Suite(f"blender {options.blender_version}", [
+            options.blender, "--background", "--factory-startup", "--python-exit-code", "1",
+            "--python", str(SOURCE / "tests/blender/run.py"), "--", "--junitxml={junit}"])]
+    window = pytest_suite("window", options.python, SOURCE / "tests/window")
+    window.name += f" {options.blender_version}"
+    return [window]
+
+
+def read_junit(path, result):
+    """Adds what a JUnit file says to a result; False when there is no readable file."""
+    try:
+        cases = list(ElementTree.parse(path).getroot().iter("testcase"))
+    except (OSError, ElementTree.ParseError):
+        return False
+    for case in cases:
+        complaint = case.find("failure")
+        if complaint is None:
+            complaint = case.find("error")
+        if complaint is not None:
+            result.failed += 1
+            text = (complaint.get("message") or "") + "\n" + (complaint.text or "")
+            result.failures.append((f"{case.get('classname')}.{case.get('name')}", text.strip()))
+        elif case.find("skipped") is not None or case.get("status") == "notrun":
+            result.skipped += 1
+        else:
+            result.passed += 1
+    return True
+
+
+class Runner:
+    def __init__(self, options):
+        self.options = options
+        self.results = []
+        self.folder = pathlib.Path(options.results)
+        shutil.rmtree(self.folder, ignore_errors=True)
+        self.folder.mkdir(parents=True)
+        self.child = None
+
+    def execute(self, command, log_path, environment):
+        """Runs one process in a session of its own, so that whatever it started ends with it."""
+        variables = dict(os.environ, MESOGRAIN_BLENDER=self.options.blender, MESOGRAIN_BUILD=self.options.build, **environment)
+        with open(log_path, "wb") as log:
+            self.child = subprocess.Popen(command, cwd=SOURCE, env=variables, stdin=subprocess.DEVNULL, stdout=log,
+                                          stderr=subprocess.STDOUT, start_new_session=True)
+            try:
+                return self.child.wait(timeout=LIMIT)
+            except subprocess.TimeoutExpired:
+                return f"no end after {LIMIT // 60} minutes"
+            finally:
+                self.end_child()
+
+    def end_child(self):
+        try:
+            os.killpg(self.child.pid, signal.SIGKILL)
+        except ProcessLookupError:
+            pass
+
+    def run_suite(self, suite):
+        stem = "".join(letter if letter.isalnum() or letter in "._" else "-" for letter in suite.name)
+        junit, log = self.folder / f"{stem}.xml", self.folder / f"{stem}.log"
+        result = Result(suite.name)
+        print(f"{suite.name:<44}", end="", flush=True)
+        start = time.monotonic()
+        code = self.execute([part.replace("{junit}", str(junit)) for part in suite.command], log, suite.environment)
+        result.seconds = time.monotonic() - start
+        readable = read_junit(junit, result)
+        if code != 0 and result.failed == 0:
+            how = f"ended by signal {-code}" if isinstance(code, int) and code < 0 else f"exit code {code}"
+            result.failed += 1
+            result.failures.append((suite.name, f"{how}\n{tail(log)}"))
+        elif not readable or result.passed + result.failed == 0:
+            result.failed += 1
+            result.failures.append((suite.name, f"ran no test\n{tail(log)}"))
+        self.report(result, log)
+
+    def run_part(self, part):
+        suites = suites_of(part, self.options)
+        for suite in suites:
+            self.run_suite(suite)
+        if not suites:
+            print(f"{part:<44}", end="")
+            self.report(Result(part, failed=1, failures=[(part, "has no test to run")]), None)
+
+    def add_run(self, path):
+        """Adds the results of a run that has already ended, in another Debian; returns the Blender it ran."""
+        try:
+            run = json.loads(pathlib.Path(path).read_text())
+        except (OSError, ValueError) as error:
+            print(f"{'Debian 13':<44}", end="")
+            self.report(Result("Debian 13", failed=1, failures=[("Debian 13", f"left no summary: {error}")]), None)
+            return None
+        for fields in run["results"]:
+            result = Result(**fields)
+            result.name += " in Debian 13" if "4." not in result.name else ""
+            print(f"{result.name:<44}", end="")
+            self.report(result, path)
+        return run["blender"]
+
+    def report(self, result, log):
+        counts = f"{result.passed} passed" + (f", {result.failed} failed" if result.failed else "") + (
+            f", {result.skipped} skipped" if result.skipped else "")
+        print(f"{counts:<40}{result.seconds:6.1f} s", flush=True)
+        for test, text in result.failures:
+            print(f"  FAILED {test}")
+            for line in text.splitlines()[:12]:
+                print(f"    {line}")
+        if result.failures and log:
+            print(f"  the whole log: {log}")
+        self.results.append(result)
+
+
+def tail(path, count=30):
+    """The last lines of a log."""
+    try:
+        return "\n".join(path.read_text(errors="replace").splitlines()[-count:])
+    except OSError:
+        return ""
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    for name in ("--build", "--python", "--blender", "--blender-version", "--results"):
+        parser.add_argument(name, required=True)
+    parser.add_argument("--also", metavar="SUMMARY", help="the summary.json of a run in Debian 13, to be summed with this one")
+    parser.add_argument("parts", nargs="+", choices=PARTS)
+    options = parser.parse_args()
+    runner = Runner(options)
+    try:
+        for part in PARTS:
+            if part in options.parts:
+                runner.run_part(part)
+        versions = [options.blender_version]
+        if options.also:
+            versions += filter(None, [runner.add_run(options.also)])
+    except KeyboardInterrupt:
+        runner.end_child()
+        print("\nmesograin: interrupted", file=sys.stderr)
+        return 130
+    return summarise(runner, options, versions)
+
+
+def summarise(runner, options, versions):
+    print()
+    ran_blender = any(part in options.parts for part in ("blender", "window"))
+    print(f"Blender run: {', '.join(versions) if ran_blender else 'none'}", end="")
+    families = {version.split(".")[0] for version in versions} if ran_blender else set()
+    missing = [f"{family}.x" for family in ("3", "4") if family not in families]
+    print(f"; not run: {', '.join(missing)}." if missing else ".")
+    if "4" not in families and ran_blender:
+        print("./mesograin test --blender-4 also runs Blender 4.3.")
+    passed, failed, skipped = (sum(getattr(result, name) for result in runner.results)
+                               for name in ("passed", "failed", "skipped"))
+    summary = {"blender": options.blender_version, "versions": versions, "passed": passed, "failed": failed,
+               "skipped": skipped, "results": [asdict(result) for result in runner.results]}
+    (runner.folder / "summary.json").write_text(json.dumps(summary, indent=1))
+    print(f"{passed} passed, {failed} failed" + (f", {skipped} skipped" if skipped else ""))
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
