@@ -11,8 +11,8 @@ import subprocess
 import sys
 
 CHATTER = re.compile(
-    rb"^(Blender \d|Read (blend|prefs|new)|Fra:\d|Saved: |Saving: |Blender quit|Info: |\s*Time: |Writing: |unknown argument|"
-    rb"found bundled python|Color management: |Warning: .*startup|AL lib: |Device with name|\s*$)")
+    rb"^(Blender \d|Read (blend|prefs|new)|Fra:\d|Saved: |Saving: |Blender quit|Info: |\s*Time: |Writing: |"
+    rb"found bundled python|Color management: |AL lib: |\s*$)")
 
 
 def run(log_path, command):

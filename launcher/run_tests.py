@@ -38,10 +38,11 @@ class Result:
 
 
 def google_tests(part, folder, environment):
-    """One suite for each GoogleTest executable below a folder."""
-    executables = sorted(path for path in folder.rglob("*") if path.is_file() and os.access(path, os.X_OK)
-                         and path.suffix == "" and "CMakeFiles" not in path.parts)
-    return [Suite(f"{part}/{path.name}", [str(path), "--gtest_output=xml:{junit}"], environment) for path in executables]
+    """One suite for each GoogleTest executable of a build folder; their names end in _tests."""
+    executables = sorted(path for path in folder.glob("*_tests") if os.access(path, os.X_OK))
+    names = {path: path.name.replace("mesograin_", "").replace("_tests", "") for path in executables}
+    return [Suite(part if names[path] in part else f"{part}, {names[path]}", [str(path), "--gtest_output=xml:{junit}"],
+                  environment) for path in executables]
 
 
 def pytest_suite(part, python, folder):
@@ -104,7 +105,8 @@ class Runner:
 
     def execute(self, command, log_path, environment):
         """Runs one process in a session of its own, so that whatever it started ends with it."""
-        variables = dict(os.environ, MESOGRAIN_BLENDER=self.options.blender, MESOGRAIN_BUILD=self.options.build, **environment)
+        variables = dict(os.environ, MESOGRAIN_BLENDER=self.options.blender, MESOGRAIN_BUILD=self.options.build,
+                         **environment)
         with open(log_path, "wb") as log:
             self.child = subprocess.Popen(command, cwd=SOURCE, env=variables, stdin=subprocess.DEVNULL, stdout=log,
                                           stderr=subprocess.STDOUT, start_new_session=True)
@@ -187,7 +189,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     for name in ("--build", "--python", "--blender", "--blender-version", "--results"):
         parser.add_argument(name, required=True)
-    parser.add_argument("--also", metavar="SUMMARY", help="the summary.json of a run in Debian 13, to be summed with this one")
+    parser.add_argument("--also", metavar="SUMMARY", help="summary.json of a run in Debian 13, to be summed with this")
     parser.add_argument("parts", nargs="+", choices=PARTS)
     options = parser.parse_args()
     runner = Runner(options)

@@ -1,4 +1,4 @@
-# Runs inside Blender: prints Blender's version, its Python's version and the file suffix of that Python's native modules.
+# Runs inside Blender: prints its version, its Python's version and the file suffix of that Python's native modules.
 import importlib.machinery
 import sys
 

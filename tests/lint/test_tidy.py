@@ -1,4 +1,4 @@
-"""C++ holds under clang-tidy with the checks of .clang-tidy. What a file's text and its headers' text passed once is remembered."""
+"""C++ holds under clang-tidy with the checks of .clang-tidy; what passed once is not checked again until it changes."""
 import concurrent.futures
 import hashlib
 import os
@@ -25,7 +25,8 @@ def check(path):
     passed = BUILD / "tidy" / fingerprint(path)
     if passed.exists():
         return ""
-    outcome = subprocess.run(["clang-tidy-14", "--quiet", "-p", str(BUILD), path], cwd=SOURCE, capture_output=True, text=True)
+    outcome = subprocess.run(["clang-tidy-14", "--quiet", "-p", str(BUILD), path], cwd=SOURCE, capture_output=True,
+                             text=True)
     if outcome.returncode == 0:
         passed.parent.mkdir(exist_ok=True)
         passed.touch()
