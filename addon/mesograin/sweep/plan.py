@@ -10,8 +10,6 @@ from pathlib import Path
 
 MODELS = ("lambert", "conductor", "model_1", "model_2", "model_3")
 REFERENCES = ("diffuse", "glossy", "volume_index_matched", "subsurface")
-BOUNDARIES = ("dielectric", "index_matched", "lambert_lambert", "lambert_refracted")
-MASKINGS = ("correlated", "separable")
 PROFILES = ("half_space", "better_dipole", "dipole", "photon_beam")
 LARGEST_COEFFICIENT = 1e12
 
@@ -60,7 +58,11 @@ class Whole:
     high: int
 
     def check(self, value):
-        return value if isinstance(value, int) and not isinstance(value, bool) and self.low <= value <= self.high else None
+        return (
+            value
+            if isinstance(value, int) and not isinstance(value, bool) and self.low <= value <= self.high
+            else None
+        )
 
     def __str__(self):
         return f"a whole number from {self.low} to {self.high}"
@@ -79,6 +81,7 @@ class Choice:
         return "one of " + ", ".join(self.names)
 
 
+# Boundary and masking are not among them: the kind of reference decides both.
 PARAMETERS = {
     "reflectance": Colour(0.0, 1.0),
     "sigma_a": Colour(0.0, LARGEST_COEFFICIENT),
@@ -87,8 +90,6 @@ PARAMETERS = {
     "eta": Number(0.5, 4.0),
     "roughness": Number(0.0, 1.0),
     "scale": Number(0.0, LARGEST_COEFFICIENT),
-    "boundary": Choice(BOUNDARIES),
-    "masking": Choice(MASKINGS),
     "profile": Choice(PROFILES),
 }
 SETTINGS = {
@@ -169,7 +170,11 @@ class _Reader:
         scenes = [self.scene(name) for name in self.names("scenes", None)]
         models = self.names("models", MODELS)
         references = self.names("references", REFERENCES) if "references" in self.table else [None]
-        settings = {name: self.value((), name, self.table[name], kind) for name, kind in SETTINGS.items() if name in self.table}
+        settings = {
+            name: self.value((), name, self.table[name], kind)
+            for name, kind in SETTINGS.items()
+            if name in self.table
+        }
         fixed = self.parameters(("material",), self.section("material"))
         grid = self.section("grid")
         rows = self.rows()
@@ -181,9 +186,13 @@ class _Reader:
         ):
             parameters = {**fixed, **row, **dict(zip(grid, point, strict=True))}
             varying = {name: parameters[name] for name in axes if name in parameters}
-            label = " ".join([Path(scene).stem, model, *(f"{name}={_short(value)}" for name, value in varying.items())])
+            label = " ".join(
+                [Path(scene).stem, model, *(f"{name}={_short(value)}" for name, value in varying.items())]
+            )
             cases.append(
-                Case(scene, model, reference, tuple(sorted(parameters.items())), tuple(sorted(settings.items())), label)
+                Case(
+                    scene, model, reference, tuple(sorted(parameters.items())), tuple(sorted(settings.items())), label
+                )
             )
         return Plan(str(self.table.get("title", self.path.stem)), str(self.path), axes, tuple(cases))
 
@@ -226,7 +235,10 @@ class _Reader:
     def parameter(self, section, name, value, occurrence=0):
         if name not in PARAMETERS:
             raise self.error(
-                section, name, f"'{name}' is not a material's parameter; allowed are {', '.join(PARAMETERS)}", occurrence
+                section,
+                name,
+                f"'{name}' is not a material's parameter; allowed are {', '.join(PARAMETERS)}",
+                occurrence,
             )
         return self.value(section, name, value, PARAMETERS[name], occurrence)
 
