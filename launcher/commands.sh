@@ -52,6 +52,16 @@ run_compare() {
     --factory-startup --python-exit-code 1 --python "$source_folder/addon/mesograin/comparison/command.py" -- "$@"
 }
 
+run_sweep() {
+  take_blender_option "$@"
+  eval "set -- $remaining"
+  [ $# -gt 0 ] || fail "$exit_usage" "sweep needs a file and a folder: ./mesograin sweep FILE.toml --out DIR"
+  ensure_blender
+  ensure_lists report
+  ensure_product product
+  exec "$python" "$source_folder/addon/mesograin/sweep/command.py" "$@" --blender "$blender"
+}
+
 run_render() {
   take_blender_option "$@"
   eval "set -- $remaining"

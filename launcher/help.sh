@@ -7,6 +7,7 @@ Mesograin renders granular materials in real time and compares every picture wit
   ./mesograin COMMAND [argument ...]
 
   compare   render a scene with Mesograin and with Cycles; pictures, numbers and a report
+  sweep     compare many cases listed in a file; resumable, on one machine or many
   render    render a scene described in JSON to EXR, without Blender
   test      run the tests
   bench     measure speed and accuracy
@@ -48,6 +49,26 @@ and the next run goes on with what is cached.
 
   ./mesograin compare
   ./mesograin compare my_grain.blend --models lambert model_1 --size 640x480 --out /tmp/mine
+TEXT
+}
+
+help_sweep() {
+  cat <<'TEXT'
+Compares every case that a TOML file lists, each in a Blender of its own; docs/sweeps.md describes the file.
+
+  ./mesograin sweep FILE.toml --out DIR [option ...]
+
+  --out DIR               where cases, tables and plots go
+  --jobs N                cases side by side (default: 1)
+  --list                  print the cases and run none
+  --case I                run case I alone, counted from 0
+  --merge                 merge and plot what is there, run nothing
+  --emit slurm|parallel   write a script that runs the cases as a Slurm job array or under GNU parallel
+  --blender PATH          the Blender to use
+
+A sweep that was stopped goes on where it was; cases that failed are recorded and tried again by the next run.
+
+  ./mesograin sweep blend_files/sweeps/figure_25_optical_scale.toml --out out/figure_25
 TEXT
 }
 
@@ -143,7 +164,7 @@ TEXT
 help_about() {
   case $1 in
     overview | help) help_overview ;;
-    compare | render | test | bench | build | package | install) "help_$1" ;;
-    *) fail "$exit_usage" "There is no help about '$1'; the commands are compare, render, test, bench, build, package and install." ;;
+    compare | sweep | render | test | bench | build | package | install) "help_$1" ;;
+    *) fail "$exit_usage" "There is no help about '$1'; the commands are compare, sweep, render, test, bench, build, package and install." ;;
   esac
 }
