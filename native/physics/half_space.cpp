@@ -11,11 +11,12 @@
 namespace mesograin::physics {
 namespace {
 
-constexpr int nodes_per_interval = 24;
+constexpr int nodes_per_interval = 40;
 
 }  // namespace
 
 HalfSpace::HalfSpace(const Medium& medium, double eta) : interior_(medium), eta_(eta) {
+  if (eta == 1.0) return;
   std::vector<double> reflected;
   std::vector<double> escaping;
   const auto add_node = [&](double mu, double weight, double transmittance) {
@@ -34,8 +35,7 @@ HalfSpace::HalfSpace(const Medium& medium, double eta) : interior_(medium), eta_
       const double mu = refracted_cosine(square, eta);
       add_node(mu, weight * square / (eta * eta * mu), fresnel_transmittance(square, mu, eta));
     } else {
-      add_node(square, weight,
-               eta == 1.0 ? 1.0 : fresnel_transmittance(square, refracted_cosine(square, 1.0 / eta), 1.0 / eta));
+      add_node(square, weight, fresnel_transmittance(square, refracted_cosine(square, 1.0 / eta), 1.0 / eta));
     }
   }
   reflected_measure_ = Eigen::Map<Eigen::VectorXd>(reflected.data(), reflected.size());
@@ -58,17 +58,22 @@ Eigen::MatrixXd HalfSpace::kernel(const Eigen::MatrixXd& functions_a, const std:
   return values;
 }
 
+// In, by one reflection at the interface, any number of rounds below it, and out.
+Eigen::MatrixXd HalfSpace::rounds_below(const Eigen::MatrixXd& functions, const std::vector<double>& mu) const {
+  const Eigen::MatrixXd to_nodes = kernel(functions, mu, functions_, mu_);
+  const Eigen::MatrixXd reflected_in = to_nodes * reflected_measure_.asDiagonal();
+  return reflected_in * (to_nodes.transpose() + internal_paths_ * reflected_in.transpose());
+}
+
 std::vector<double> HalfSpace::interior_table(const std::vector<double>& mu, bool first_order) const {
   const Eigen::MatrixXd functions = interior_.functions(mu);
-  const Eigen::MatrixXd to_nodes = kernel(functions, mu, functions_, mu_);
-  // Straight out, plus in by one reflection at the interface, any number of rounds below it, and out.
-  const Eigen::MatrixXd reflected_in = to_nodes * reflected_measure_.asDiagonal();
-  const Eigen::MatrixXd rounds = reflected_in * (to_nodes.transpose() + internal_paths_ * reflected_in.transpose());
   Eigen::MatrixXd straight = functions.transpose() * interior_.coefficients().asDiagonal() * functions;
   if (!first_order) {
     const Eigen::MatrixXd legendre = interior_.legendre(mu);
     straight -= legendre.transpose() * interior_.coefficients().asDiagonal() * legendre;
   }
+  Eigen::MatrixXd rounds = Eigen::MatrixXd::Zero(straight.rows(), straight.cols());
+  if (eta_ != 1.0) rounds = rounds_below(functions, mu);
   std::vector<double> table;
   table.reserve(mu.size() * mu.size());
   for (std::size_t row = 0; row < mu.size(); ++row)
@@ -80,14 +85,15 @@ std::vector<double> HalfSpace::interior_table(const std::vector<double>& mu, boo
 }
 
 double HalfSpace::albedo_inside(double mu) const {
+  if (eta_ == 1.0) return std::min(interior_.plane_albedo(mu), 1.0);
   const Eigen::VectorXd to_nodes = kernel(functions_, mu_, interior_.functions({mu}), {mu});
   const Eigen::VectorXd arriving = to_nodes + internal_paths_ * reflected_measure_.cwiseProduct(to_nodes);
   return conservation_ * arriving.dot(escaping_measure_);
 }
 
 double HalfSpace::albedo(double mu) const {
-  const double mu_refracted = refracted_cosine(mu, eta_);
   if (eta_ == 1.0) return albedo_inside(mu);
+  const double mu_refracted = refracted_cosine(mu, eta_);
   return fresnel_transmittance(mu, mu_refracted, eta_) * albedo_inside(mu_refracted);
 }
 

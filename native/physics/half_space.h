@@ -28,6 +28,8 @@ class HalfSpace {
   Eigen::MatrixXd kernel(const Eigen::MatrixXd& functions_a, const std::vector<double>& mu_a,
                          const Eigen::MatrixXd& functions_b, const std::vector<double>& mu_b) const;
 
+  Eigen::MatrixXd rounds_below(const Eigen::MatrixXd& functions, const std::vector<double>& mu) const;
+
   HalfSpaceInterior interior_;
   double eta_;
   double conservation_ = 1.0;

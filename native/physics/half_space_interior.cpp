@@ -15,9 +15,9 @@ constexpr int ordinates = 40;
 constexpr double smallest_coefficient = 1e-4;  // Legendre terms below this are dropped
 constexpr int largest_degree = 2 * ordinates;
 
-int degree_for(double g) {
-  if (g == 0.0) return 0;
-  const double degree = std::ceil(std::log(smallest_coefficient) / std::log(std::abs(g)));
+int degree_for(const Medium& medium) {
+  if (medium.g == 0.0 || medium.albedo == 0.0) return 0;
+  const double degree = std::ceil(std::log(smallest_coefficient) / std::log(std::abs(medium.g)));
   return static_cast<int>(std::clamp(degree, 1.0, static_cast<double>(largest_degree)));
 }
 
@@ -26,12 +26,7 @@ double sign_of_order(Eigen::Index order) { return order % 2 == 0 ? 1.0 : -1.0; }
 }  // namespace
 
 HalfSpaceInterior::HalfSpaceInterior(const Medium& medium) : medium_(medium) {
-  // The medium answers like mu log(mu) at grazing; in x with mu = x^2 that is smooth enough for Gauss-Legendre.
-  for (const QuadratureNode& node : gauss_legendre(ordinates)) {
-    mu_.push_back(node.x * node.x);
-    weight_.push_back(2.0 * node.x * node.weight);
-  }
-  const int degree = degree_for(medium.g);
+  const int degree = degree_for(medium);
   coefficients_.resize(degree + 1);
   for (int l = 0; l <= degree; ++l)
     coefficients_[l] = medium.albedo / (4.0 * PI) * (2 * l + 1) * std::pow(-medium.g, l);
@@ -56,6 +51,11 @@ Eigen::MatrixXd HalfSpaceInterior::legendre(const std::vector<double>& mu) const
 // Bosma & de Rooij 1983 recommend: unlike the direct form it converges for a conservative medium, to the physical one
 // of two solutions.
 void HalfSpaceInterior::solve_isotropic() {
+  // H is smooth but for mu log(mu): in x with mu = x^2 that is gentle enough for Gauss-Legendre.
+  for (const QuadratureNode& node : gauss_legendre(ordinates)) {
+    mu_.push_back(node.x * node.x);
+    weight_.push_back(2.0 * node.x * node.weight);
+  }
   h_ = Eigen::VectorXd::Ones(ordinates);
   for (int iteration = 0; iteration < 200; ++iteration) {
     Eigen::VectorXd next(ordinates);
@@ -77,6 +77,12 @@ void HalfSpaceInterior::solve_isotropic() {
 // which is adding-doubling that starts from a thick layer; the two Riccati equations of the general case are one here,
 // since up and down are alike.
 void HalfSpaceInterior::solve_anisotropic() {
+  // Plain Gauss-Legendre, on which Legendre polynomials stay orthogonal: what a conservative medium scatters is kept to
+  // the last digit.
+  for (const QuadratureNode& node : gauss_legendre(ordinates)) {
+    mu_.push_back(node.x);
+    weight_.push_back(node.weight);
+  }
   const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(ordinates, ordinates);
   legendre_ = legendre(mu_);
   const Eigen::Map<const Eigen::VectorXd> mu(mu_.data(), ordinates);

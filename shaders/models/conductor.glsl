@@ -14,7 +14,6 @@ uniform Material material;
 vec3 evaluate_model(SurfacePoint point, LightSample light) {
   float mu_i = dot(point.normal, light.to_light);
   if (mu_i <= 0.0) return vec3(0.0);
-  // A shading normal may turn away from a viewer who sees the triangle: there the surface is at grazing, not black.
   float mu_o = max(dot(point.normal, point.to_viewer), 0.0);
   vec3 sum = light.to_light + point.to_viewer;
   vec3 half_vector = sum * inversesqrt(max(dot(sum, sum), 1e-12));

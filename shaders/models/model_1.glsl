@@ -38,7 +38,6 @@ vec3 evaluate_model(SurfacePoint point, LightSample light) {
   float mu_i = dot(point.normal, light.to_light);
   if (mu_i <= 0.0) return vec3(0.0);
   mu_i = min(mu_i, 1.0);
-  // A shading normal may turn away from a viewer who sees the triangle: there the surface is at grazing.
   float mu_o = clamp(dot(point.normal, point.to_viewer), 0.0, 1.0);
   vec3 irradiance = light.irradiance * mu_i;
 
