@@ -96,7 +96,7 @@ run_test() {
   ensure_product all
   case $parts in
     *native*)
-      ensure_built sanitize "$source_folder/build/sanitize" all "the native module with sanitizers"
+      ensure_built sanitize "$source_folder/build/sanitize" tests/native/all "the native tests with sanitizers"
       ;;
   esac
   case $parts in
@@ -121,10 +121,14 @@ run_build() {
 }
 
 run_bench() {
+  take_blender_option "$@"
+  eval "set -- $remaining"
   [ "${1:-frame}" = frame ] || fail "$exit_usage" "There is no benchmark '$1'; there is frame."
+  [ $# -eq 0 ] || shift
   ensure_blender
-  ensure_product all
-  exec "$python" "$source_folder/tests/bench/frame.py"
+  ensure_lists report
+  ensure_product product
+  exec "$python" "$source_folder/bench/frame.py" "$build" "$@"
 }
 
 run_package() {

@@ -32,20 +32,33 @@ TEXT
 
 help_compare() {
   cat <<'TEXT'
-Renders a scene with Mesograin's models and with Cycles, and says how far apart they are.
+Renders every model and the Cycles reference that means the same, and writes pictures, numbers and a report.
 
   ./mesograin compare [SCENE.blend] [option ...]
 
-  SCENE.blend             default: blend_files/sphere.blend
-  --models MODEL ...      which models to compare: lambert, conductor, model_1 (default: all)
-  --reference-samples N   samples per pixel of each Cycles reference
-  --out DIR               where results go (default: out/compare)
-  --size WxH              resolution in pixels (default: the scene's)
-  --blender PATH          the Blender to use
+  SCENE.blend               default: blend_files/sphere.blend
+  --models MODEL ...        models to compare: lambert, conductor, model_1 (default: all three)
+  --references KIND ...     kinds of reference: diffuse, glossy, volume_index_matched, subsurface; each model is compared
+                            with those that answer it (default: diffuse for lambert, glossy for conductor,
+                            volume_index_matched for the others)
+  --out DIR                 folder for results (default: comparison)
+  --size WxH                picture size in pixels (default: the scene's)
+  --samples N               samples per pixel on our side (default: 64)
+  --reference-samples N     Cycles samples per pixel for each of the two seeds (default: 64 for surfaces, 128 for volumes)
+  --set NAME=VALUE          a material parameter for every material, on both sides: reflectance, sigma_a, sigma_s, g, eta,
+                            roughness, scale, profile; RGB as one number or three with commas; may be repeated
+  --frames N                frames timed for frame_ms (default: 9)
+  --no-report               writes no report.html
+  --cache DIR               folder of rendered references (default: MESOGRAIN_CACHE, or mesograin/references in the cache)
+  --cache-limit SIZE        bytes that it may take, with an optional K, M or G (default: MESOGRAIN_CACHE_LIMIT, or 2G)
+  --clear-cache             empties the reference cache and does nothing else
+  --blender PATH            the Blender to use
 
 DIR receives report.html (open it from disk), results.json, results.csv, and EXR and PNG pictures of every model,
-reference and error. Cycles references are cached; a second run takes seconds. Ctrl-C stops at once, leaves no half file,
-and the next run goes on with what is cached.
+reference and error. A second run finds its references in the cache. Ctrl-C stops at once, leaves no half file, and the
+next run goes on with what is cached.
+Exit codes: 0 all compared, 1 a case failed (the others are written), 2 wrong arguments or scene, 3 something needed is
+missing or DIR cannot be written, 130 interrupted.
 
   ./mesograin compare
   ./mesograin compare my_grain.blend --models lambert model_1 --size 640x480 --out /tmp/mine
@@ -76,12 +89,20 @@ help_render() {
   cat <<'TEXT'
 Renders a scene described in JSON to an EXR file; needs no Blender.
 
-  ./mesograin render SCENE.json -o OUT.exr [--model MODEL] [--samples N]
+  ./mesograin render SCENE.json -o OUT.exr [option ...]
 
-  SCENE.json       geometry, camera, resolution, lights and material; docs/scene.md describes it
-  -o OUT.exr       linear RGBA, 32-bit float; replaced only when the picture is complete
-  --model MODEL    lambert, conductor or model_1 (default: the best for the material's kind)
-  --samples N      samples per pixel
+  SCENE.json            geometry, camera, resolution, lights and material; docs/scene.md describes it
+  -o, --output OUT.exr  linear RGB radiance and coverage, 32-bit float, row 0 at the top
+  -m, --model MODEL     lambert, conductor or model_1 (default: the best for the material's kind)
+  -n, --samples N       samples per pixel (default: 64)
+  --seed S              of the samples' places and of the models' own (default: 0)
+  --size WxH            pixels, instead of the scene's resolution
+  -q, --quiet           no progress, only errors
+  --version             the renderer's version
+
+The picture appears complete or not at all.
+Exit codes: 0 written; 1 the scene, the device or the output did not serve; 2 wrong command line; 3 something needed is
+missing; 130 interrupted.
 
   ./mesograin render tests/data/sphere.json --model lambert -o sphere.exr
 TEXT
@@ -114,9 +135,11 @@ help_bench() {
   cat <<'TEXT'
 Measures. Times are given as ratios within one run, so that they mean the same on another machine.
 
-  ./mesograin bench [frame]
+  ./mesograin bench [frame] [--frames N] [--json FILE]
 
-  frame    what each model costs relative to lambert: shade pass, 400x400, sphere, two lights, median of 100 frames
+  frame         what each model costs relative to lambert: shade pass alone, 400x400, sphere, two lights
+  --frames N    the median is over so many frames (default: 100)
+  --json FILE   also writes the result there
 TEXT
 }
 

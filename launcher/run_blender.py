@@ -1,4 +1,4 @@
-"""Runs Blender for the launcher: its own chatter goes to a log, what the command says goes to the terminal.
+"""Runs Blender for the launcher: its own chatter on standard output goes to a log, the rest to the terminal.
 
     run_blender.py LOG BLENDER [argument ...]
 
@@ -21,8 +21,7 @@ def run(log_path, command):
     received = []
     with open(log_path, "wb") as log:
         # A session of its own: Ctrl-C in the terminal would otherwise reach Blender twice.
-        blender = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-                                   start_new_session=True)
+        blender = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, start_new_session=True)
 
         def pass_on(number, _frame):
             received.append(number)

@@ -1,0 +1,115 @@
+// Writes FOLDER/NAME.vert and FOLDER/NAME.frag for every distinct program that a material can ask for, for every fixed
+// pass, and for each file that none of these uses. Fails when such a file is a pass: then this list has fallen behind.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "gl/shader_library.h"
+#include "gl/shader_source.h"
+#include "physics/material_inputs.h"
+#include "scene/error.h"
+#include "scene/material.h"
+
+namespace {
+
+using mesograin::gl::ShaderSource;
+namespace scene = mesograin::scene;
+
+class Writer {
+ public:
+  explicit Writer(std::filesystem::path folder) : folder_(std::move(folder)) {
+    std::filesystem::create_directories(folder_);
+  }
+
+  void write(const std::string& name, const ShaderSource& vertex, const ShaderSource& fragment) {
+    for (const auto& [suffix, source] : {std::pair{".vert", &vertex}, std::pair{".frag", &fragment}}) {
+      std::ofstream(folder_ / (name + suffix)) << source->text();
+      all_ += source->text();
+    }
+  }
+
+  /// The files of the shader library whose first line is in no text written.
+  std::vector<std::string> unused() const {
+    std::vector<std::string> names;
+    for (const auto& file : mesograin::gl::shader_files())
+      if (all_.find(file.text.substr(0, file.text.find('\n'))) == std::string::npos) names.emplace_back(file.path);
+    return names;
+  }
+
+ private:
+  std::filesystem::path folder_;
+  std::string all_;
+};
+
+/// One material for each combination of the choices that are made when a shader is compiled.
+std::vector<scene::Material> every_choice() {
+  std::vector<scene::Material> materials;
+  for (std::size_t model = 0; model < scene::model_names.size(); ++model)
+    for (std::size_t boundary = 0; boundary < scene::boundary_names.size(); ++boundary)
+      for (std::size_t masking = 0; masking < scene::masking_names.size(); ++masking)
+        for (std::size_t profile = 0; profile < scene::profile_names.size(); ++profile)
+          for (const double roughness : {0.0, 0.3}) {
+            scene::Material material;
+            material.model = static_cast<scene::Model>(model);
+            material.boundary = static_cast<scene::Boundary>(boundary);
+            material.masking = static_cast<scene::Masking>(masking);
+            material.profile = static_cast<scene::Profile>(profile);
+            material.roughness = roughness;
+            materials.push_back(material);
+          }
+  return materials;
+}
+
+void write_shading(Writer& writer) {
+  std::set<std::string> written;
+  for (const scene::Material& material : every_choice()) {
+    const std::string model(scene::model_names[static_cast<std::size_t>(material.model)]);
+    std::vector<std::string> defines;
+    try {
+      defines = mesograin::physics::material_inputs(material).defines;
+    } catch (const mesograin::Error&) {
+      continue;  // a choice that this model refuses
+    }
+    const std::string name = fmt::format("{}+{}", model, fmt::join(defines, "+"));
+    if (written.insert(name).second)
+      writer.write(name, ShaderSource({"passes/shade.vert"}, {}),
+                   ShaderSource({"passes/shade.frag", "models/" + model + ".glsl"}, defines));
+  }
+}
+
+void write_passes(Writer& writer) {
+  for (const std::string pass : {"accumulate", "resolve"})
+    writer.write(pass, ShaderSource({"passes/full_screen.vert"}, {}), ShaderSource({"passes/" + pass + ".frag"}, {}));
+  writer.write("light_map", ShaderSource({"passes/light_map.vert"}, {}), ShaderSource({"passes/light_map.frag"}, {}));
+}
+
+/// Each on its own, so that it is checked before any program uses it.
+void write_unused(Writer& writer) {
+  for (const std::string& path : writer.unused()) {
+    if (path.starts_with("passes/")) throw mesograin::Error("No program written here uses {}.", path);
+    writer.write(std::filesystem::path(path).stem(), ShaderSource({"passes/full_screen.vert"}, {}),
+                 ShaderSource::from_text(path, "#include \"" + path + "\"\nvoid main() {}\n", {}));
+  }
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+  try {
+    if (count != 2) throw mesograin::Error("One argument is needed, the folder to write to; got {}.", count - 1);
+    Writer writer(arguments[1]);
+    write_shading(writer);
+    write_passes(writer);
+    write_unused(writer);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return 1;
+  }
+  return 0;
+}
