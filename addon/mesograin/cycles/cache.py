@@ -1,0 +1,101 @@
+# References that were rendered once, kept in a folder of bounded size: the longest unused go first.
+"""See `Cache`."""
+
+import os
+from pathlib import Path
+
+DEFAULT_LIMIT = 2 * 1024**3
+"""Bytes."""
+
+
+def default_folder():
+    """`MESOGRAIN_CACHE`, else mesograin/references in the user's cache folder."""
+    chosen = os.environ.get("MESOGRAIN_CACHE")
+    if chosen:
+        return Path(chosen)
+    base = os.environ.get("XDG_CACHE_HOME") or os.path.join(os.path.expanduser("~"), ".cache")
+    return Path(base) / "mesograin" / "references"
+
+
+def default_limit():
+    """`MESOGRAIN_CACHE_LIMIT` (bytes), else `DEFAULT_LIMIT`. Raises ValueError with a sentence if it is no whole number."""
+    chosen = os.environ.get("MESOGRAIN_CACHE_LIMIT")
+    if not chosen:
+        return DEFAULT_LIMIT
+    if not chosen.isdigit():
+        raise ValueError(f"MESOGRAIN_CACHE_LIMIT must be a whole number of bytes; got '{chosen}'.")
+    return int(chosen)
+
+
+class Cache:
+    """A folder of EXR files named by the key of what they show. Several processes may share it.
+
+    folder: Path, made when the first file is stored. limit: bytes that all files together may take.
+    """
+
+    SUFFIX = ".exr"
+
+    def __init__(self, folder=None, limit=None):
+        self.folder = Path(folder) if folder else default_folder()
+        self.limit = default_limit() if limit is None else limit
+
+    def path(self, key):
+        """Where the file of this key is or would be."""
+        return self.folder / (key + self.SUFFIX)
+
+    def find(self, key):
+        """The path of a stored file, marked as just used; None if there is none."""
+        path = self.path(key)
+        try:
+            os.utime(path)
+        except OSError:
+            return None
+        return path
+
+    def store(self, key, write):
+        """Has `write(path)` put a file there (by atomic rename), then trims. Raises OSError where the folder cannot be made."""
+        self.folder.mkdir(parents=True, exist_ok=True)
+        path = self.path(key)
+        write(path)
+        self.trim()
+        return path
+
+    def forget(self, key):
+        """Removes a file, if it is there: one that turned out unreadable."""
+        self.path(key).unlink(missing_ok=True)
+
+    def files(self):
+        """[(time of last use, bytes, path)], longest unused first; files that vanish meanwhile are left out."""
+        found = []
+        if self.folder.is_dir():
+            for path in self.folder.glob("*" + self.SUFFIX):
+                try:
+                    status = path.stat()
+                except OSError:
+                    continue
+                found.append((status.st_mtime, status.st_size, path))
+        return sorted(found)
+
+    def size(self):
+        """Bytes in use."""
+        return sum(size for _, size, _ in self.files())
+
+    def trim(self):
+        """Removes the longest unused files until the rest fit the limit; returns how many. The newest file always stays."""
+        files = self.files()
+        excess = sum(size for _, size, _ in files) - self.limit
+        removed = 0
+        for _, size, path in files[:-1]:
+            if excess <= 0:
+                break
+            path.unlink(missing_ok=True)
+            excess -= size
+            removed += 1
+        return removed
+
+    def clear(self):
+        """Removes every file; returns (how many, bytes)."""
+        files = self.files()
+        for _, _, path in files:
+            path.unlink(missing_ok=True)
+        return len(files), sum(size for _, size, _ in files)

@@ -1,0 +1,67 @@
+# Which kinds of reference there are, which models each one answers, and which boundary makes both sides mean the same.
+"""The table of reference kinds. Adding one is adding a row here and a recipe in `recipes`."""
+
+from dataclasses import dataclass
+
+TRANSLUCENT_MODELS = ("model_1", "model_2", "model_3")
+
+
+@dataclass(frozen=True)
+class NodeFeatures:
+    """What this Blender's shader nodes can do, found by looking at the nodes themselves (`nodes.features`)."""
+
+    glossy_type: str  # the node type that is plain GGX reflection
+    glossy_masking: str  # `separable` or `correlated`: the Smith term of that node
+    subsurface_method: str  # the random walk whose mean free path is the radius / 4 pi
+    subsurface_refracts: bool  # the walk starts along the view ray refracted by IOR, not on a cosine lobe
+    has_phase_choice: bool  # Volume Scatter offers several phase functions
+
+
+@dataclass(frozen=True)
+class Kind:
+    """One kind of reference.
+
+    name: as on the command line and in results. title: as in the report. models: our models that it answers.
+    bounces: Cycles' limit on path length. samples: per pixel and seed by default. coverage_pass: its alpha is not the
+    coverage, so the coverage is rendered apart. cost: guessed seconds for a million samples on one core, for the first
+    estimate of the time left.
+    """
+
+    name: str
+    title: str
+    models: tuple
+    bounces: int
+    samples: int
+    coverage_pass: bool
+    cost: float
+
+
+# The opaque kinds see direct light alone, as the models that they answer do; inside a medium everything counts.
+KINDS = {
+    kind.name: kind
+    for kind in (
+        Kind("diffuse", "Cycles Diffuse BSDF", ("lambert",), 0, 64, False, 0.5),
+        Kind("glossy", "Cycles Glossy BSDF, GGX", ("conductor",), 0, 64, False, 0.5),
+        Kind("volume_index_matched", "Cycles volume, index-matched", TRANSLUCENT_MODELS, 1024, 128, True, 4.0),
+        Kind("subsurface", "Cycles Subsurface Scattering, random walk", TRANSLUCENT_MODELS, 1024, 128, False, 4.0),
+    )
+}
+
+COVERAGE = Kind("coverage", "Coverage", (), 0, 64, False, 0.3)
+"""Not a reference of its own: how much of each pixel the geometry covers, for kinds whose alpha is not that."""
+
+
+def default_kind(model):
+    """Name of the reference that answers this model when none is asked for."""
+    return next(kind.name for kind in KINDS.values() if model in kind.models)
+
+
+def our_side(kind, features):
+    """The Mesograin parameters that make our side solve what this kind of reference solves, as {name: value}."""
+    if kind == "glossy":
+        return {"masking": features.glossy_masking}
+    if kind == "volume_index_matched":
+        return {"boundary": "index_matched"}
+    if kind == "subsurface":
+        return {"boundary": "lambert_refracted" if features.subsurface_refracts else "lambert_lambert"}
+    return {}

@@ -1,0 +1,98 @@
+# What a material asks for that Cycles cannot render like for like, said before anything is rendered.
+"""See `limits`."""
+
+from dataclasses import dataclass
+
+from . import inversion
+
+MIRROR_ALPHA = 1e-3
+"""Cycles makes a mirror of a slightly smaller GGX alpha (alpha squared under 1e-7), and a mirror shows no delta sun."""
+
+PHASE_LIMIT = 0.999
+"""Cycles clamps |g| of a volume to this."""
+
+IOR_RANGE = (1.01, 3.8)
+"""Cycles clamps the IOR of the Subsurface Scattering node to this."""
+
+LOSSY_ALBEDO = 0.99
+"""Above this albedo a thick random walk notably outlives Cycles' 256 bounces."""
+
+
+@dataclass(frozen=True)
+class Limit:
+    """One sentence; `fatal` if a render would not be a reference for this material at all."""
+
+    sentence: str
+    fatal: bool
+
+
+def limits(values, kind):
+    """What Cycles cannot express of `values` (MaterialValues) in this kind of reference: a list of Limit, often empty."""
+    if kind == "glossy":
+        return _glossy(values)
+    if kind == "volume_index_matched":
+        return _volume(values)
+    if kind == "subsurface":
+        return _subsurface(values)
+    return []
+
+
+def _glossy(values):
+    if values.roughness < MIRROR_ALPHA:
+        return [
+            Limit(
+                f"Cycles renders a GGX roughness (alpha) under {MIRROR_ALPHA:g} as a mirror, in which a sun cannot be seen; "
+                f"got {values.roughness:g}: raise the roughness.",
+                True,
+            )
+        ]
+    return []
+
+
+def _volume(values):
+    found = []
+    if max(values.sigma_t) <= 0.0:
+        found.append(Limit("A medium without absorption and scattering is invisible: raise sigma_a or sigma_s.", True))
+    if abs(values.g) > PHASE_LIMIT:
+        found.append(
+            Limit(f"Cycles limits the g of a volume to {PHASE_LIMIT:g}; got {values.g:g}: the reference uses the limit.", False)
+        )
+    return found
+
+
+def _subsurface(values):
+    found = []
+    if not 0.0 <= values.g <= inversion.ANISOTROPY_LIMIT:
+        found.append(
+            Limit(
+                f"Cycles' Subsurface Scattering allows g between 0 and {inversion.ANISOTROPY_LIMIT:g}; got {values.g:g}: "
+                "choose the reference volume_index_matched.",
+                True,
+            )
+        )
+    if min(values.sigma_t) <= 0.0:
+        found.append(
+            Limit(
+                "Cycles' Subsurface Scattering needs a positive sigma_a + sigma_s in every channel: "
+                "choose the reference volume_index_matched.",
+                True,
+            )
+        )
+    low, high = IOR_RANGE
+    if not low <= values.eta <= high:
+        found.append(
+            Limit(
+                f"Cycles' Subsurface Scattering limits the index of refraction to {low:g} to {high:g}; got {values.eta:g}: "
+                "the reference uses the limit.",
+                False,
+            )
+        )
+    largest = max(values.albedo)
+    if largest > LOSSY_ALBEDO:
+        found.append(
+            Limit(
+                f"Cycles' random walk ends after 256 bounces, which loses up to 8 % of the light at an albedo of {largest:.6g}.",
+                False,
+            )
+        )
+    return found

@@ -1,0 +1,98 @@
+# Builds Cycles materials from recipes, every socket set explicitly, and tells what this Blender's nodes can do.
+"""The only room that touches Cycles' shader nodes; differences between Blenders are found by looking at the nodes."""
+
+import functools
+
+import bpy
+
+from . import kinds, recipes
+from .values import MaterialValues
+
+
+def build_material(material, reference, millimetres_per_unit=1.0):
+    """A new Cycles material that means, for this kind of reference, what `material.mesograin` means.
+
+    material: bpy.types.Material with the add-on's properties. reference: a name in `kinds.KINDS`.
+    Returns a new bpy.types.Material, which belongs to the caller.
+    """
+    values = MaterialValues.from_properties(material.mesograin, millimetres_per_unit)
+    return build(f"{material.name} ({reference})", recipes.recipe(reference, values, features()))
+
+
+def build(name, recipe):
+    """A new material from a recipe. Raises RuntimeError if this Blender's nodes have a socket that the recipe leaves open."""
+    material = bpy.data.materials.new(name)
+    try:
+        material.use_nodes = True
+        tree = material.node_tree
+        tree.nodes.clear()
+        nodes = {label: _build_node(tree, label, description) for label, description in recipe["nodes"].items()}
+        for source, output, target, socket in recipe["links"]:
+            tree.links.new(nodes[source].outputs[output], nodes[target].inputs[socket])
+        for label, node in nodes.items():
+            _check_sockets(node, recipe["nodes"][label])
+        for name_, value in recipe["material"].items():
+            setattr(material.cycles, name_, value)
+    except BaseException:
+        bpy.data.materials.remove(material)
+        raise
+    return material
+
+
+def _build_node(tree, label, description):
+    node = tree.nodes.new(description["type"])
+    node.name = node.label = label
+    for name, value in description["properties"].items():
+        setattr(node, name, value)
+    for name, value in description["inputs"].items():
+        _set(node.inputs[name], value)
+    for name, value in description["optional"].items():
+        if name in node.inputs:
+            _set(node.inputs[name], value)
+    return node
+
+
+def _set(socket, value):
+    """A colour socket has an alpha that no shader reads."""
+    socket.default_value = (*value, 1.0) if socket.type == "RGBA" else value
+
+
+def _check_sockets(node, description):
+    """Sockets without a value of their own (normal, tangent, an absent shader) and disabled ones need none."""
+    known = {**description["inputs"], **description["optional"]}
+    for socket in node.inputs:
+        valueless = socket.hide_value or socket.type == "SHADER" or not socket.enabled
+        if not (valueless or socket.is_linked or socket.name in known):
+            raise RuntimeError(
+                f"Blender {bpy.app.version_string} has a socket '{socket.name}' on {node.bl_idname} that Mesograin does not "
+                "know: the reference would depend on its default."
+            )
+
+
+@functools.lru_cache(maxsize=1)
+def features():
+    """What this Blender's nodes can do: kinds.NodeFeatures. Looks at nodes in a tree that it removes again."""
+    tree = bpy.data.node_groups.new("Mesograin probe", "ShaderNodeTree")
+    try:
+        glossy_type, merged = _glossy_node(tree)
+        subsurface = tree.nodes.new("ShaderNodeSubsurfaceScattering")
+        methods = {item.identifier for item in subsurface.bl_rna.properties["falloff"].enum_items}
+        fixed = "RANDOM_WALK_FIXED_RADIUS"
+        return kinds.NodeFeatures(
+            glossy_type=glossy_type,
+            # The two glossy nodes became one when Cycles' microfacet code went over to height-correlated masking.
+            glossy_masking="correlated" if merged else "separable",
+            subsurface_method=fixed if fixed in methods else "RANDOM_WALK",
+            subsurface_refracts="Roughness" in subsurface.inputs,
+            has_phase_choice=hasattr(tree.nodes.new("ShaderNodeVolumeScatter"), "phase"),
+        )
+    finally:
+        bpy.data.node_groups.remove(tree)
+
+
+def _glossy_node(tree):
+    """(type, whether the anisotropic and the plain glossy node are one)."""
+    anisotropic = tree.nodes.new("ShaderNodeBsdfAnisotropic")
+    if anisotropic.bl_label == "Glossy BSDF":
+        return "ShaderNodeBsdfAnisotropic", True
+    return "ShaderNodeBsdfGlossy", False

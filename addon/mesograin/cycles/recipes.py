@@ -1,0 +1,121 @@
+# The Cycles node tree of each kind of reference, as plain data: hashed for the cache, kept with the render, built by `nodes`.
+"""A recipe is {"nodes": {name: {"type", "properties", "inputs"}}, "links": [[from, from socket, to, to socket]],
+"material": {property of `material.cycles`}}.
+
+`inputs` maps socket names to values. Names in `optional` are sockets that only some Blenders have; they are set where they are.
+Tuples are linear RGB.
+"""
+
+from . import inversion, limits
+
+OUTPUT = "Output"
+
+
+def recipe(kind, values, features):
+    """The recipe for a kind of reference; see the module. `values`: MaterialValues. `features`: kinds.NodeFeatures."""
+    return _RECIPES[kind](values, features)
+
+
+def _recipe(nodes, surface=None, volume=(), material=None):
+    """Puts the output node and its links round `nodes`; `volume` names one or two shaders, which are added."""
+    nodes = dict(nodes)
+    nodes[OUTPUT] = {"type": "ShaderNodeOutputMaterial", "properties": {"target": "ALL"}, "inputs": {}, "optional": {}}
+    links = []
+    if surface:
+        links.append([surface[0], surface[1], OUTPUT, "Surface"])
+    if volume:
+        nodes["Sum"] = {"type": "ShaderNodeAddShader", "properties": {}, "inputs": {}, "optional": {}}
+        links += [[name, "Volume", "Sum", index] for index, name in enumerate(volume)]
+        links.append(["Sum", "Shader", OUTPUT, "Volume"])
+    return {"nodes": nodes, "links": links, "material": material or {}}
+
+
+def _diffuse(values, features):
+    node = {
+        "type": "ShaderNodeBsdfDiffuse",
+        "properties": {},
+        "inputs": {"Color": values.reflectance, "Roughness": 0.0},
+        "optional": {},
+    }
+    return _recipe({"Diffuse": node}, surface=("Diffuse", "BSDF"))
+
+
+def _glossy(values, features):
+    # Cycles squares the node's roughness to get GGX's alpha.
+    node = {
+        "type": features.glossy_type,
+        "properties": {"distribution": "GGX"},
+        "inputs": {"Color": values.reflectance, "Roughness": values.roughness**0.5},
+        "optional": {"Anisotropy": 0.0, "Rotation": 0.0},
+    }
+    return _recipe({"Glossy": node}, surface=("Glossy", "BSDF"))
+
+
+def _coefficients(sigma):
+    """(density, colour) with density * colour = sigma in every channel, exactly so in the brightest one."""
+    density = max(sigma)
+    return density, tuple(value / density for value in sigma) if density > 0.0 else (1.0, 1.0, 1.0)
+
+
+def _volume_index_matched(values, features):
+    # sigma_s = density * colour of the scatter node; sigma_a = density * (1 - colour) of the absorption node.
+    scatter_density, scatter_colour = _coefficients(values.sigma_s)
+    absorption_density, absorption_colour = _coefficients(values.sigma_a)
+    g = min(max(values.g, -limits.PHASE_LIMIT), limits.PHASE_LIMIT)
+    scatter = {
+        "type": "ShaderNodeVolumeScatter",
+        "properties": {"phase": "HENYEY_GREENSTEIN"} if features.has_phase_choice else {},
+        "inputs": {"Color": scatter_colour, "Density": scatter_density, "Anisotropy": g},
+        # Parameters of the phase functions that are not chosen.
+        "optional": {"IOR": 1.33, "Backscatter": 0.1, "Alpha": 0.5, "Diameter": 20.0},
+    }
+    absorption = {
+        "type": "ShaderNodeVolumeAbsorption",
+        "properties": {},
+        "inputs": {"Color": tuple(1.0 - value for value in absorption_colour), "Density": absorption_density},
+        "optional": {},
+    }
+    return _recipe(
+        {"Scatter": scatter, "Absorption": absorption},
+        volume=("Scatter", "Absorption"),
+        material={"homogeneous_volume": True, "volume_sampling": "DISTANCE", "volume_interpolation": "LINEAR"},
+    )
+
+
+def _subsurface(values, features):
+    colour = tuple(inversion.colour_of_albedo(albedo, values.g) for albedo in values.albedo)
+    radius = tuple(inversion.radius_of_extinction(sigma_t, values.g) for sigma_t in values.sigma_t)
+    low, high = limits.IOR_RANGE
+    node = {
+        "type": "ShaderNodeSubsurfaceScattering",
+        "properties": {"falloff": features.subsurface_method},
+        "inputs": {
+            "Color": colour,
+            "Scale": 1.0,
+            "Radius": radius,
+            "IOR": min(max(values.eta, low), high),
+            "Anisotropy": values.g,
+        },
+        # The node takes the root of GGX's alpha, as the glossy one does.
+        "optional": {"Roughness": values.roughness**0.5},
+    }
+    return _recipe({"Subsurface": node}, surface=("Subsurface", "BSSRDF"))
+
+
+def _coverage(values, features):
+    node = {
+        "type": "ShaderNodeEmission",
+        "properties": {},
+        "inputs": {"Color": (1.0, 1.0, 1.0), "Strength": 1.0},
+        "optional": {},
+    }
+    return _recipe({"Emission": node}, surface=("Emission", "Emission"))
+
+
+_RECIPES = {
+    "diffuse": _diffuse,
+    "glossy": _glossy,
+    "volume_index_matched": _volume_index_matched,
+    "subsurface": _subsurface,
+    "coverage": _coverage,
+}

@@ -1,0 +1,133 @@
+# A scene of its own for each reference, copied from the evaluated one, so that the user's scene is never touched.
+"""See `Stage`."""
+
+import bpy
+
+from . import settings
+
+SHAPES = frozenset({"MESH", "CURVE", "SURFACE", "META", "FONT"})
+"""Object types that have a surface."""
+
+
+class StageError(Exception):
+    """The scene cannot be rendered; one sentence."""
+
+
+class Stage:
+    """A context manager that holds a new scene: meshes, sun lights and camera of a depsgraph, a black world, nothing else.
+
+    depsgraph: evaluated; copied from, never kept. description: `settings.settings(...)`.
+    build_material: called once for each bpy.types.Material in use (None for faces without one), returns the new Cycles material.
+    Everything made here is removed on exit, whatever happened inside.
+    """
+
+    def __init__(self, depsgraph, description, build_material):
+        self._depsgraph = depsgraph
+        self._description = description
+        self._build_material = build_material
+        self._made = []
+        self._materials = {}
+        self._meshes = {}
+
+    def __enter__(self):
+        try:
+            self.scene = self._own(bpy.data.scenes.new("Mesograin reference"))
+            self.scene.world = self._own(bpy.data.worlds.new("Mesograin black"))
+            self.scene.world.use_nodes = False
+            self.scene.world.color = (0.0, 0.0, 0.0)
+            settings.apply(self.scene, self._description)
+            self._copy_camera()
+            self._copy_instances()
+        except BaseException:
+            self._remove()
+            raise
+        return self
+
+    def __exit__(self, *_):
+        self._remove()
+
+    def _own(self, datablock):
+        self._made.append(datablock)
+        return datablock
+
+    def _remove(self):
+        bpy.data.batch_remove(reversed(self._made))
+        self._made.clear()
+
+    def _add(self, name, data, matrix):
+        made = self._own(bpy.data.objects.new(name, data))
+        made.matrix_world = matrix
+        self.scene.collection.objects.link(made)
+        return made
+
+    def _copy_camera(self):
+        source = self._depsgraph.scene_eval.camera
+        if source is None:
+            raise StageError("The scene has no camera: add one, or choose one in the scene's properties.")
+        camera = self._own(bpy.data.cameras.new("Mesograin camera"))
+        for name in CAMERA_PROPERTIES:
+            setattr(camera, name, getattr(source.data, name))
+        self.scene.camera = self._add("Mesograin camera", camera, source.matrix_world)
+
+    def _copy_instances(self):
+        for instance in self._depsgraph.object_instances:
+            source = instance.object
+            if not instance.show_self:
+                continue
+            if source.type == "LIGHT" and source.data.type == "SUN":
+                self._copy_sun(source.data, instance.matrix_world)
+            elif source.type in SHAPES:
+                self._copy_shape(source, instance.matrix_world)
+        if not self._meshes:
+            raise StageError("The scene has no visible mesh: add a grain, or switch its rendering on.")
+        if not any(made.type == "LIGHT" for made in self.scene.collection.objects):
+            raise StageError("The scene has no visible sun light: add one.")
+
+    def _copy_sun(self, source, matrix):
+        light = self._own(bpy.data.lights.new("Mesograin sun", "SUN"))
+        light.color = source.color
+        light.energy = source.energy
+        light.angle = source.angle
+        light.cycles.max_bounces = 1024
+        self._add("Mesograin sun", light, matrix)
+
+    def _copy_shape(self, source, matrix):
+        materials = [slot.material.original if slot.material else None for slot in source.material_slots] or [None]
+        # A temporary instance object has a pointer of its own, its geometry has not.
+        key = (source.original.data.as_pointer() if source.data is None else source.data.as_pointer(), tuple(
+            material.name_full if material else None for material in materials))
+        mesh = self._meshes.get(key)
+        if mesh is None:
+            mesh = bpy.data.meshes.new_from_object(source, preserve_all_data_layers=True, depsgraph=self._depsgraph)
+            if mesh is None:
+                return
+            self._own(mesh)
+            self._meshes[key] = mesh
+            mesh.materials.clear()
+            for material in materials:
+                mesh.materials.append(self._material(material))
+        made = self._add("Mesograin grain", mesh, matrix)
+        # The smooth normals are ours and theirs; the facets' shadow on themselves is nobody's.
+        made.cycles.shadow_terminator_offset = 0.0
+        made.cycles.shadow_terminator_geometry_offset = 0.1
+
+    def _material(self, source):
+        key = source.name_full if source else None
+        if key not in self._materials:
+            self._materials[key] = self._own(self._build_material(source))
+        return self._materials[key]
+
+
+CAMERA_PROPERTIES = (
+    "type",
+    "lens",
+    "sensor_width",
+    "sensor_height",
+    "sensor_fit",
+    "shift_x",
+    "shift_y",
+    "clip_start",
+    "clip_end",
+    "ortho_scale",
+)
+
