@@ -3,11 +3,8 @@
 
 import bpy
 
+from .. import meshes
 from . import settings
-
-SHAPES = frozenset({"MESH", "CURVE", "SURFACE", "META", "FONT"})
-"""Object types that have a surface."""
-
 
 class StageError(Exception):
     """The scene cannot be rendered; one sentence."""
@@ -76,7 +73,7 @@ class Stage:
                 continue
             if source.type == "LIGHT" and source.data.type == "SUN":
                 self._copy_sun(source.data, instance.matrix_world)
-            elif source.type in SHAPES:
+            elif source.type in meshes.DRAWABLE_TYPES:
                 self._copy_shape(source, instance.matrix_world)
         if not self._meshes:
             raise StageError("The scene has no visible mesh: add a grain, or switch its rendering on.")
@@ -93,9 +90,8 @@ class Stage:
 
     def _copy_shape(self, source, matrix):
         materials = [slot.material.original if slot.material else None for slot in source.material_slots] or [None]
-        # A temporary instance object has a pointer of its own, its geometry has not.
-        key = (source.original.data.as_pointer() if source.data is None else source.data.as_pointer(), tuple(
-            material.name_full if material else None for material in materials))
+        # The address of the geometry, because an instance's object may be a passing one.
+        key = (source.data.as_pointer(), tuple(material and material.name_full for material in materials))
         mesh = self._meshes.get(key)
         if mesh is None:
             mesh = bpy.data.meshes.new_from_object(source, preserve_all_data_layers=True, depsgraph=self._depsgraph)

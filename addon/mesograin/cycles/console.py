@@ -1,0 +1,46 @@
+# What Cycles prints while it renders, taken off the terminal and read for its progress.
+"""See `Console`."""
+
+import collections
+import os
+import re
+import sys
+import threading
+
+_SAMPLE = re.compile(rb"Sample (\d+)/(\d+)")
+
+
+class Console:
+    """A context manager that diverts the process's standard output and calls `on_progress(fraction)` from a thread.
+
+    `lines`: the last lines diverted, for a message when something failed.
+    """
+
+    def __init__(self, on_progress=None):
+        self._on_progress = on_progress
+        self.lines = collections.deque(maxlen=20)
+
+    def __enter__(self):
+        sys.stdout.flush()
+        self._saved = os.dup(1)
+        reading, writing = os.pipe()
+        os.dup2(writing, 1)
+        os.close(writing)
+        self._thread = threading.Thread(target=self._read, args=(reading,), daemon=True)
+        self._thread.start()
+        return self
+
+    def __exit__(self, *_):
+        sys.stdout.flush()
+        os.dup2(self._saved, 1)  # closes the pipe's last writing end
+        os.close(self._saved)
+        self._thread.join()
+
+    def _read(self, reading):
+        with os.fdopen(reading, "rb") as pipe:
+            for line in pipe:
+                found = _SAMPLE.search(line)
+                if found and self._on_progress:
+                    done, total = (int(number) for number in found.groups())
+                    self._on_progress(done / max(total, 1))
+                self.lines.append(line.decode("utf-8", "replace").rstrip())
