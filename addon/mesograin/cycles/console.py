@@ -16,6 +16,12 @@ class Console:
     `lines`: the last lines diverted, for a message when something failed.
     """
 
+    gate = threading.RLock()
+    """Held while a diversion begins or ends: who holds it can rely on `active`."""
+
+    active = False
+    """Whether Cycles is rendering: the main thread is out of Python's reach and writes nothing but temporary files."""
+
     def __init__(self, on_progress=None):
         self._on_progress = on_progress
         self.lines = collections.deque(maxlen=20)
@@ -28,9 +34,13 @@ class Console:
         os.close(writing)
         self._thread = threading.Thread(target=self._read, args=(reading,), daemon=True)
         self._thread.start()
+        with Console.gate:
+            Console.active = True
         return self
 
     def __exit__(self, *_):
+        with Console.gate:
+            Console.active = False
         sys.stdout.flush()
         os.dup2(self._saved, 1)  # closes the pipe's last writing end
         os.close(self._saved)

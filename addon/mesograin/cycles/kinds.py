@@ -40,9 +40,9 @@ class Kind:
 KINDS = {
     kind.name: kind
     for kind in (
-        Kind("diffuse", "Cycles Diffuse BSDF", ("lambert",), 0, 64, False, 0.5),
-        Kind("glossy", "Cycles Glossy BSDF, GGX", ("conductor",), 0, 64, False, 0.5),
-        Kind("volume_index_matched", "Cycles volume, index-matched", TRANSLUCENT_MODELS, 1024, 128, True, 4.0),
+        Kind("diffuse", "Cycles Diffuse BSDF", ("lambert",), 0, 64, False, 0.6),
+        Kind("glossy", "Cycles Glossy BSDF, GGX", ("conductor",), 0, 64, False, 0.6),
+        Kind("volume_index_matched", "Cycles volume, index-matched", TRANSLUCENT_MODELS, 1024, 128, True, 3.0),
         Kind("subsurface", "Cycles Subsurface Scattering, random walk", TRANSLUCENT_MODELS, 1024, 128, False, 4.0),
     )
 }

@@ -27,7 +27,7 @@ class Limit:
 
 
 def limits(values, kind):
-    """What Cycles cannot express of `values` (MaterialValues) in this kind of reference: a list of Limit, often empty."""
+    """What Cycles cannot express of `values` (GrainValues) in this kind of reference: a list of Limit, often empty."""
     if kind == "glossy":
         return _glossy(values)
     if kind == "volume_index_matched":

@@ -5,8 +5,9 @@ import functools
 
 import bpy
 
+from .. import export
 from . import kinds, recipes
-from .values import MaterialValues
+from .grain_values import GrainValues
 
 
 def build_material(material, reference, millimetres_per_unit=1.0):
@@ -15,7 +16,7 @@ def build_material(material, reference, millimetres_per_unit=1.0):
     material: bpy.types.Material with the add-on's properties. reference: a name in `kinds.KINDS`.
     Returns a new bpy.types.Material, which belongs to the caller.
     """
-    values = MaterialValues.from_properties(material.mesograin, millimetres_per_unit)
+    values = GrainValues.from_parameters(dict(export.material_values(material, millimetres_per_unit).values))
     return build(f"{material.name} ({reference})", recipes.recipe(reference, values, features()))
 
 

@@ -12,7 +12,7 @@ OUTPUT = "Output"
 
 
 def recipe(kind, values, features):
-    """The recipe for a kind of reference; see the module. `values`: MaterialValues. `features`: kinds.NodeFeatures."""
+    """The recipe for a kind of reference; see the module. `values`: GrainValues. `features`: kinds.NodeFeatures."""
     return _RECIPES[kind](values, features)
 
 

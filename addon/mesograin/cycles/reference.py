@@ -10,13 +10,13 @@ from pathlib import Path
 import bpy
 import numpy
 
-from .. import native_module
+from .. import export, native_module
 from . import fingerprint, kinds, nodes, recipes, settings
 from .cache import Cache
 from .console import Console
+from .grain_values import GrainValues
 from .limits import limits
 from .stage import Stage
-from .values import MaterialValues
 
 SEEDS = (1, 2)
 """Two independent references: their difference is the noise, their mean the reference."""
@@ -47,27 +47,30 @@ class Reference:
         return numpy.mean(self.images, axis=0, dtype=numpy.float64).astype(numpy.float32)
 
 
-def render(depsgraph, kind, size, samples=None, seeds=SEEDS, cache=None, on_progress=None):
+def render(depsgraph, kind, size, samples=None, seeds=SEEDS, cache=None, overrides=None, on_progress=None):
     """Renders what `depsgraph` shows with the Cycles materials of a kind of reference; the user's scene stays as it is.
 
     depsgraph: evaluated, of the scene with its `mesograin` properties. kind: a name in `kinds.KINDS`.
     size: (width, height) in pixels. samples: per pixel and seed; the kind's default if None.
-    cache: a `Cache`, or None for none. on_progress: called with the fraction done, from any thread.
+    cache: a `Cache`, or None for none. overrides: {parameter: value} for every material, coefficients per scene unit.
+    on_progress: called with the fraction done, from any thread.
     Raises ReferenceError, StageError or native.Error with one sentence.
     """
     kind = kinds.KINDS[kind]
     samples = samples or kind.samples
-    notes = _check(depsgraph, kind)
+    overrides = overrides or {}
+    notes = _check(depsgraph, kind, overrides)
     steps = len(seeds) + kind.coverage_pass
     tell = on_progress or (lambda fraction: None)
 
     shots = []
     for step, seed in enumerate(seeds):
-        shots.append(_shot(depsgraph, kind, size, samples, seed, cache, lambda done, at=step: tell((at + done) / steps)))
+        on_shot = lambda done, at=step: tell((at + done) / steps)
+        shots.append(_shot(depsgraph, kind, size, samples, seed, cache, overrides, on_shot))
     images = [shot.pixels for shot in shots]
     if kind.coverage_pass:
         covering = _shot(
-            depsgraph, kinds.COVERAGE, size, kinds.COVERAGE.samples, 0, cache, lambda done: tell((steps - 1 + done) / steps)
+            depsgraph, kinds.COVERAGE, size, kinds.COVERAGE.samples, 0, cache, overrides, on_shot
         )
         for image in images:
             image[..., 3] = covering.pixels[..., 3]
@@ -87,14 +90,13 @@ class _Shot:
     cached: bool
 
 
-def _values(depsgraph, material):
-    """MaterialValues of a bpy.types.Material, or of the default one for faces that have none."""
-    if material is None:
-        return MaterialValues()
-    return MaterialValues.from_properties(material.mesograin, depsgraph.scene.mesograin.millimetres_per_unit)
+def _values(depsgraph, overrides, material):
+    """GrainValues of a bpy.types.Material, or of the default grain for faces that have none (None)."""
+    parameters = dict(export.material_values(material, depsgraph.scene.mesograin.millimetres_per_unit).values)
+    return GrainValues.from_parameters({**parameters, **overrides})
 
 
-def _check(depsgraph, kind):
+def _check(depsgraph, kind, overrides):
     """Raises ReferenceError for the first material that Cycles cannot render; returns what it can only approximate."""
     materials = {}
     for instance in depsgraph.object_instances:
@@ -103,7 +105,7 @@ def _check(depsgraph, kind):
                 materials[slot.material.name] = slot.material.original
     notes = []
     for name, material in sorted(materials.items()):
-        for limit in limits(_values(depsgraph, material), kind.name):
+        for limit in limits(_values(depsgraph, overrides, material), kind.name):
             sentence = f"Material '{name}': {limit.sentence}"
             if limit.fatal:
                 raise ReferenceError(sentence)
@@ -111,7 +113,7 @@ def _check(depsgraph, kind):
     return tuple(notes)
 
 
-def _shot(depsgraph, kind, size, samples, seed, cache, on_progress):
+def _shot(depsgraph, kind, size, samples, seed, cache, overrides, on_progress):
     """One image of one seed, from the cache or rendered into it."""
     native = native_module.get()
     source = depsgraph.scene.render
@@ -119,7 +121,7 @@ def _shot(depsgraph, kind, size, samples, seed, cache, on_progress):
     used = {}
 
     def build(material):
-        recipe = recipes.recipe(kind.name, _values(depsgraph, material), nodes.features())
+        recipe = recipes.recipe(kind.name, _values(depsgraph, overrides, material), nodes.features())
         made = nodes.build("Mesograin reference", recipe)
         used[made.name] = recipe
         return made

@@ -1,11 +1,11 @@
 # A grain's parameters as plain numbers per scene unit, so that what Cycles is told can be worked out without Blender.
-"""See `MaterialValues`."""
+"""See `GrainValues`."""
 
 from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
-class MaterialValues:
+class GrainValues:
     """A material in the units of the scene.
 
     reflectance: linear RGB in [0, 1]: Lambert's albedo, the conductor's Fresnel reflectance.
@@ -21,16 +21,15 @@ class MaterialValues:
     roughness: float = 0.0
 
     @classmethod
-    def from_properties(cls, properties, millimetres_per_unit=1.0):
-        """Reads a property group of the add-on, whose coefficients are per millimetre."""
-        factor = properties.scale * millimetres_per_unit
+    def from_parameters(cls, parameters):
+        """From {name: value} with coefficients per scene unit and a `scale` that multiplies them; other names are passed over."""
         return cls(
-            reflectance=tuple(properties.reflectance),
-            sigma_a=tuple(factor * value for value in properties.sigma_a),
-            sigma_s=tuple(factor * value for value in properties.sigma_s),
-            g=properties.g,
-            eta=properties.eta,
-            roughness=properties.roughness,
+            reflectance=tuple(parameters["reflectance"]),
+            sigma_a=tuple(parameters["scale"] * value for value in parameters["sigma_a"]),
+            sigma_s=tuple(parameters["scale"] * value for value in parameters["sigma_s"]),
+            g=parameters["g"],
+            eta=parameters["eta"],
+            roughness=parameters["roughness"],
         )
 
     @property

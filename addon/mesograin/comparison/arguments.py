@@ -1,0 +1,115 @@
+# The command line of `compare`, readable without Blender.
+"""See `parse`."""
+
+import argparse
+import re
+from pathlib import Path
+
+MODELS = ("lambert", "conductor", "model_1", "model_2", "model_3")
+REFERENCES = ("diffuse", "glossy", "volume_index_matched", "subsurface")
+DEFAULT_MODELS = ("lambert", "conductor", "model_1")
+SETTABLE = {
+    "reflectance": 3,
+    "sigma_a": 3,
+    "sigma_s": 3,
+    "g": 1,
+    "eta": 1,
+    "roughness": 1,
+    "scale": 1,
+    "profile": 0,
+}
+"""Parameters that --set may change, and how many numbers each takes; 0 for a word."""
+
+
+class Parser(argparse.ArgumentParser):
+    """Says what is wrong in one sentence."""
+
+    def error(self, message):
+        self.exit(2, f"compare: {message}; see --help.\n")
+
+
+def build():
+    """The parser, for --help without Blender."""
+    parser = Parser(
+        prog="mesograin compare",
+        usage="mesograin compare [SCENE.blend] [options]",
+        description="Renders every model and the Cycles reference that means the same, and writes pictures, numbers and a report.",
+        epilog="Exit codes: 0 all compared, 1 a case failed (the others are written), 2 bad arguments or scene, "
+        "3 the output folder cannot be written, 130 interrupted. A second run finds its references in the cache.",
+    )
+    parser.add_argument("--models", nargs="+", choices=MODELS, default=DEFAULT_MODELS, metavar="MODEL",
+                        help=f"models to compare, of {', '.join(MODELS)} (default: {' '.join(DEFAULT_MODELS)})")
+    parser.add_argument("--references", nargs="+", choices=REFERENCES, default=None, metavar="KIND",
+                        help=f"kinds of reference, of {', '.join(REFERENCES)}; each model is compared with those that answer it "
+                        "(default: diffuse for lambert, glossy for conductor, volume_index_matched for the others)")
+    parser.add_argument("--out", type=Path, default=Path("comparison"), metavar="DIR",
+                        help="folder for results.json, results.csv, report.html and the pictures (default: comparison)")
+    parser.add_argument("--size", type=_size, default=None, metavar="WxH",
+                        help="picture size in pixels (default: the scene's)")
+    parser.add_argument("--samples", type=_positive, default=64, metavar="N",
+                        help="samples a pixel on our side (default: 64)")
+    parser.add_argument("--reference-samples", type=_positive, default=None, metavar="N",
+                        help="Cycles samples a pixel for each of the two seeds (default: 64 for surfaces, 128 for volumes)")
+    parser.add_argument("--set", action="append", type=_setting, default=[], dest="settings", metavar="NAME=VALUE",
+                        help="a material parameter for every material, on both sides: "
+                        f"{', '.join(SETTABLE)}; RGB as one number or three with commas; may be repeated")
+    parser.add_argument("--frames", type=_positive, default=9, metavar="N",
+                        help="frames timed for frame_ms (default: 9)")
+    parser.add_argument("--cache", type=Path, default=None, metavar="DIR",
+                        help="folder of rendered references (default: MESOGRAIN_CACHE, or mesograin/references in the user's cache)")
+    parser.add_argument("--cache-limit", type=_bytes, default=None, metavar="SIZE",
+                        help="bytes that it may take, with an optional K, M or G (default: MESOGRAIN_CACHE_LIMIT, or 2G)")
+    parser.add_argument("--clear-cache", action="store_true", help="empty the reference cache and do nothing else")
+    parser.add_argument("--no-report", action="store_true", help="write no report.html")
+    return parser
+
+
+def parse(words):
+    """argparse.Namespace of the command line after `--`. Raises SystemExit(2) after one sentence on standard error."""
+    parser = build()
+    chosen = parser.parse_args(words)
+    chosen.settings = dict(chosen.settings)
+    return chosen
+
+
+def _positive(text):
+    if not text.isdigit() or not 1 <= int(text) <= 1 << 20:
+        raise argparse.ArgumentTypeError(f"a whole number from 1 to {1 << 20} is needed, '{text}' came")
+    return int(text)
+
+
+def _size(text):
+    found = re.fullmatch(r"(\d{1,5})[xX](\d{1,5})", text)
+    if not found or not all(8 <= int(side) <= 16384 for side in found.groups()):
+        raise argparse.ArgumentTypeError(f"WIDTHxHEIGHT with 8 to 16384 pixels a side is needed, '{text}' came")
+    return tuple(int(side) for side in found.groups())
+
+
+def _bytes(text):
+    found = re.fullmatch(r"(\d+)([KMG]?)", text, re.IGNORECASE)
+    if not found:
+        raise argparse.ArgumentTypeError(f"a number of bytes such as 500M is needed, '{text}' came")
+    return int(found[1]) * 1024 ** " KMG".index(found[2].upper() or " ")
+
+
+def _setting(text):
+    name, equals, value = text.partition("=")
+    if not equals or name not in SETTABLE:
+        hint = " (the reference chooses it)" if name in ("boundary", "masking") else ""
+        raise argparse.ArgumentTypeError(f"NAME=VALUE with one of {', '.join(SETTABLE)} is needed, '{text}' came{hint}")
+    count = SETTABLE[name]
+    if count == 0:
+        return name, value
+    try:
+        numbers = tuple(float(number) for number in value.split(","))
+    except ValueError:
+        numbers = ()
+    if count == 3 and len(numbers) == 1:
+        numbers *= 3
+    if len(numbers) != count:
+        raise argparse.ArgumentTypeError(f"{name} takes {'one number or three' if count == 3 else 'one number'}, '{value}' came")
+    return name, numbers if count == 3 else numbers[0]
+
+
+if __name__ == "__main__":
+    build().print_help()

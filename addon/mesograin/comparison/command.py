@@ -1,0 +1,133 @@
+# The comparison as a command: blender -b SCENE.blend --factory-startup --python-exit-code 1 --python THIS -- [options]
+"""Puts the add-on into a Blender without window, compares, writes the report, and ends Blender with a meaningful exit code."""
+
+import os
+import shlex
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+ADDON = Path(__file__).resolve().parents[1]
+OK, CASE_FAILED, BAD_INPUT, NO_OUTPUT = 0, 1, 2, 3
+
+
+def main():
+    """Returns the exit code; every problem is one sentence on standard error."""
+    sys.path.insert(0, str(ADDON.parent))
+    from mesograin.comparison import arguments
+
+    words = sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else []
+    chosen = arguments.parse(words)
+
+    from mesograin.comparison import interruption
+
+    with interruption.Interruption() as interrupted:
+        try:
+            return _run(chosen, words)
+        except KeyboardInterrupt:
+            sys.stderr.write(f"\n{interruption.INTERRUPTED}\n")
+            return interrupted.code
+
+
+def _run(chosen, words):
+    import addon_utils
+    import bpy
+    import mesograin
+    from mesograin import native_module
+
+    addon_utils.enable("cycles")
+    if not hasattr(bpy.types.Scene, "mesograin"):
+        mesograin.register()
+
+    from mesograin.comparison.progress import Progress
+    from mesograin.comparison.results import OutputError
+    from mesograin.comparison.run import Request, cases, compare
+    from mesograin.cycles.cache import Cache
+
+    try:
+        cache = Cache(chosen.cache, chosen.cache_limit)
+        if chosen.clear_cache:
+            count, size = cache.clear()
+            print(f"{count} references removed from {cache.folder}, {size / 2**20:.1f} MiB.")
+            return OK
+        native = native_module.get()
+    except (ValueError, native_module.Unavailable) as error:
+        return _complain(error, BAD_INPUT)
+    except OSError as error:
+        return _complain(f"The reference cache cannot be emptied: {error}.", NO_OUTPUT)
+    if not cases(chosen.models, chosen.references):
+        return _complain(f"None of the references {', '.join(chosen.references)} answers {', '.join(chosen.models)}.", BAD_INPUT)
+
+    request = Request(
+        models=tuple(chosen.models),
+        references=chosen.references and tuple(chosen.references),
+        out=chosen.out,
+        size=chosen.size,
+        samples=chosen.samples,
+        reference_samples=chosen.reference_samples,
+        settings=chosen.settings,
+        frames=chosen.frames,
+        cache=cache,
+        command=_command(bpy.data.filepath, words),
+    )
+    progress = Progress()
+    try:
+        results = compare(request, progress)
+    except OutputError as error:
+        return _complain(error, NO_OUTPUT)
+    except native.Error as error:
+        return _complain(error, BAD_INPUT)
+    finally:
+        progress.close()
+    _print_table(results)
+    written = chosen.no_report or _write_report(chosen.out)
+    failed = any(case["status"] != "done" for case in results["cases"])
+    print(f"Results: {Path(chosen.out).absolute()}")
+    return CASE_FAILED if failed or not written else OK
+
+
+def _complain(error, code):
+    sys.stderr.write(f"compare: {error}\n")
+    return code
+
+
+def _command(scene, words):
+    """The line that repeats this comparison, from the repository's root."""
+    where = [os.path.relpath(scene)] if scene else []
+    return shlex.join(["./mesograin", "compare", *where, *words])
+
+
+def _print_table(results):
+    """What matters most of each case; the rest is in the files."""
+    print(f"{'case':<34}{'relative L1':>12}{'in blocks':>11}{'noise floor':>13}{'bias':>8}{'ms/frame':>10}{'Cycles s':>10}")
+    for case in results["cases"]:
+        if case["status"] != "done":
+            print(f"{case['name']:<34}  failed: {case['error']}")
+            continue
+        metrics, floor = case["metrics"], case["noise_floor"]
+        numbers = (metrics["relative_l1"], metrics["relative_l1_blocks"], floor["relative_l1"])
+        shares = "".join(f"{'-' if value is None else format(value, '.2%'):>{width}}" for value, width in zip(numbers, (12, 11, 13)))
+        bias = "-" if metrics["bias"] is None else f"{metrics['bias']:.4f}"
+        print(f"{case['name']:<34}{shares}{bias:>8}{case['frame_ms']:>10.2f}{case['reference_seconds']:>10.1f}")
+
+
+def _write_report(folder):
+    """Has the system's Python write report.html; whether it did. The add-on itself needs no more than numpy."""
+    python = os.environ.get("MESOGRAIN_PYTHON") or shutil.which("python3", path="/usr/bin:/usr/local/bin") or "python3"
+    builder = [python, str(ADDON / "report" / "build.py"), str(folder)]
+    environment = {name: value for name, value in os.environ.items() if name not in ("PYTHONHOME", "PYTHONPATH")}
+    try:
+        done = subprocess.run(builder, env=environment, capture_output=True, text=True)
+    except OSError as error:
+        sys.stderr.write(f"compare: no report: {python} cannot be run ({error.strerror}); set MESOGRAIN_PYTHON.\n")
+        return False
+    sys.stderr.write(done.stderr)
+    return done.returncode == 0
+
+
+if __name__ == "__main__":
+    code = main()
+    sys.stdout.flush()
+    sys.stderr.flush()
+    sys.exit(code)

@@ -1,0 +1,112 @@
+# One line that says what is under way and how long the rest will take.
+"""See `Progress`."""
+
+import sys
+import threading
+import time
+
+
+def duration(seconds):
+    """'41 s', '3 min 05 s'."""
+    seconds = max(0, round(seconds))
+    return f"{seconds} s" if seconds < 60 else f"{seconds // 60} min {seconds % 60:02d} s"
+
+
+class Progress:
+    """Steps with guessed costs; each step that ends corrects the guess of those of its kind.
+
+    stream: where the line goes. On a terminal it is rewritten in place, elsewhere printed at most every `interval` seconds.
+    """
+
+    def __init__(self, stream=sys.stderr, interval=15.0):
+        self._stream = stream
+        self._in_place = stream.isatty()
+        self._interval = 0.2 if self._in_place else interval
+        self._steps = []
+        self._pace = {}
+        self._at = -1
+        self._fraction = 0.0
+        self._started = time.monotonic()
+        self._shown = 0.0
+        self._lock = threading.Lock()
+
+    def plan(self, steps):
+        """steps: [(what, kind, guessed seconds)], in the order in which `begin` will be called."""
+        self._steps = list(steps)
+
+    def begin(self):
+        """The next step is under way."""
+        with self._lock:
+            self._at += 1
+            self._fraction = 0.0
+            self._started = time.monotonic()
+            self._show(force=True)
+
+    def update(self, fraction):
+        """How much of the step is done, 0 to 1; from any thread."""
+        with self._lock:
+            self._fraction = min(max(fraction, self._fraction), 1.0)
+            self._show()
+
+    def end(self, learn=True):
+        """The step is done. learn: whether its time says something about others of its kind (not if it was cached)."""
+        with self._lock:
+            _, kind, guess = self._steps[self._at]
+            if learn and guess > 0.0:
+                self._pace[kind] = (time.monotonic() - self._started) / guess
+            self._fraction = 1.0
+
+    @property
+    def steps_begun(self):
+        """How many steps are done or under way."""
+        return self._at + 1
+
+    def skip_to(self, count):
+        """Gives up on all steps before `count`."""
+        with self._lock:
+            self._at = count - 1
+            self._fraction = 1.0
+
+    def say(self, sentence):
+        """A line of its own."""
+        with self._lock:
+            self._clear()
+            print(sentence, file=self._stream, flush=True)
+
+    def close(self):
+        """Leaves the terminal's line empty."""
+        with self._lock:
+            self._clear()
+
+    def seconds_left(self):
+        """The guess for all that is not done."""
+        elapsed = time.monotonic() - self._started
+        left = 0.0
+        for index, (_, kind, guess) in enumerate(self._steps):
+            pace = self._pace.get(kind) or (sum(self._pace.values()) / len(self._pace) if self._pace else 1.0)
+            if index > self._at:
+                left += guess * pace
+            elif index == self._at and self._fraction < 1.0:
+                # What the step shows of itself outweighs the guess as it advances.
+                seen = elapsed / self._fraction if self._fraction > 0.02 else guess * pace
+                total = self._fraction * seen + (1.0 - self._fraction) * max(guess * pace, elapsed)
+                left += max(total * (1.0 - self._fraction), 0.0)
+        return left
+
+    def _show(self, force=False):
+        now = time.monotonic()
+        if not force and now - self._shown < self._interval:
+            return
+        self._shown = now
+        what = self._steps[self._at][0]
+        line = f"[{self._at + 1}/{len(self._steps)}] {what} {self._fraction:4.0%}, about {duration(self.seconds_left())} left"
+        if self._in_place:
+            self._stream.write(f"\r\033[K{line}")
+            self._stream.flush()
+        else:
+            print(line, file=self._stream, flush=True)
+
+    def _clear(self):
+        if self._in_place:
+            self._stream.write("\r\033[K")
+            self._stream.flush()

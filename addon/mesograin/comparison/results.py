@@ -1,0 +1,117 @@
+# The files of a comparison: results.json, results.csv, EXR and PNG pictures, each complete or absent.
+"""See `Output`."""
+
+import csv
+import io
+import json
+import os
+import tempfile
+from pathlib import Path
+
+import bpy
+import numpy
+
+from .. import native_module
+from ..cycles.reference import PROVENANCE
+
+CSV_FIRST = ("name", "scene", "model", "reference", "boundary", "status", "frame_ms", "reference_seconds")
+CSV_METRICS = ("relative_l1", "relative_l1_corrected", "relative_l1_blocks", "bias", "rse_mean", "rse_max")
+
+
+class OutputError(Exception):
+    """The output folder cannot be written; one sentence."""
+
+
+class Output:
+    """A folder of results. Raises OutputError at once if nothing can be written there."""
+
+    def __init__(self, folder):
+        self.folder = Path(folder).absolute()
+        try:
+            self.folder.mkdir(parents=True, exist_ok=True)
+            with tempfile.TemporaryFile(dir=self.folder) as probe:
+                probe.write(b"\0" * 65536)
+                probe.flush()
+                os.fsync(probe.fileno())
+        except OSError as error:
+            raise OutputError(
+                f"The output folder {self.folder} cannot be written ({error.strerror}): free or choose another with --out."
+            ) from error
+
+    def write_exr(self, name, pixels, provenance):
+        """A picture under the folder, made with its folders; returns its name."""
+        native = native_module.get()
+        path = self._place(name)
+        try:
+            native.write_exr(path, pixels, attributes={PROVENANCE: json.dumps(provenance)})
+        except native.Error as error:
+            raise OutputError(str(error)) from error
+        return name
+
+    def write_png(self, name, colours):
+        """(h, w, 3) sRGB-encoded values in [0, 1], row 0 at the top, as an 8-bit picture; returns its name."""
+        path = self._place(name)
+        partial = path.with_name(path.name + ".part.png")
+        height, width = colours.shape[:2]
+        image = bpy.data.images.new("Mesograin picture", width, height)
+        try:
+            opaque = numpy.ones((height, width, 4), numpy.float32)
+            opaque[..., :3] = colours[::-1]
+            image.pixels.foreach_set(opaque.ravel())
+            image.file_format = "PNG"
+            image.filepath_raw = str(partial)
+            image.save()
+            os.replace(partial, path)
+        except (OSError, RuntimeError) as error:
+            raise OutputError(f"{path} cannot be written: {' '.join(str(error).split())}") from error
+        finally:
+            partial.unlink(missing_ok=True)
+            bpy.data.images.remove(image)
+        return name
+
+    def write_results(self, results):
+        """results.json and results.csv."""
+        self._write_text("results.json", json.dumps(results, indent=1, allow_nan=False) + "\n")
+        self._write_text("results.csv", _csv(results["cases"]))
+
+    def _write_text(self, name, text):
+        path = self.folder / name
+        partial = path.with_name(path.name + ".part")
+        try:
+            with open(partial, "w", encoding="utf-8", newline="") as file:
+                file.write(text)
+                file.flush()
+                os.fsync(file.fileno())
+            os.replace(partial, path)
+        except OSError as error:
+            raise OutputError(f"{path} cannot be written ({error.strerror}).") from error
+        finally:
+            partial.unlink(missing_ok=True)
+
+    def _place(self, name):
+        path = self.folder / name
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise OutputError(f"{path.parent} cannot be made ({error.strerror}).") from error
+        return path
+
+
+def _csv(cases):
+    """One row a case; the columns that matter most come first, then all others by name."""
+    rows = [_row(case) for case in cases]
+    first = [*CSV_FIRST, *CSV_METRICS]
+    names = [*first, *sorted({name for row in rows for name in row} - set(first))]
+    text = io.StringIO()
+    writer = csv.DictWriter(text, names, restval="", lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(rows)
+    return text.getvalue()
+
+
+def _row(case):
+    row = {name: value for name, value in case.items() if not isinstance(value, (dict, list))}
+    row.update(case.get("metrics", {}))
+    for group in ("noise_floor", "mask"):
+        row.update({f"{group}.{name}": value for name, value in case.get(group, {}).items()})
+    return {name: json.dumps(value) if isinstance(value, list) else value for name, value in row.items() if value is not None}
