@@ -208,6 +208,7 @@ class _Comparison:
         difference = native.error_image(image, *theirs.images, metric="e")
         mask = native.default_mask(mean[..., 3])
         stops = colours.exposure_for(mean, mask if mask.any() else None)
+        shown = mask[..., None]
         relative = colours.relative_error(image, mean)
         common = {"made_by": f"Mesograin {__version__}", "scene": _scene_name(), "created_by": self.request.command}
         ours = {
@@ -226,15 +227,10 @@ class _Comparison:
             "error": write_exr(f"{case.name}/error.exr", difference, error),
             "model_png": write_png(f"{case.name}/model.png", colours.expose(image, stops)),
             "reference_png": write_png(f"{case.name}/reference.png", colours.expose(mean, stops)),
-            "error_png": write_png(f"{case.name}/error.png", _masked(colours.false_colour(relative), mean[..., 3])),
-            "signed_error_png": write_png(f"{case.name}/signed_error.png", _masked(colours.signed_colour(relative), mean[..., 3])),
+            "error_png": write_png(f"{case.name}/error.png", shown * colours.false_colour(relative)),
+            "signed_error_png": write_png(f"{case.name}/signed_error.png", shown * colours.signed_colour(relative)),
         }
         return {"files": files, "exposure_stops": stops}
-
-
-def _masked(shown, coverage):
-    """Black where there is nothing to compare."""
-    return numpy.where(coverage[..., None] > 0.0, shown, 0.0)
 
 
 def _plain(parameters):

@@ -1,0 +1,52 @@
+# Writes report.html beside a results.json: python3 build.py FOLDER [--out FILE]. Needs jinja2, matplotlib, numpy and the native module.
+"""The command; one sentence and exit code 1 for whatever is missing."""
+
+import argparse
+import os
+import sys
+from pathlib import Path
+
+ROOM = Path(__file__).resolve().parent
+# The room is its own package here: the add-on round it is neither needed nor imported.
+sys.path.insert(0, str(ROOM.parent))
+
+
+def main(words):
+    """Returns the exit code."""
+    parser = argparse.ArgumentParser(description="Writes a self-contained report.html from a folder with results.json.")
+    parser.add_argument("folder", type=Path, help="folder with results.json and its pictures")
+    parser.add_argument("--out", type=Path, default=None, help="file to write (default: FOLDER/report.html)")
+    chosen = parser.parse_args(words)
+    try:
+        import jinja2  # noqa: F401
+        import matplotlib  # noqa: F401
+        import numpy  # noqa: F401
+    except ImportError as error:
+        return _complain(f"{error.name} is needed by {sys.executable}: install python3-jinja2, python3-matplotlib and python3-numpy.")
+
+    from report import page_builder, reading
+
+    out = chosen.out or chosen.folder / "report.html"
+    try:
+        results, cases = reading.read(chosen.folder)
+        html = page_builder.build(results, cases)
+        partial = out.with_name(out.name + ".part")
+        try:
+            partial.write_text(html, encoding="utf-8")
+            os.replace(partial, out)
+        finally:
+            partial.unlink(missing_ok=True)
+    except reading.UnreadableError as error:
+        return _complain(error)
+    except OSError as error:
+        return _complain(f"{error.filename or out} cannot be written ({error.strerror}).")
+    return 0
+
+
+def _complain(error):
+    sys.stderr.write(f"report: {error}\n")
+    return 1
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,82 @@
+# Reads results.json and the EXR files it names.
+"""See `read`."""
+
+import base64
+import importlib.machinery
+import importlib.util
+import json
+import os
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy
+
+NATIVE = "mesograin_native"
+
+
+class UnreadableError(Exception):
+    """Results cannot be read; one sentence."""
+
+
+@dataclass(frozen=True)
+class CasePictures:
+    """A case with its pictures. case: its entry in results.json. model, reference: (h, w, 4) float32, linear; mask: (h, w) bool, the pixels compared;
+    None if it failed. png: {name in `files`: data URI}."""
+
+    case: dict
+    model: numpy.ndarray = None
+    reference: numpy.ndarray = None
+    mask: numpy.ndarray = None
+    png: dict = None
+
+
+def read(folder):
+    """(results, [CasePictures]) of a folder. Raises UnreadableError with a sentence."""
+    folder = Path(folder)
+    path = folder / "results.json"
+    try:
+        results = json.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise UnreadableError(f"{path} cannot be read ({error.strerror}).") from error
+    except ValueError as error:
+        raise UnreadableError(f"{path} is not JSON ({error}).") from error
+    if not isinstance(results, dict) or results.get("format") != "mesograin-results":
+        raise UnreadableError(f"{path} holds no results of a comparison.")
+    if results.get("format_version") != 1:
+        raise UnreadableError(f"{path} has format version {results.get('format_version')}; this report reads version 1.")
+    native = _native()
+    return results, [_pictures(native, folder, case) for case in results["cases"]]
+
+
+def _pictures(native, folder, case):
+    if case["status"] != "done":
+        return CasePictures(case)
+    files = case["files"]
+    try:
+        model, reference = (native.read_exr(folder / files[name])[0] for name in ("model", "reference"))
+    except native.Error as error:
+        raise UnreadableError(str(error)) from error
+    try:
+        png = {name: _data_uri(folder / path) for name, path in files.items() if path.endswith(".png")}
+    except OSError as error:
+        raise UnreadableError(f"{error.filename} cannot be read ({error.strerror}).") from error
+    return CasePictures(case, model, reference, native.default_mask(reference[..., 3]), png)
+
+
+def _data_uri(path):
+    return "data:image/png;base64," + base64.b64encode(path.read_bytes()).decode("ascii")
+
+
+def _native():
+    """The module that reads EXR files: in MESOGRAIN_NATIVE_DIR, or beside the add-on."""
+    folder = Path(os.environ.get("MESOGRAIN_NATIVE_DIR") or Path(__file__).resolve().parents[1])
+    spec = importlib.machinery.PathFinder.find_spec(NATIVE, [str(folder)])
+    if spec is None or spec.loader is None:
+        suffix = importlib.machinery.EXTENSION_SUFFIXES[0]
+        raise UnreadableError(f"the native module {NATIVE}{suffix} is needed to read EXR files, and is not in {folder}.")
+    try:
+        module = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(module)
+    except ImportError as error:
+        raise UnreadableError(f"the native module {spec.origin} cannot be loaded ({error}).") from error
+    return module

@@ -1,0 +1,69 @@
+"""The command line of `compare` and its time left, without Blender."""
+
+import io
+
+import pytest
+from addon_rooms import room
+
+arguments = room("comparison.arguments")
+definitions = room("comparison.definitions")
+progress = room("comparison.progress")
+
+
+def test_defaults():
+    chosen = arguments.parse([])
+    assert list(chosen.models) == ["lambert", "conductor", "model_1"]
+    assert (chosen.references, chosen.size, chosen.settings, chosen.out.name) == (None, None, {}, "comparison")
+
+
+def test_settings():
+    chosen = arguments.parse(["--set", "scale=100", "--set", "sigma_s=0.9,0.5,0.1", "--set", "sigma_a=2", "--set", "profile=dipole"])
+    assert chosen.settings == {"scale": 100.0, "sigma_s": (0.9, 0.5, 0.1), "sigma_a": (2.0, 2.0, 2.0), "profile": "dipole"}
+    assert arguments.parse(["--size", "64x48", "--cache-limit", "1.5G".replace("1.5", "3")]).cache_limit == 3 * 1024**3
+
+
+@pytest.mark.parametrize("words, needed", [
+    (["--models", "model_9"], "model_9"),
+    (["--size", "400"], "WIDTHxHEIGHT"),
+    (["--size", "4x4"], "8 to 16384"),
+    (["--samples", "0"], "from 1 to"),
+    (["--reference-samples", "-3"], "from 1 to"),
+    (["--set", "sigma=1"], "NAME=VALUE"),
+    (["--set", "boundary=dielectric"], "the reference chooses it"),
+    (["--set", "sigma_s=1,2"], "one number or three"),
+    (["--set", "g=high"], "one number"),
+    (["--cache-limit", "much"], "number of bytes"),
+    (["scene.blend"], "unrecognized"),
+])
+def test_bad_words_get_one_sentence(capsys, words, needed):
+    with pytest.raises(SystemExit) as stopped:
+        arguments.parse(words)
+    said = capsys.readouterr().err
+    assert stopped.value.code == 2
+    assert needed in said and said.count("\n") == 1
+
+
+def test_every_metric_has_a_definition():
+    for name in ("relative_l1", "relative_l1_blocks_corrected", "rse_mean_corrected", "bias", "ae_p95"):
+        assert definitions.definition(name)
+    assert "8 x 8" in definitions.definition("rmse_blocks")
+    assert definitions.definition("no_such_number") is None
+
+
+def test_time_left_learns_the_pace(monkeypatch):
+    now = [0.0]
+    monkeypatch.setattr(progress.time, "monotonic", lambda: now[0])
+    line = progress.Progress(io.StringIO(), interval=1e9)
+    line.plan([("one", "volume", 10.0), ("two", "volume", 20.0), ("three", "lambert", 5.0)])
+    line.begin()
+    now[0] = 15.0
+    line.update(0.5)
+    assert line.seconds_left() == pytest.approx(15.0 + 25.0, rel=0.35)
+    now[0] = 30.0
+    line.end()
+    line.begin()
+    assert line.seconds_left() == pytest.approx(3.0 * 20.0 + 3.0 * 5.0)
+    line.end(learn=False)
+    line.begin()
+    assert line.seconds_left() == pytest.approx(15.0)
+    assert progress.duration(59.6) == "1 min 00 s" and progress.duration(-1) == "0 s"

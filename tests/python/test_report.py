@@ -1,0 +1,158 @@
+"""The report from synthetic results: self-contained, complete, true to its pictures, and clear about bad input."""
+
+import base64
+import html
+import json
+import re
+import subprocess
+import sys
+import zlib
+
+import mesograin_native as native
+import numpy as np
+import pytest
+from addon_rooms import ADDON, room
+
+colours = room("report.colours")
+payload = room("report.payload")
+
+BUILDER = ADDON / "mesograin" / "report" / "build.py"
+
+
+def disc(size=48, gain=1.0):
+    """A lit disc with coverage, (size, size, 4)."""
+    y, x = np.mgrid[:size, :size] / (size - 1) * 2.0 - 1.0
+    inside = (x**2 + y**2 < 0.8).astype(np.float32)
+    light = gain * np.clip(1.5 + x - y, 0.0, None) * inside
+    return np.stack([light, 0.8 * light, 0.5 * light, inside], axis=-1).astype(np.float32)
+
+
+def write_case(folder, name, model, reference, **changes):
+    (folder / name).mkdir(parents=True)
+    compared = native.compare(model, reference, 1.01 * reference)
+    groups = {group: compared.pop(group) for group in ("noise_floor", "mask")}
+    del compared["epsilon"], compared["block_size"]
+    files = {}
+    for picture, pixels in (("model", model), ("reference", reference), ("error", model - reference)):
+        files[picture] = f"{name}/{picture}.exr"
+        native.write_exr(folder / files[picture], pixels[..., :3] if picture == "error" else pixels)
+    for picture in ("model_png", "reference_png", "error_png", "signed_error_png"):
+        import matplotlib.image
+
+        files[picture] = f"{name}/{picture}.png"
+        matplotlib.image.imsave(folder / files[picture], colours.expose(model, 0.0))
+    return {
+        "name": name, "scene": "disc.blend", "model": name.split(".")[0], "reference": "diffuse", "reference_title": "Cycles Diffuse",
+        "boundary": "", "status": "done", "metrics": compared, **groups, "material": {"Sand <b>": {"sigma_s": [0.9] * 3, "g": 0.1}},
+        "samples": 4, "frame_ms": 2.5, "frames_timed": 3, "passes_ms": {"shade": 2.5}, "reference_samples": 8,
+        "reference_seeds": [1, 2], "reference_seconds": 12.0, "reference_cached": False, "reference_bounces": 0, "notes": [],
+        "files": files, "exposure_stops": -1.5, "versions": {}, **changes,
+    }
+
+
+@pytest.fixture
+def folder(tmp_path):
+    reference = disc()
+    cases = [
+        write_case(tmp_path, "lambert.diffuse", 1.003 * reference, reference),
+        write_case(tmp_path, "model_1.volume", 1.4 * reference, reference, notes=["Cycles <cannot> do this."]),
+        {"name": "model_2.volume", "model": "model_2", "reference_title": "Cycles volume", "status": "failed", "material": {},
+         "error": "Out of <memory>."},
+    ]
+    results = {
+        "format": "mesograin-results", "format_version": 1, "complete": True, "created": "2024-01-02T03:04:05+00:00",
+        "command": "./mesograin compare disc.blend --set 'g=0.1'", "scene": "disc.blend", "size": [48, 48],
+        "versions": {"mesograin": "0.1.0", "blender": "3.4.1 (abc)", "python": "3.11", "numpy": "1.24"},
+        "device": {"renderer": "llvmpipe", "version": "4.5"}, "cpu": {"name": "A CPU", "cores": 2},
+        "settings": {"pixel_filter": "box", "colour_space": "linear"},
+        "definitions": {"relative_l1": "sum |i - r| / sum r", "noise_floor": "what noise scores", "mask.pixels": "pixels compared"},
+        "cases": cases,
+    }
+    (tmp_path / "results.json").write_text(json.dumps(results))
+    return tmp_path
+
+
+def build(folder):
+    environment = {"PATH": "/usr/bin:/bin", "MESOGRAIN_NATIVE_DIR": str(native.__file__).rsplit("/", 1)[0]}
+    return subprocess.run([sys.executable, str(BUILDER), str(folder)], env=environment, capture_output=True, text=True)
+
+
+def test_page_needs_nothing_else(folder):
+    done = build(folder)
+    assert (done.returncode, done.stderr) == (0, "")
+    page = (folder / "report.html").read_text()
+    sources = re.findall(r'(?:src|href)="([^"]*)"', page)
+    assert sources and all(re.match(r"data:image/png;base64,|#[\w-]+$|[\w.]+/\w+\.(exr|png)$", source) for source in sources)
+    assert not re.search(r"@import|url\(|<link", page)
+    for source in sources:
+        if source.endswith((".exr", ".png")):
+            assert (folder / source).is_file()
+    assert not list(folder.glob("*.part"))
+
+
+def test_page_says_what_happened(folder):
+    build(folder)
+    page = (folder / "report.html").read_text()
+    text = html.unescape(re.sub(r"<[^>]*>", " ", page))
+    assert "./mesograin compare disc.blend --set 'g=0.1'" in text
+    assert "Out of <memory>." in text and "Cycles <cannot> do this." in text and "Sand <b>" in text
+    assert "sum |i - r| / sum r" in text and "llvmpipe" in text and "A CPU" in text
+    assert page.count('<section class="case"') == 2
+
+
+def test_live_pictures_are_the_exr_files(folder):
+    build(folder)
+    page = (folder / "report.html").read_text()
+    live = [json.loads(text) for text in re.findall(r'class="live">(.*?)</script>', page)]
+    assert len(live) == 2 and live[1]["stops"] == -1.5
+    expected = native.read_exr(folder / "model_1.volume" / "model.exr")[0][..., :3]
+    np.testing.assert_array_equal(unpack(live[1]["model"], 48, 48), expected.astype(np.float16))
+    mask = unpack(live[1]["mask"], 48, 48)[..., 0]
+    np.testing.assert_array_equal(mask, native.default_mask(disc()[..., 3]))
+
+
+def unpack(text, width, height):
+    """As the page's script does it."""
+    octets = np.frombuffer(zlib.decompress(base64.b64decode(text)), np.uint8)
+    high, low = octets.reshape(2, -1).astype(np.uint16)
+    return np.moveaxis((high << 8 | low).view(np.float16).reshape(-1, height, width), 0, -1)
+
+
+def test_payload_keeps_extremes():
+    pixels = np.array([[[1e9, -1e9, np.nan, 1e-7]]], np.float32)
+    np.testing.assert_array_equal(unpack(payload.pack(pixels), 1, 1), [[[65504.0, -65504.0, np.nan, np.float16(1e-7)]]])
+
+
+def test_false_colours_are_fixed_and_logarithmic():
+    ends = colours.false_colour(np.array([[0.0, 1e-3, 1.0, 50.0, -1.0]]))[0]
+    np.testing.assert_array_equal(ends[0], colours.SEQUENTIAL[0])
+    np.testing.assert_array_equal(ends[1], colours.SEQUENTIAL[0])
+    for bright in ends[2:]:
+        np.testing.assert_array_equal(bright, colours.SEQUENTIAL[-1])
+    middle = colours.false_colour(np.array([[10.0**-1.5]]))[0, 0]
+    np.testing.assert_allclose(middle, colours.SEQUENTIAL[128], atol=0.02)
+    luminance = colours.SEQUENTIAL @ [0.2126, 0.7152, 0.0722]
+    assert (np.diff(luminance) > -1e-3).all()
+
+
+def test_exposure_brings_the_highlights_to_white():
+    reference = disc(gain=8.0)
+    stops = colours.exposure_for(reference, reference[..., 3] > 0)
+    assert np.percentile(reference[..., :3][reference[..., 3] > 0], 99.5) * 2.0**stops == pytest.approx(1.0, rel=0.05)
+    assert colours.exposure_for(np.zeros((4, 4, 4), np.float32)) == 0.0
+    np.testing.assert_allclose(colours.encode_srgb(np.array([0.0, 0.5, 1.0, np.nan, np.inf])), [0.0, 0.735357, 1.0, 0.0, 1.0], atol=1e-6)
+
+
+@pytest.mark.parametrize("damage, sentence", [
+    (lambda folder: (folder / "results.json").unlink(), "cannot be read"),
+    (lambda folder: (folder / "results.json").write_text("{"), "is not JSON"),
+    (lambda folder: (folder / "results.json").write_text("{}"), "holds no results"),
+    (lambda folder: (folder / "lambert.diffuse" / "model.exr").write_bytes(b"nothing"), "model.exr"),
+    (lambda folder: (folder / "lambert.diffuse" / "model_png.png").unlink(), "model_png.png cannot be read"),
+])
+def test_bad_results_get_one_sentence(folder, damage, sentence):
+    damage(folder)
+    done = build(folder)
+    assert done.returncode == 1
+    assert sentence in done.stderr and done.stderr.count("\n") == 1 and "Traceback" not in done.stderr
+    assert not (folder / "report.html").exists()
