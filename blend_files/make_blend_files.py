@@ -112,7 +112,8 @@ def make_sphere():
     empty_file()
     sphere = add_object("Sphere", sphere_mesh(2.4, 128, 64))
     sphere.data.materials.append(add_grain_material(
-        "Translucent", model="model_1", sigma_s=(0.9,) * 3, sigma_a=(0.1,) * 3, g=0.0, eta=1.3, scale=20.0))
+        "Translucent", model="model_1", sigma_s=(0.9,) * 3, sigma_a=(0.1,) * 3, g=0.0, eta=1.3, roughness=0.3,
+        scale=20.0))
     add_camera(Matrix.Translation((0.0, 0.0, 6.5)), 45.0)
     add_sun("Front", (1.0, 1.0, 1.0), 20.0)
     add_sun("Back", (-1.0, -1.0, -1.6), 10.0)

@@ -17,24 +17,36 @@ def test_defaults():
 
 
 def test_settings():
-    chosen = arguments.parse(["--set", "scale=100", "--set", "sigma_s=0.9,0.5,0.1", "--set", "sigma_a=2", "--set", "profile=dipole"])
-    assert chosen.settings == {"scale": 100.0, "sigma_s": (0.9, 0.5, 0.1), "sigma_a": (2.0, 2.0, 2.0), "profile": "dipole"}
-    assert arguments.parse(["--size", "64x48", "--cache-limit", "1.5G".replace("1.5", "3")]).cache_limit == 3 * 1024**3
+    chosen = arguments.parse(
+        ["--set", "scale=100", "--set", "sigma_s=0.9,0.5,0.1", "--set", "sigma_a=2", "--set", "profile=dipole"]
+    )
+    assert chosen.settings == {
+        "scale": 100.0,
+        "sigma_s": (0.9, 0.5, 0.1),
+        "sigma_a": (2.0, 2.0, 2.0),
+        "profile": "dipole",
+    }
+    assert (
+        arguments.parse(["--size", "64x48", "--cache-limit", "1.5G".replace("1.5", "3")]).cache_limit == 3 * 1024**3
+    )
 
 
-@pytest.mark.parametrize("words, needed", [
-    (["--models", "model_9"], "model_9"),
-    (["--size", "400"], "WIDTHxHEIGHT"),
-    (["--size", "4x4"], "8 to 16384"),
-    (["--samples", "0"], "from 1 to"),
-    (["--reference-samples", "-3"], "from 1 to"),
-    (["--set", "sigma=1"], "NAME=VALUE"),
-    (["--set", "boundary=dielectric"], "the reference chooses it"),
-    (["--set", "sigma_s=1,2"], "one number or three"),
-    (["--set", "g=high"], "one number"),
-    (["--cache-limit", "much"], "number of bytes"),
-    (["scene.blend"], "unrecognized"),
-])
+@pytest.mark.parametrize(
+    "words, needed",
+    [
+        (["--models", "model_9"], "model_9"),
+        (["--size", "400"], "WIDTHxHEIGHT"),
+        (["--size", "4x4"], "8 to 16384"),
+        (["--samples", "0"], "from 1 to"),
+        (["--reference-samples", "-3"], "from 1 to"),
+        (["--set", "sigma=1"], "NAME=VALUE"),
+        (["--set", "boundary=dielectric"], "the reference chooses it"),
+        (["--set", "sigma_s=1,2"], "one number or three"),
+        (["--set", "g=high"], "one number"),
+        (["--cache-limit", "much"], "number of bytes"),
+        (["scene.blend"], "unrecognized"),
+    ],
+)
 def test_bad_words_get_one_sentence(capsys, words, needed):
     with pytest.raises(SystemExit) as stopped:
         arguments.parse(words)

@@ -30,7 +30,9 @@ def test_table(albedo, colours, factors):
 @pytest.mark.parametrize("g", [0.0, 0.25, 0.5, 0.8, 0.9])
 @pytest.mark.parametrize("albedo", [1e-12, 1e-6, 1e-3, 0.1, 0.5, 0.9, 0.99, 0.9999, 0.999999])
 def test_inverse_of_the_fit(albedo, g):
-    assert inversion.single_scattering_albedo(inversion.colour_of_albedo(albedo, g), g) == pytest.approx(albedo, rel=1e-12)
+    assert inversion.single_scattering_albedo(inversion.colour_of_albedo(albedo, g), g) == pytest.approx(
+        albedo, rel=1e-12
+    )
 
 
 def test_ends():

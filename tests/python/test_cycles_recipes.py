@@ -22,8 +22,17 @@ def inputs(kind, values, node, features=BLENDER_3):
 
 def test_scale_multiplies_both_coefficients():
     values = grain_values.GrainValues.from_parameters(
-        {"reflectance": (0.5,) * 3, "sigma_a": (0.1,) * 3, "sigma_s": (0.9,) * 3, "g": 0.0, "eta": 1.3, "roughness": 0.2,
-         "scale": 20.0, "model": "model_1"})
+        {
+            "reflectance": (0.5,) * 3,
+            "sigma_a": (0.1,) * 3,
+            "sigma_s": (0.9,) * 3,
+            "g": 0.0,
+            "eta": 1.3,
+            "roughness": 0.2,
+            "scale": 20.0,
+            "model": "model_1",
+        }
+    )
     assert values.sigma_a == pytest.approx((2.0,) * 3)
     assert values.sigma_s == pytest.approx((18.0,) * 3)
     assert values.albedo == pytest.approx((0.9,) * 3)
@@ -31,17 +40,29 @@ def test_scale_multiplies_both_coefficients():
 
 def test_glossy_takes_the_root_of_alpha():
     assert inputs("glossy", grain(roughness=0.25), "Glossy")["Roughness"] == pytest.approx(0.5)
-    assert recipes.recipe("glossy", grain(roughness=0.25), BLENDER_4)["nodes"]["Glossy"]["type"] == "ShaderNodeBsdfAnisotropic"
+    assert (
+        recipes.recipe("glossy", grain(roughness=0.25), BLENDER_4)["nodes"]["Glossy"]["type"]
+        == "ShaderNodeBsdfAnisotropic"
+    )
 
 
-@pytest.mark.parametrize("sigma_a, sigma_s", [((0.1, 0.2, 0.9), (0.9, 0.1, 0.0)), ((0.0,) * 3, (5.0, 1e-6, 2.0)),
-                                              ((3.0,) * 3, (0.0,) * 3), ((1e-9, 1e9, 1.0), (1e9, 1.0, 1e-9))])
+@pytest.mark.parametrize(
+    "sigma_a, sigma_s",
+    [
+        ((0.1, 0.2, 0.9), (0.9, 0.1, 0.0)),
+        ((0.0,) * 3, (5.0, 1e-6, 2.0)),
+        ((3.0,) * 3, (0.0,) * 3),
+        ((1e-9, 1e9, 1.0), (1e9, 1.0, 1e-9)),
+    ],
+)
 def test_volume_nodes_carry_the_coefficients(sigma_a, sigma_s):
     values = grain(sigma_a=sigma_a, sigma_s=sigma_s, g=-0.3)
     scatter, absorption = (inputs("volume_index_matched", values, name) for name in ("Scatter", "Absorption"))
     assert [scatter["Density"] * c for c in scatter["Color"]] == pytest.approx(sigma_s, rel=1e-12)
     # 1 - colour cannot resolve a channel sixteen orders under the brightest.
-    assert [absorption["Density"] * (1.0 - c) for c in absorption["Color"]] == pytest.approx(sigma_a, rel=1e-12, abs=1e-15 * max(sigma_a))
+    assert [absorption["Density"] * (1.0 - c) for c in absorption["Color"]] == pytest.approx(
+        sigma_a, rel=1e-12, abs=1e-15 * max(sigma_a)
+    )
     assert scatter["Anisotropy"] == -0.3
 
 
@@ -58,19 +79,26 @@ def test_our_side_solves_what_cycles_solves():
     assert kinds.our_side("volume_index_matched", BLENDER_4) == {"boundary": "index_matched"}
     assert kinds.our_side("glossy", BLENDER_3) == {"masking": "separable"}
     assert kinds.our_side("glossy", BLENDER_4) == {"masking": "correlated"}
-    assert [kinds.default_kind(model) for model in ("lambert", "conductor", "model_3")] == ["diffuse", "glossy", "volume_index_matched"]
+    assert [kinds.default_kind(model) for model in ("lambert", "conductor", "model_3")] == [
+        "diffuse",
+        "glossy",
+        "volume_index_matched",
+    ]
 
 
-@pytest.mark.parametrize("kind, parameters, words, fatal", [
-    ("subsurface", {"g": -0.2}, "g between 0 and 0.9", True),
-    ("subsurface", {"g": 0.95}, "g between 0 and 0.9", True),
-    ("subsurface", {"sigma_a": (0.0, 1.0, 1.0), "sigma_s": (0.0, 1.0, 1.0)}, "positive", True),
-    ("subsurface", {"eta": 4.0}, "1.01 to 3.8", False),
-    ("subsurface", {"sigma_a": (1e-3,) * 3, "sigma_s": (1.0,) * 3}, "256 bounces", False),
-    ("volume_index_matched", {"sigma_a": (0.0,) * 3, "sigma_s": (0.0,) * 3}, "invisible", True),
-    ("volume_index_matched", {"g": 1.0}, "0.999", False),
-    ("glossy", {"roughness": 0.0}, "mirror", True),
-])
+@pytest.mark.parametrize(
+    "kind, parameters, words, fatal",
+    [
+        ("subsurface", {"g": -0.2}, "g between 0 and 0.9", True),
+        ("subsurface", {"g": 0.95}, "g between 0 and 0.9", True),
+        ("subsurface", {"sigma_a": (0.0, 1.0, 1.0), "sigma_s": (0.0, 1.0, 1.0)}, "positive", True),
+        ("subsurface", {"eta": 4.0}, "1.01 to 3.8", False),
+        ("subsurface", {"sigma_a": (1e-3,) * 3, "sigma_s": (1.0,) * 3}, "256 bounces", False),
+        ("volume_index_matched", {"sigma_a": (0.0,) * 3, "sigma_s": (0.0,) * 3}, "invisible", True),
+        ("volume_index_matched", {"g": 1.0}, "0.999", False),
+        ("glossy", {"roughness": 0.0}, "mirror", True),
+    ],
+)
 def test_limits_are_said(kind, parameters, words, fatal):
     found = limits.limits(grain(**parameters), kind)
     assert [limit.fatal for limit in found] == [fatal]

@@ -42,11 +42,30 @@ def write_case(folder, name, model, reference, **changes):
         files[picture] = f"{name}/{picture}.png"
         matplotlib.image.imsave(folder / files[picture], colours.expose(model, 0.0))
     return {
-        "name": name, "scene": "disc.blend", "model": name.split(".")[0], "reference": "diffuse", "reference_title": "Cycles Diffuse",
-        "boundary": "", "status": "done", "metrics": compared, **groups, "material": {"Sand <b>": {"sigma_s": [0.9] * 3, "g": 0.1}},
-        "samples": 4, "frame_ms": 2.5, "frames_timed": 3, "passes_ms": {"shade": 2.5}, "reference_samples": 8,
-        "reference_seeds": [1, 2], "reference_seconds": 12.0, "reference_cached": False, "reference_bounces": 0, "notes": [],
-        "files": files, "exposure_stops": -1.5, "versions": {}, **changes,
+        "name": name,
+        "scene": "disc.blend",
+        "model": name.split(".")[0],
+        "reference": "diffuse",
+        "reference_title": "Cycles Diffuse",
+        "boundary": "",
+        "status": "done",
+        "metrics": compared,
+        **groups,
+        "material": {"Sand <b>": {"sigma_s": [0.9] * 3, "g": 0.1}},
+        "samples": 4,
+        "frame_ms": 2.5,
+        "frames_timed": 3,
+        "passes_ms": {"shade": 2.5},
+        "reference_samples": 8,
+        "reference_seeds": [1, 2],
+        "reference_seconds": 12.0,
+        "reference_cached": False,
+        "reference_bounces": 0,
+        "notes": [],
+        "files": files,
+        "exposure_stops": -1.5,
+        "versions": {},
+        **changes,
     }
 
 
@@ -56,16 +75,32 @@ def folder(tmp_path):
     cases = [
         write_case(tmp_path, "lambert.diffuse", 1.003 * reference, reference),
         write_case(tmp_path, "model_1.volume", 1.4 * reference, reference, notes=["Cycles <cannot> do this."]),
-        {"name": "model_2.volume", "model": "model_2", "reference_title": "Cycles volume", "status": "failed", "material": {},
-         "error": "Out of <memory>."},
+        {
+            "name": "model_2.volume",
+            "model": "model_2",
+            "reference_title": "Cycles volume",
+            "status": "failed",
+            "material": {},
+            "error": "Out of <memory>.",
+        },
     ]
     results = {
-        "format": "mesograin-results", "format_version": 1, "complete": True, "created": "2024-01-02T03:04:05+00:00",
-        "command": "./mesograin compare disc.blend --set 'g=0.1'", "scene": "disc.blend", "size": [48, 48],
+        "format": "mesograin-results",
+        "format_version": 1,
+        "complete": True,
+        "created": "2024-01-02T03:04:05+00:00",
+        "command": "./mesograin compare disc.blend --set 'g=0.1'",
+        "scene": "disc.blend",
+        "size": [48, 48],
         "versions": {"mesograin": "0.1.0", "blender": "3.4.1 (abc)", "python": "3.11", "numpy": "1.24"},
-        "device": {"renderer": "llvmpipe", "version": "4.5"}, "cpu": {"name": "A CPU", "cores": 2},
+        "device": {"renderer": "llvmpipe", "version": "4.5"},
+        "cpu": {"name": "A CPU", "cores": 2},
         "settings": {"pixel_filter": "box", "colour_space": "linear"},
-        "definitions": {"relative_l1": "sum |i - r| / sum r", "noise_floor": "what noise scores", "mask.pixels": "pixels compared"},
+        "definitions": {
+            "relative_l1": "sum |i - r| / sum r",
+            "noise_floor": "what noise scores",
+            "mask.pixels": "pixels compared",
+        },
         "cases": cases,
     }
     (tmp_path / "results.json").write_text(json.dumps(results))
@@ -82,8 +117,10 @@ def test_page_needs_nothing_else(folder):
     assert (done.returncode, done.stderr) == (0, "")
     page = (folder / "report.html").read_text()
     sources = re.findall(r'(?:src|href)="([^"]*)"', page)
-    assert sources and all(re.match(r"data:image/png;base64,|#[\w-]+$|[\w.]+/\w+\.(exr|png)$", source) for source in sources)
-    assert not re.search(r"@import|url\(|<link", page)
+    assert sources and all(
+        re.match(r"data:image/png;base64,|#[\w-]+$|[\w.]+/\w+\.(exr|png)$", source) for source in sources
+    )
+    assert not re.search(r"@import|url\((?!#)|<link", page)
     for source in sources:
         if source.endswith((".exr", ".png")):
             assert (folder / source).is_file()
@@ -140,16 +177,21 @@ def test_exposure_brings_the_highlights_to_white():
     stops = colours.exposure_for(reference, reference[..., 3] > 0)
     assert np.percentile(reference[..., :3][reference[..., 3] > 0], 99.5) * 2.0**stops == pytest.approx(1.0, rel=0.05)
     assert colours.exposure_for(np.zeros((4, 4, 4), np.float32)) == 0.0
-    np.testing.assert_allclose(colours.encode_srgb(np.array([0.0, 0.5, 1.0, np.nan, np.inf])), [0.0, 0.735357, 1.0, 0.0, 1.0], atol=1e-6)
+    np.testing.assert_allclose(
+        colours.encode_srgb(np.array([0.0, 0.5, 1.0, np.nan, np.inf])), [0.0, 0.735357, 1.0, 0.0, 1.0], atol=1e-6
+    )
 
 
-@pytest.mark.parametrize("damage, sentence", [
-    (lambda folder: (folder / "results.json").unlink(), "cannot be read"),
-    (lambda folder: (folder / "results.json").write_text("{"), "is not JSON"),
-    (lambda folder: (folder / "results.json").write_text("{}"), "holds no results"),
-    (lambda folder: (folder / "lambert.diffuse" / "model.exr").write_bytes(b"nothing"), "model.exr"),
-    (lambda folder: (folder / "lambert.diffuse" / "model_png.png").unlink(), "model_png.png cannot be read"),
-])
+@pytest.mark.parametrize(
+    "damage, sentence",
+    [
+        (lambda folder: (folder / "results.json").unlink(), "cannot be read"),
+        (lambda folder: (folder / "results.json").write_text("{"), "is not JSON"),
+        (lambda folder: (folder / "results.json").write_text("{}"), "holds no results"),
+        (lambda folder: (folder / "lambert.diffuse" / "model.exr").write_bytes(b"nothing"), "model.exr"),
+        (lambda folder: (folder / "lambert.diffuse" / "model_png.png").unlink(), "model_png.png cannot be read"),
+    ],
+)
 def test_bad_results_get_one_sentence(folder, damage, sentence):
     damage(folder)
     done = build(folder)

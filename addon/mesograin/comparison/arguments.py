@@ -33,32 +33,83 @@ def build():
     parser = Parser(
         prog="mesograin compare",
         usage="mesograin compare [SCENE.blend] [options]",
-        description="Renders every model and the Cycles reference that means the same, and writes pictures, numbers and a report.",
-        epilog="Exit codes: 0 all compared, 1 a case failed (the others are written), 2 bad arguments or scene, "
-        "3 the output folder cannot be written, 130 interrupted. A second run finds its references in the cache.",
+        description=(
+            "Renders every model and the Cycles reference that means the same, and writes pictures, numbers and a"
+            " report."
+        ),
+        epilog=(
+            "Exit codes: 0 all compared, 1 a case failed (the others are written), 2 bad arguments or scene, "
+            "3 the output folder cannot be written, 130 interrupted. A second run finds its references in the cache."
+        ),
     )
-    parser.add_argument("--models", nargs="+", choices=MODELS, default=DEFAULT_MODELS, metavar="MODEL",
-                        help=f"models to compare, of {', '.join(MODELS)} (default: {' '.join(DEFAULT_MODELS)})")
-    parser.add_argument("--references", nargs="+", choices=REFERENCES, default=None, metavar="KIND",
-                        help=f"kinds of reference, of {', '.join(REFERENCES)}; each model is compared with those that answer it "
-                        "(default: diffuse for lambert, glossy for conductor, volume_index_matched for the others)")
-    parser.add_argument("--out", type=Path, default=Path("comparison"), metavar="DIR",
-                        help="folder for results.json, results.csv, report.html and the pictures (default: comparison)")
-    parser.add_argument("--size", type=_size, default=None, metavar="WxH",
-                        help="picture size in pixels (default: the scene's)")
-    parser.add_argument("--samples", type=_positive, default=64, metavar="N",
-                        help="samples a pixel on our side (default: 64)")
-    parser.add_argument("--reference-samples", type=_positive, default=None, metavar="N",
-                        help="Cycles samples a pixel for each of the two seeds (default: 64 for surfaces, 128 for volumes)")
-    parser.add_argument("--set", action="append", type=_setting, default=[], dest="settings", metavar="NAME=VALUE",
-                        help="a material parameter for every material, on both sides: "
-                        f"{', '.join(SETTABLE)}; RGB as one number or three with commas; may be repeated")
-    parser.add_argument("--frames", type=_positive, default=9, metavar="N",
-                        help="frames timed for frame_ms (default: 9)")
-    parser.add_argument("--cache", type=Path, default=None, metavar="DIR",
-                        help="folder of rendered references (default: MESOGRAIN_CACHE, or mesograin/references in the user's cache)")
-    parser.add_argument("--cache-limit", type=_bytes, default=None, metavar="SIZE",
-                        help="bytes that it may take, with an optional K, M or G (default: MESOGRAIN_CACHE_LIMIT, or 2G)")
+    parser.add_argument(
+        "--models",
+        nargs="+",
+        choices=MODELS,
+        default=DEFAULT_MODELS,
+        metavar="MODEL",
+        help=f"models to compare, of {', '.join(MODELS)} (default: {' '.join(DEFAULT_MODELS)})",
+    )
+    parser.add_argument(
+        "--references",
+        nargs="+",
+        choices=REFERENCES,
+        default=None,
+        metavar="KIND",
+        help=(
+            f"kinds of reference, of {', '.join(REFERENCES)}; each model is compared with those that answer it "
+            "(default: diffuse for lambert, glossy for conductor, volume_index_matched for the others)"
+        ),
+    )
+    parser.add_argument(
+        "--out",
+        type=Path,
+        default=Path("comparison"),
+        metavar="DIR",
+        help="folder for results.json, results.csv, report.html and the pictures (default: comparison)",
+    )
+    parser.add_argument(
+        "--size", type=_size, default=None, metavar="WxH", help="picture size in pixels (default: the scene's)"
+    )
+    parser.add_argument(
+        "--samples", type=_positive, default=64, metavar="N", help="samples a pixel on our side (default: 64)"
+    )
+    parser.add_argument(
+        "--reference-samples",
+        type=_positive,
+        default=None,
+        metavar="N",
+        help="Cycles samples a pixel for each of the two seeds (default: 64 for surfaces, 128 for volumes)",
+    )
+    parser.add_argument(
+        "--set",
+        action="append",
+        type=_setting,
+        default=[],
+        dest="settings",
+        metavar="NAME=VALUE",
+        help=(
+            "a material parameter for every material, on both sides: "
+            f"{', '.join(SETTABLE)}; RGB as one number or three with commas; may be repeated"
+        ),
+    )
+    parser.add_argument(
+        "--frames", type=_positive, default=9, metavar="N", help="frames timed for frame_ms (default: 9)"
+    )
+    parser.add_argument(
+        "--cache",
+        type=Path,
+        default=None,
+        metavar="DIR",
+        help="folder of rendered references (default: MESOGRAIN_CACHE, or mesograin/references in the user's cache)",
+    )
+    parser.add_argument(
+        "--cache-limit",
+        type=_bytes,
+        default=None,
+        metavar="SIZE",
+        help="bytes that it may take, with an optional K, M or G (default: MESOGRAIN_CACHE_LIMIT, or 2G)",
+    )
     parser.add_argument("--clear-cache", action="store_true", help="empty the reference cache and do nothing else")
     parser.add_argument("--no-report", action="store_true", help="write no report.html")
     return parser
@@ -107,7 +158,9 @@ def _setting(text):
     if count == 3 and len(numbers) == 1:
         numbers *= 3
     if len(numbers) != count:
-        raise argparse.ArgumentTypeError(f"{name} takes {'one number or three' if count == 3 else 'one number'}, '{value}' came")
+        raise argparse.ArgumentTypeError(
+            f"{name} takes {'one number or three' if count == 3 else 'one number'}, '{value}' came"
+        )
     return name, numbers if count == 3 else numbers[0]
 
 

@@ -1,5 +1,6 @@
 # The comparison as a command: blender -b SCENE.blend --factory-startup --python-exit-code 1 --python THIS -- [options]
-"""Puts the add-on into a Blender without window, compares, writes the report, and ends Blender with a meaningful exit code."""
+"""Puts the add-on into a Blender without window, compares, writes the report, and ends Blender with a meaningful
+exit code."""
 
 import os
 import shlex
@@ -17,7 +18,7 @@ def main():
     sys.path.insert(0, str(ADDON.parent))
     from mesograin.comparison import arguments
 
-    words = sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else []
+    words = sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else []
     chosen = arguments.parse(words)
 
     from mesograin.comparison import interruption
@@ -57,7 +58,9 @@ def _run(chosen, words):
     except OSError as error:
         return _complain(f"The reference cache cannot be emptied: {error}.", NO_OUTPUT)
     if not cases(chosen.models, chosen.references):
-        return _complain(f"None of the references {', '.join(chosen.references)} answers {', '.join(chosen.models)}.", BAD_INPUT)
+        return _complain(
+            f"None of the references {', '.join(chosen.references)} answers {', '.join(chosen.models)}.", BAD_INPUT
+        )
 
     request = Request(
         models=tuple(chosen.models),
@@ -82,8 +85,10 @@ def _run(chosen, words):
         progress.close()
     _print_table(results)
     written = chosen.no_report or _write_report(chosen.out)
-    failed = any(case["status"] != "done" for case in results["cases"])
-    print(f"Results: {Path(chosen.out).absolute()}")
+    print(f"Results: {Path(chosen.out).absolute()}", flush=True)
+    failed = [f"{case['name']}: {case['error']}" for case in results["cases"] if case["status"] != "done"]
+    for sentence in failed:
+        _complain(sentence, CASE_FAILED)
     return CASE_FAILED if failed or not written else OK
 
 
@@ -100,14 +105,17 @@ def _command(scene, words):
 
 def _print_table(results):
     """What matters most of each case; the rest is in the files."""
-    print(f"{'case':<34}{'relative L1':>12}{'in blocks':>11}{'noise floor':>13}{'bias':>8}{'ms/frame':>10}{'Cycles s':>10}")
+    titles = ("relative L1", "in blocks", "noise floor", "bias", "ms/frame", "Cycles s")
+    print(f"{'case':<34}" + "".join(f"{title:>{width}}" for title, width in zip(titles, (12, 11, 13, 8, 10, 10))))
     for case in results["cases"]:
         if case["status"] != "done":
-            print(f"{case['name']:<34}  failed: {case['error']}")
+            print(f"{case['name']:<34}{'failed':>12}")
             continue
         metrics, floor = case["metrics"], case["noise_floor"]
         numbers = (metrics["relative_l1"], metrics["relative_l1_blocks"], floor["relative_l1"])
-        shares = "".join(f"{'-' if value is None else format(value, '.2%'):>{width}}" for value, width in zip(numbers, (12, 11, 13)))
+        shares = "".join(
+            f"{'-' if value is None else format(value, '.2%'):>{width}}" for value, width in zip(numbers, (12, 11, 13))
+        )
         bias = "-" if metrics["bias"] is None else f"{metrics['bias']:.4f}"
         print(f"{case['name']:<34}{shares}{bias:>8}{case['frame_ms']:>10.2f}{case['reference_seconds']:>10.1f}")
 

@@ -1,13 +1,18 @@
 # What every number of a result means, in one sentence each, kept with the numbers themselves.
-"""`i` is a sample of our image, `r` of the reference, the mean of its seeds `a` and `b`; both linear RGB radiance inside the mask."""
+"""`i` is a sample of our image, `r` of the reference, the mean of its seeds `a` and `b`; both linear RGB radiance
+inside the mask."""
 
 METRICS = {
     "relative_l1": "sum |i - r| / sum r; 0 is perfect, no unit",
     "bias": "sum i / sum r: how much light in all; 1 is perfect, no unit",
-    "rse_mean": "mean of (i - r)^2 / (r^2 + 0.01), per channel, without a square root, as in the image viewer tev; no unit",
+    "rse_mean": (
+        "mean of (i - r)^2 / (r^2 + 0.01), per channel, without a square root, as in the image viewer tev; no unit"
+    ),
     "rse_max": "largest (i - r)^2 / (r^2 + 0.01); no unit",
     "rse_max_at": "where rse_max is: [x, y, channel], y = 0 at the top",
-    "rse_root_mean": "mean of |i - r| / sqrt(r^2 + 0.01), the root of rse; published figures called RSE are sometimes this",
+    "rse_root_mean": (
+        "mean of |i - r| / sqrt(r^2 + 0.01), the root of rse; published figures called RSE are sometimes this"
+    ),
     "rae_mean": "mean of |i - r| / (r + 0.01); no unit",
     "ae_mean": "mean of |i - r|; radiance",
     "e_mean": "mean of i - r; radiance, positive where we are too bright",
@@ -25,18 +30,31 @@ METRICS = {
 }
 
 SUFFIXES = {
-    "_corrected": "with the reference's noise taken off in quadrature: sqrt(max(0, v^2 - floor^2)), or max(0, v - floor) for squares",
-    "_blocks": "after averaging both images over squares of 8 x 8 pixels: noise falls eightfold, an error of shape stays",
+    "_corrected": (
+        "with the reference's noise taken off in quadrature: sqrt(max(0, v^2 - floor^2)), or max(0, v - floor) for"
+        " squares"
+    ),
+    "_blocks": (
+        "after averaging both images over squares of 8 x 8 pixels: noise falls eightfold, an error of shape stays"
+    ),
 }
 
 OTHERS = {
-    "noise_floor": "the metric with |a - b| / 2 in the place of |i - r|: what a perfect image would score against this reference",
-    "mask.pixels": "pixels compared: coverage 1 in the reference, less those within 2 pixels of one whose coverage is not",
+    "noise_floor": (
+        "the metric with |a - b| / 2 in the place of |i - r|: what a perfect image would score against this reference"
+    ),
+    "mask.pixels": (
+        "pixels compared: coverage 1 in the reference, less those within 2 pixels of one whose coverage is not"
+    ),
     "mask.nan": "masked pixels with a NaN in our image or the reference; they are in no sum",
     "mask.inf": "masked pixels with an Inf and no NaN; they are in no sum",
-    "frame_ms": "milliseconds of all passes of one frame (one sample a pixel) on the device named, the median of frames_timed frames "
-    "after a first one that prepared the device",
-    "reference_seconds": "wall-clock seconds that Cycles took for all seeds, on all cores of the CPU, when the reference was rendered",
+    "frame_ms": (
+        "milliseconds of all passes of one frame (one sample a pixel) on the device named, the median of frames_timed"
+        " frames after a first one that prepared the device"
+    ),
+    "reference_seconds": (
+        "wall-clock seconds that Cycles took for all seeds, on all cores of the CPU, when the reference was rendered"
+    ),
     "exposure_stops": "the PNG pictures show radiance times 2 to this power, encoded as sRGB",
 }
 

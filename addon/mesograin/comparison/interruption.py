@@ -15,8 +15,9 @@ SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
 class Interruption:
-    """A context manager for a process of its own. Inside, temporary files live in one folder, and a signal either raises
-    KeyboardInterrupt in Python code, or, while Cycles renders, removes that folder and ends the process with 128 + signal.
+    """A context manager for a process of its own. Inside, temporary files live in one folder, and a signal either
+    raises KeyboardInterrupt in Python code, or, while Cycles renders, removes that folder and ends the process with 128
+    + signal.
 
     `code`: the exit code for a KeyboardInterrupt that arrived.
     """

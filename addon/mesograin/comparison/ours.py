@@ -10,8 +10,8 @@ from .. import export, meshes, native_module
 class Ours:
     """One evaluated scene and a view of it, ready for any number of models.
 
-    depsgraph: evaluated. size: (width, height) in pixels. overrides: {parameter: value} for every material, coefficients
-    per scene unit. Raises native.Error with a sentence if the scene has no camera or cannot be drawn.
+    depsgraph: evaluated. size: (width, height) in pixels. overrides: {parameter: value} for every material,
+    coefficients per scene unit. Raises native.Error with a sentence if the scene has no camera or cannot be drawn.
     """
 
     def __init__(self, depsgraph, size, overrides):
@@ -35,7 +35,9 @@ class Ours:
         instances = tuple(
             dataclasses.replace(
                 instance,
-                material=export.MaterialValues(instance.material.name, tuple(parameters[instance.material.name].items())),
+                material=export.MaterialValues(
+                    instance.material.name, tuple(parameters[instance.material.name].items())
+                ),
             )
             for instance in self._scene.instances
         )

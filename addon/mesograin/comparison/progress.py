@@ -15,7 +15,8 @@ def duration(seconds):
 class Progress:
     """Steps with guessed costs; each step that ends corrects the guess of those of its kind.
 
-    stream: where the line goes. On a terminal it is rewritten in place, elsewhere printed at most every `interval` seconds.
+    stream: where the line goes. On a terminal it is rewritten in place, elsewhere printed at most every `interval`
+    seconds.
     """
 
     def __init__(self, stream=sys.stderr, interval=15.0):
@@ -99,7 +100,10 @@ class Progress:
             return
         self._shown = now
         what = self._steps[self._at][0]
-        line = f"[{self._at + 1}/{len(self._steps)}] {what} {self._fraction:4.0%}, about {duration(self.seconds_left())} left"
+        line = (
+            f"[{self._at + 1}/{len(self._steps)}] {what} {self._fraction:4.0%}, about"
+            f" {duration(self.seconds_left())} left"
+        )
         if self._in_place:
             self._stream.write(f"\r\033[K{line}")
             self._stream.flush()

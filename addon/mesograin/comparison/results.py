@@ -35,7 +35,8 @@ class Output:
                 os.fsync(probe.fileno())
         except OSError as error:
             raise OutputError(
-                f"The output folder {self.folder} cannot be written ({error.strerror}): free or choose another with --out."
+                f"The output folder {self.folder} cannot be written ({error.strerror}): free or choose another with"
+                " --out."
             ) from error
 
     def write_exr(self, name, pixels, provenance):
@@ -114,4 +115,8 @@ def _row(case):
     row.update(case.get("metrics", {}))
     for group in ("noise_floor", "mask"):
         row.update({f"{group}.{name}": value for name, value in case.get(group, {}).items()})
-    return {name: json.dumps(value) if isinstance(value, list) else value for name, value in row.items() if value is not None}
+    return {
+        name: json.dumps(value) if isinstance(value, list) else value
+        for name, value in row.items()
+        if value is not None
+    }

@@ -66,10 +66,12 @@ def cases(models, references=None):
 
 
 def compare(request, progress):
-    """Renders and compares every case of a Request in Blender's current scene and writes its files; returns the results.
+    """Renders and compares every case of a Request in Blender's current scene and writes its files; returns the
+    results.
 
     A case that fails is recorded with its sentence and the others go on. progress: a `progress.Progress`.
-    Raises OutputError if the folder cannot be written, native.Error or native_module.Unavailable if nothing can be rendered.
+    Raises OutputError if the folder cannot be written, native.Error or native_module.Unavailable if nothing can be
+    rendered.
     """
     native = native_module.get()
     scene = bpy.context.scene
@@ -98,8 +100,9 @@ def compare(request, progress):
             "samples": request.samples,
             "pixel_filter": "box, one pixel, on both sides",
             "colour_space": "linear, scene-referred",
-            "material_settings": {name: list(value) if isinstance(value, tuple) else value
-                                  for name, value in request.settings.items()},
+            "material_settings": {
+                name: list(value) if isinstance(value, tuple) else value for name, value in request.settings.items()
+            },
         },
         "definitions": definitions.OTHERS,
         "cases": [],
@@ -170,8 +173,15 @@ class _Comparison:
         kind = kinds.KINDS[case.reference]
         samples = self.request.reference_samples or kind.samples
         self.progress.begin()
-        theirs = reference.render(self.depsgraph, case.reference, self.size, samples=samples, cache=self.request.cache,
-                                  overrides=self.overrides, on_progress=self.progress.update)
+        theirs = reference.render(
+            self.depsgraph,
+            case.reference,
+            self.size,
+            samples=samples,
+            cache=self.request.cache,
+            overrides=self.overrides,
+            on_progress=self.progress.update,
+        )
         self.progress.end(learn=not theirs.cached)
         self.progress.begin()
         started = time.monotonic()

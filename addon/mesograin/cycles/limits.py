@@ -41,8 +41,10 @@ def _glossy(values):
     if values.roughness < MIRROR_ALPHA:
         return [
             Limit(
-                f"Cycles renders a GGX roughness (alpha) under {MIRROR_ALPHA:g} as a mirror, in which a sun cannot be seen; "
-                f"got {values.roughness:g}: raise the roughness.",
+                (
+                    f"Cycles renders a GGX roughness (alpha) under {MIRROR_ALPHA:g} as a mirror, in which a sun cannot"
+                    f" be seen; got {values.roughness:g}: raise the roughness."
+                ),
                 True,
             )
         ]
@@ -55,7 +57,10 @@ def _volume(values):
         found.append(Limit("A medium without absorption and scattering is invisible: raise sigma_a or sigma_s.", True))
     if abs(values.g) > PHASE_LIMIT:
         found.append(
-            Limit(f"Cycles limits the g of a volume to {PHASE_LIMIT:g}; got {values.g:g}: the reference uses the limit.", False)
+            Limit(
+                f"Cycles limits the g of a volume to {PHASE_LIMIT:g}; got {values.g:g}: the reference uses the limit.",
+                False,
+            )
         )
     return found
 
@@ -65,16 +70,20 @@ def _subsurface(values):
     if not 0.0 <= values.g <= inversion.ANISOTROPY_LIMIT:
         found.append(
             Limit(
-                f"Cycles' Subsurface Scattering allows g between 0 and {inversion.ANISOTROPY_LIMIT:g}; got {values.g:g}: "
-                "choose the reference volume_index_matched.",
+                (
+                    f"Cycles' Subsurface Scattering allows g between 0 and {inversion.ANISOTROPY_LIMIT:g}; got"
+                    f" {values.g:g}: choose the reference volume_index_matched."
+                ),
                 True,
             )
         )
     if min(values.sigma_t) <= 0.0:
         found.append(
             Limit(
-                "Cycles' Subsurface Scattering needs a positive sigma_a + sigma_s in every channel: "
-                "choose the reference volume_index_matched.",
+                (
+                    "Cycles' Subsurface Scattering needs a positive sigma_a + sigma_s in every channel: "
+                    "choose the reference volume_index_matched."
+                ),
                 True,
             )
         )
@@ -82,8 +91,10 @@ def _subsurface(values):
     if not low <= values.eta <= high:
         found.append(
             Limit(
-                f"Cycles' Subsurface Scattering limits the index of refraction to {low:g} to {high:g}; got {values.eta:g}: "
-                "the reference uses the limit.",
+                (
+                    f"Cycles' Subsurface Scattering limits the index of refraction to {low:g} to {high:g}; got"
+                    f" {values.eta:g}: the reference uses the limit."
+                ),
                 False,
             )
         )
@@ -91,7 +102,10 @@ def _subsurface(values):
     if largest > LOSSY_ALBEDO:
         found.append(
             Limit(
-                f"Cycles' random walk ends after 256 bounces, which loses up to 8 % of the light at an albedo of {largest:.6g}.",
+                (
+                    "Cycles' random walk ends after 256 bounces, which loses up to 8 % of the light at an albedo of"
+                    f" {largest:.6g}."
+                ),
                 False,
             )
         )

@@ -21,7 +21,8 @@ def build_material(material, reference, millimetres_per_unit=1.0):
 
 
 def build(name, recipe):
-    """A new material from a recipe. Raises RuntimeError if this Blender's nodes have a socket that the recipe leaves open."""
+    """A new material from a recipe. Raises RuntimeError if this Blender's nodes have a socket that the recipe leaves
+    open."""
     material = bpy.data.materials.new(name)
     try:
         material.use_nodes = True
@@ -65,8 +66,8 @@ def _check_sockets(node, description):
         valueless = socket.hide_value or socket.type == "SHADER" or not socket.enabled
         if not (valueless or socket.is_linked or socket.name in known):
             raise RuntimeError(
-                f"Blender {bpy.app.version_string} has a socket '{socket.name}' on {node.bl_idname} that Mesograin does not "
-                "know: the reference would depend on its default."
+                f"Blender {bpy.app.version_string} has a socket '{socket.name}' on {node.bl_idname} that Mesograin does"
+                " not know: the reference would depend on its default."
             )
 
 

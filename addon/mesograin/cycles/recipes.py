@@ -1,8 +1,10 @@
-# The Cycles node tree of each kind of reference, as plain data: hashed for the cache, kept with the render, built by `nodes`.
+# The Cycles node tree of each kind of reference, as plain data: hashed for the cache, kept with the render, built by
+# `nodes`.
 """A recipe is {"nodes": {name: {"type", "properties", "inputs"}}, "links": [[from, from socket, to, to socket]],
 "material": {property of `material.cycles`}}.
 
-`inputs` maps socket names to values. Names in `optional` are sockets that only some Blenders have; they are set where they are.
+`inputs` maps socket names to values. Names in `optional` are sockets that only some Blenders have; they are set where
+they are.
 Tuples are linear RGB.
 """
 

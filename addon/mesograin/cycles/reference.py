@@ -12,7 +12,6 @@ import numpy
 
 from .. import export, native_module
 from . import fingerprint, kinds, nodes, recipes, settings
-from .cache import Cache
 from .console import Console
 from .grain_values import GrainValues
 from .limits import limits
@@ -31,7 +30,8 @@ class ReferenceError(Exception):
 
 @dataclass(frozen=True)
 class Reference:
-    """images: one (h, w, 4) float32 array for each seed, linear, premultiplied, row 0 at the top; alpha is the coverage.
+    """images: one (h, w, 4) float32 array for each seed, linear, premultiplied, row 0 at the top; alpha is the
+    coverage.
     seconds: what rendering them took, now or when they were put into the cache. cached: whether nothing was rendered.
     provenance: one dict for each seed. notes: sentences about what Cycles could not express exactly."""
 
@@ -63,15 +63,16 @@ def render(depsgraph, kind, size, samples=None, seeds=SEEDS, cache=None, overrid
     steps = len(seeds) + kind.coverage_pass
     tell = on_progress or (lambda fraction: None)
 
-    shots = []
-    for step, seed in enumerate(seeds):
-        on_shot = lambda done, at=step: tell((at + done) / steps)
-        shots.append(_shot(depsgraph, kind, size, samples, seed, cache, overrides, on_shot))
+    def shoot(step, kind, samples, seed):
+        def on_shot(done):
+            tell((step + done) / steps)
+
+        return _shot(depsgraph, kind, size, samples, seed, cache, overrides, on_shot)
+
+    shots = [shoot(step, kind, samples, seed) for step, seed in enumerate(seeds)]
     images = [shot.pixels for shot in shots]
     if kind.coverage_pass:
-        covering = _shot(
-            depsgraph, kinds.COVERAGE, size, kinds.COVERAGE.samples, 0, cache, overrides, on_shot
-        )
+        covering = shoot(len(seeds), kinds.COVERAGE, kinds.COVERAGE.samples, 0)
         for image in images:
             image[..., 3] = covering.pixels[..., 3]
     return Reference(
@@ -151,7 +152,9 @@ def _shot(depsgraph, kind, size, samples, seed, cache, overrides, on_progress):
     }
     if cache:
         try:
-            cache.store(key, lambda path: native.write_exr(path, pixels, attributes={PROVENANCE: json.dumps(provenance)}))
+            cache.store(
+                key, lambda path: native.write_exr(path, pixels, attributes={PROVENANCE: json.dumps(provenance)})
+            )
         except (OSError, native.Error) as error:
             print(f"The reference is not kept: {error}")
     return _Shot(pixels, provenance, cached=False)
@@ -177,7 +180,9 @@ def _render_stage(native, scene, on_progress):
             try:
                 outcome = bpy.ops.render.render(scene=scene.name, write_still=True)
             except RuntimeError as error:
-                raise ReferenceError(f"Cycles could not render the reference: {' '.join(str(error).split())}") from error
+                raise ReferenceError(
+                    f"Cycles could not render the reference: {' '.join(str(error).split())}"
+                ) from error
         files = list(Path(folder).glob("*.exr"))
         if "FINISHED" not in outcome or not files:
             reason = next((line for line in reversed(console.lines) if "rror" in line), "Cycles gave no reason")

@@ -1,5 +1,6 @@
 # Every Cycles setting that a reference depends on, as plain data, and the one place that applies it.
-"""Nothing is left to a user's file or to a Blender's defaults: no denoiser, no clamp, no early end, a box filter of one pixel."""
+"""Nothing is left to a user's file or to a Blender's defaults: no denoiser, no clamp, no early end, a box filter of
+one pixel."""
 
 
 def settings(kind, samples, seed, size, pixel_aspect=(1.0, 1.0)):
@@ -88,7 +89,8 @@ def settings(kind, samples, seed, size, pixel_aspect=(1.0, 1.0)):
 
 
 def apply(scene, description):
-    """Sets them on a scene; a property that this Blender lacks is passed over, a tuple is a choice in order of preference."""
+    """Sets them on a scene; a property that this Blender lacks is passed over, a tuple is a choice in order of
+    preference."""
     owners = {
         "cycles": scene.cycles,
         "render": scene.render,

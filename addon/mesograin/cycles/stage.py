@@ -6,15 +6,18 @@ import bpy
 from .. import meshes
 from . import settings
 
+
 class StageError(Exception):
     """The scene cannot be rendered; one sentence."""
 
 
 class Stage:
-    """A context manager that holds a new scene: meshes, sun lights and camera of a depsgraph, a black world, nothing else.
+    """A context manager that holds a new scene: meshes, sun lights and camera of a depsgraph, a black world, nothing
+    else.
 
     depsgraph: evaluated; copied from, never kept. description: `settings.settings(...)`.
-    build_material: called once for each bpy.types.Material in use (None for faces without one), returns the new Cycles material.
+    build_material: called once for each bpy.types.Material in use (None for faces without one), returns the new Cycles
+    material.
     Everything made here is removed on exit, whatever happened inside.
     """
 
@@ -126,4 +129,3 @@ CAMERA_PROPERTIES = (
     "clip_end",
     "ortho_scale",
 )
-

@@ -1,4 +1,5 @@
-# Writes report.html beside a results.json: python3 build.py FOLDER [--out FILE]. Needs jinja2, matplotlib, numpy and the native module.
+# Writes report.html beside a results.json: python3 build.py FOLDER [--out FILE]. Needs jinja2, matplotlib, numpy and
+# the native module.
 """The command; one sentence and exit code 1 for whatever is missing."""
 
 import argparse
@@ -22,7 +23,9 @@ def main(words):
         import matplotlib  # noqa: F401
         import numpy  # noqa: F401
     except ImportError as error:
-        return _complain(f"{error.name} is needed by {sys.executable}: install python3-jinja2, python3-matplotlib and python3-numpy.")
+        return _complain(
+            f"{error.name} is needed by {sys.executable}: install python3-jinja2, python3-matplotlib and python3-numpy."
+        )
 
     from report import page_builder, reading
 

@@ -4,19 +4,36 @@
 import numpy
 
 ERROR_RANGE = (1e-3, 1.0)
-"""Relative error at the two ends of the false colours, which are logarithmic; the same in every picture, so that all compare."""
+"""Relative error at the two ends of the false colours, which are logarithmic; the same in every picture, so that all
+compare."""
 
 SIGNED_RANGE = 0.5
 """Relative error at either end of the signed colours, which are linear."""
 
-# Perceptually even, from dark to bright (the 'inferno' map of matplotlib, at ninths); read by eye and by a grey printer alike.
+# Perceptually even, from dark to bright (the 'inferno' map of matplotlib, at ninths); read by eye and by a grey printer
+# alike.
 _SEQUENTIAL = (
-    (0, 0, 4), (27, 12, 66), (75, 12, 107), (120, 28, 109), (165, 45, 96), (207, 68, 70), (237, 105, 37), (251, 155, 6),
-    (247, 209, 61), (252, 255, 164),
+    (0, 0, 4),
+    (27, 12, 66),
+    (75, 12, 107),
+    (120, 28, 109),
+    (165, 45, 96),
+    (207, 68, 70),
+    (237, 105, 37),
+    (251, 155, 6),
+    (247, 209, 61),
+    (252, 255, 164),
 )
 # Too dark is blue, too bright is red, right is the grey between them.
 _DIVERGING = (
-    (8, 48, 107), (33, 102, 172), (67, 147, 195), (146, 197, 222), (232, 232, 232), (244, 165, 130), (214, 96, 77), (178, 24, 43),
+    (8, 48, 107),
+    (33, 102, 172),
+    (67, 147, 195),
+    (146, 197, 222),
+    (232, 232, 232),
+    (244, 165, 130),
+    (214, 96, 77),
+    (178, 24, 43),
     (103, 0, 31),
 )
 

@@ -31,7 +31,11 @@ LEADING = (
 def build(results, cases):
     """The page's text. cases: [reading.CasePictures], in the order of results["cases"]."""
     environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(PAGE), autoescape=True, trim_blocks=True, lstrip_blocks=True, undefined=jinja2.StrictUndefined
+        loader=jinja2.FileSystemLoader(PAGE),
+        autoescape=True,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        undefined=jinja2.StrictUndefined,
     )
     environment.filters["form"] = form
     views, spent = [], 0
@@ -43,8 +47,10 @@ def build(results, cases):
     return environment.get_template("report.html.j2").render(
         results=results,
         cases=views,
-        leading=[{"key": key, "title": title, "form": how, "definition": _definition(results["definitions"], key)}
-                 for key, title, how in LEADING],
+        leading=[
+            {"key": key, "title": title, "form": how, "definition": _definition(results["definitions"], key)}
+            for key, title, how in LEADING
+        ],
         trade=Markup(plots.trade(done)) if done else "",
         style=Markup((PAGE / "report.css").read_text(encoding="utf-8")),
         script=Markup((PAGE / "report.js").read_text(encoding="utf-8")),
@@ -59,8 +65,15 @@ def build(results, cases):
 def _view(pictures, definitions, budget):
     """What the template needs of one case."""
     case = pictures.case
-    view = {"case": case, "done": case["status"] == "done", "size": 0, "live": None, "numbers": [], "others": [],
-            "parameters": _parameters(case["material"])}
+    view = {
+        "case": case,
+        "done": case["status"] == "done",
+        "size": 0,
+        "live": None,
+        "numbers": [],
+        "others": [],
+        "parameters": _parameters(case["material"]),
+    }
     if not view["done"]:
         return view
     view["png"] = pictures.png
@@ -72,20 +85,27 @@ def _view(pictures, definitions, budget):
     size = sum(len(text) for text in packed.values())
     if size <= budget:
         height, width = pictures.model.shape[:2]
-        view["live"] = Markup(
-            json.dumps({"width": width, "height": height, "stops": case["exposure_stops"], **packed})
-        )
+        view["live"] = Markup(json.dumps({"width": width, "height": height, "stops": case["exposure_stops"], **packed}))
         view["size"] = size
     relative = colours.relative_error(pictures.model, pictures.reference)
     view["profile"] = Markup(plots.profile(pictures.model, pictures.reference))
     view["histogram"] = Markup(plots.histogram(relative, pictures.mask))
     view["numbers"] = [
-        {"title": title, "text": form(_get(case, key), how), "value": _get(case, key), "definition": _definition(definitions, key)}
+        {
+            "title": title,
+            "text": form(_get(case, key), how),
+            "value": _get(case, key),
+            "definition": _definition(definitions, key),
+        }
         for key, title, how in LEADING
     ]
     view["others"] = [
-        {"title": name, "text": form(value, "number"), "floor": form(case["noise_floor"].get(name), "number"),
-         "definition": definitions.get(name, "")}
+        {
+            "title": name,
+            "text": form(value, "number"),
+            "floor": form(case["noise_floor"].get(name), "number"),
+            "definition": definitions.get(name, ""),
+        }
         for name, value in case["metrics"].items()
     ]
     view["verdict"] = _verdict(case)
@@ -122,8 +142,11 @@ def _text(value):
 
 def _verdict(case):
     """One sentence on how the model fares, as far as the reference's noise lets us see."""
-    error, corrected, floor = (case["metrics"]["relative_l1"], case["metrics"]["relative_l1_corrected"],
-                               case["noise_floor"]["relative_l1"])
+    error, corrected, floor = (
+        case["metrics"]["relative_l1"],
+        case["metrics"]["relative_l1_corrected"],
+        case["noise_floor"]["relative_l1"],
+    )
     if error is None:
         return "The reference is black: there is nothing to be relative to."
     if corrected is None:
@@ -160,12 +183,15 @@ def _colour_tables():
     def octets(table):
         return numpy.rint(255.0 * table).astype(int).ravel().tolist()
 
-    return json.dumps({
-        "sequential": octets(colours.SEQUENTIAL),
-        "diverging": octets(colours.DIVERGING),
-        "errorRange": colours.ERROR_RANGE,
-        "signedRange": colours.SIGNED_RANGE,
-    }, separators=(",", ":"))
+    return json.dumps(
+        {
+            "sequential": octets(colours.SEQUENTIAL),
+            "diverging": octets(colours.DIVERGING),
+            "errorRange": colours.ERROR_RANGE,
+            "signedRange": colours.SIGNED_RANGE,
+        },
+        separators=(",", ":"),
+    )
 
 
 def _gradient(table):

@@ -11,8 +11,8 @@ LARGEST = 65504.0
 
 
 def pack(pixels):
-    """(h, w, c) linear channels to text: half floats, channel by channel, all high bytes before all low ones (which compresses
-    better), deflated, in base64. NaN stays NaN."""
+    """(h, w, c) linear channels to text: half floats, channel by channel, all high bytes before all low ones (which
+    compresses better), deflated, in base64. NaN stays NaN."""
     halves = numpy.clip(pixels, -LARGEST, LARGEST).astype(">f2")
     planes = numpy.moveaxis(halves, -1, 0)
     octets = numpy.frombuffer(planes.tobytes(), numpy.uint8).reshape(-1, 2)

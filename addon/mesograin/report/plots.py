@@ -37,7 +37,8 @@ _STYLE = {
 
 
 def trade(cases):
-    """Error against milliseconds of a frame for all cases that are done; the bar reaches down to what noise alone would score."""
+    """Error against milliseconds of a frame for all cases that are done; the bar reaches down to what noise alone
+    would score."""
     with matplotlib.rc_context(_STYLE):
         figure, axes = _figure(9.0, 2.9)
         axes.set_xscale("log")
@@ -50,18 +51,26 @@ def trade(cases):
                 axes.plot([case["frame_ms"]] * 2, [min(floor, error), error], color=OURS, linewidth=1.0, alpha=0.45)
                 axes.plot([case["frame_ms"]], [floor], marker="_", color=OURS, markersize=8, alpha=0.7)
             axes.plot([case["frame_ms"]], [error], marker="o", color=OURS, markersize=6)
-            axes.annotate(case["name"], (case["frame_ms"], error), (8, 0), textcoords="offset points", va="center", fontsize=8.5)
+            axes.annotate(
+                case["name"], (case["frame_ms"], error), (8, 0), textcoords="offset points", va="center", fontsize=8.5
+            )
         axes.set_xlabel("milliseconds a frame")
         axes.set_ylabel("relative L1")
         _log_axis(axes.xaxis, [case["frame_ms"] for case in cases], 1.6, lambda value, _: f"{value:g}")
-        shares = [value for case in cases for value in (case["metrics"]["relative_l1"], case["noise_floor"]["relative_l1"]) if value]
+        shares = [
+            value
+            for case in cases
+            for value in (case["metrics"]["relative_l1"], case["noise_floor"]["relative_l1"])
+            if value
+        ]
         _log_axis(axes.yaxis, shares, 2.0, lambda value, _: f"{100 * value:g} %", steps=(1, 3))
         axes.grid(True, which="major")
         return _svg(figure)
 
 
 def profile(model, reference):
-    """Radiance along the line across the picture on which the reference changes most, averaged over a band of 5 pixels."""
+    """Radiance along the line across the picture on which the reference changes most, averaged over a band of 5
+    pixels."""
     line = _steepest_line(reference)
     if line is None:
         return ""
@@ -90,7 +99,9 @@ def histogram(relative, mask):
     reach = max(1.5 * float(numpy.percentile(numpy.abs(values), 95.0)), 0.05)
     with matplotlib.rc_context(_STYLE):
         figure, axes = _figure(4.0, 2.1)
-        axes.hist(numpy.clip(values, -reach, reach), bins=61, range=(-reach, reach), color=OURS, alpha=0.75, linewidth=0)
+        axes.hist(
+            numpy.clip(values, -reach, reach), bins=61, range=(-reach, reach), color=OURS, alpha=0.75, linewidth=0
+        )
         axes.axvline(0.0, color=QUIET, linewidth=0.8)
         axes.set_xlabel("(model − reference) / (reference + 0.01), per cent")
         axes.set_ylabel("pixels")
@@ -127,7 +138,7 @@ def _svg(figure):
     text = io.StringIO()
     figure.savefig(text, format="svg", metadata={"Date": None, "Creator": None, "Format": None, "Type": None})
     svg = text.getvalue()
-    svg = svg[svg.index("<svg") :]
+    svg = svg[svg.index("<svg"):]
     for stand_in, name in _PROPERTIES.items():
         svg = svg.replace(stand_in, f"var({name})")
     # Type and size are the page's.

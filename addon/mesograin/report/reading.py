@@ -20,8 +20,8 @@ class UnreadableError(Exception):
 
 @dataclass(frozen=True)
 class CasePictures:
-    """A case with its pictures. case: its entry in results.json. model, reference: (h, w, 4) float32, linear; mask: (h, w) bool, the pixels compared;
-    None if it failed. png: {name in `files`: data URI}."""
+    """A case with its pictures. case: its entry in results.json. model, reference: (h, w, 4) float32, linear; mask: (h,
+    w) bool, the pixels compared; None if it failed. png: {name in `files`: data URI}."""
 
     case: dict
     model: numpy.ndarray = None
@@ -43,7 +43,9 @@ def read(folder):
     if not isinstance(results, dict) or results.get("format") != "mesograin-results":
         raise UnreadableError(f"{path} holds no results of a comparison.")
     if results.get("format_version") != 1:
-        raise UnreadableError(f"{path} has format version {results.get('format_version')}; this report reads version 1.")
+        raise UnreadableError(
+            f"{path} has format version {results.get('format_version')}; this report reads version 1."
+        )
     native = _native()
     return results, [_pictures(native, folder, case) for case in results["cases"]]
 
@@ -73,7 +75,9 @@ def _native():
     spec = importlib.machinery.PathFinder.find_spec(NATIVE, [str(folder)])
     if spec is None or spec.loader is None:
         suffix = importlib.machinery.EXTENSION_SUFFIXES[0]
-        raise UnreadableError(f"the native module {NATIVE}{suffix} is needed to read EXR files, and is not in {folder}.")
+        raise UnreadableError(
+            f"the native module {NATIVE}{suffix} is needed to read EXR files, and is not in {folder}."
+        )
     try:
         module = importlib.util.module_from_spec(spec)
         spec.loader.exec_module(module)
