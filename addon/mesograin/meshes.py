@@ -18,7 +18,10 @@ class MeshPart(typing.NamedTuple):
 
 
 # Equal content is one native mesh, wherever it comes from: undo, a second viewport or a final render resend nothing.
+# Blender sums normals in any order of its threads, so their last digits differ from one evaluation to the next.
+NORMAL_TOLERANCE = 1e-5
 _by_content = weakref.WeakValueDictionary()
+_normals = weakref.WeakKeyDictionary()
 
 
 class MeshCache:
@@ -95,14 +98,15 @@ def _native_mesh(name, corners, triangles):
     positions, normals, uvs = corners
     triangles = np.ascontiguousarray(triangles, dtype=np.uint32)
     digest = hashlib.blake2b(digest_size=16)
-    for array in (positions, normals, uvs, triangles):
+    for array in (positions, uvs, triangles):
         digest.update(b"none" if array is None else array.tobytes())
     key = digest.digest()
     mesh = _by_content.get(key)
-    if mesh is None:
+    if mesh is None or not np.allclose(_normals[mesh], normals, rtol=0.0, atol=NORMAL_TOLERANCE):
         try:
             mesh = native.Mesh(positions, normals, triangles, uvs)
         except native.Error as error:
             raise native.Error(f"Object '{name}' cannot be drawn: {error}") from error
         _by_content[key] = mesh
+        _normals[mesh] = normals
     return mesh

@@ -6,18 +6,19 @@ import bpy
 from . import engine, export, native_module, presets, status
 
 ENGINES = {engine.MesograinRenderEngine.bl_idname}
-# Average width of a character of the interface's font, in pixels at a UI scale of 1.
+# At a UI scale of 1, in pixels: the average width of a character, and what margins and an icon take of a panel's width.
 CHARACTER_WIDTH = 6.5
+MARGINS = 95
 
 
 def draw_sentence(layout, context, sentence, icon="ERROR"):
     """A sentence of any length, wrapped to the region's width."""
     pixels = context.region.width if context.region else 300
-    columns = max(20, int(pixels / (CHARACTER_WIDTH * context.preferences.system.ui_scale)) - 8)
+    columns = max(8, int((pixels / context.preferences.system.ui_scale - MARGINS) / CHARACTER_WIDTH))
     column = layout.column(align=True)
     column.scale_y = 0.8
     for line, text in enumerate(textwrap.wrap(sentence, columns)):
-        column.label(text=text, icon=icon if line == 0 else "BLANK1")
+        column.label(text=text, icon="BLANK1" if line and icon != "NONE" else icon)
 
 
 def draw_native_problem(layout, context):
@@ -61,7 +62,7 @@ class MESOGRAIN_PT_material(MesograinPanel, bpy.types.Panel):
         if grain.model in presets.OPAQUE_MODELS:
             layout.prop(grain, "reflectance")
         else:
-            self._draw_medium(grain)
+            self._draw_medium(context, grain)
         if grain.model != "lambert":
             self._draw_surface(grain)
 
@@ -72,18 +73,18 @@ class MESOGRAIN_PT_material(MesograinPanel, bpy.types.Panel):
         except native.Error as error:
             draw_sentence(self.layout, context, str(error))
 
-    def _draw_medium(self, grain):
+    def _draw_medium(self, context, grain):
         layout = self.layout
-        layout.prop(grain, "sigma_s", text="Scattering (1/mm)")
-        layout.prop(grain, "sigma_a", text="Absorption (1/mm)")
+        layout.prop(grain, "sigma_s", text="sigma_s (1/mm)")
+        layout.prop(grain, "sigma_a", text="sigma_a (1/mm)")
         layout.prop(grain, "scale")
         layout.prop(grain, "g")
         layout.prop(grain, "profile")
-        column = layout.column(align=True)
+        column = layout.column()
         column.active = False
         sigma_t = [(sigma_s + sigma_a) * grain.scale for sigma_s, sigma_a in zip(grain.sigma_s, grain.sigma_a)]
         paths = ", ".join(f"{1.0 / value:.3g}" if value > 0.0 else "endless" for value in sigma_t)
-        column.label(text=f"Mean free path of R, G, B: {paths} mm")
+        draw_sentence(column, context, f"Mean free path of R, G, B: {paths} mm", icon="NONE")
 
     def _draw_surface(self, grain):
         layout = self.layout
@@ -127,9 +128,9 @@ class MESOGRAIN_PT_sampling(MesograinPanel, bpy.types.Panel):
         layout, settings = self.layout, context.scene.mesograin
         layout.use_property_split = True
         layout.use_property_decorate = False
-        draw_native_problem(layout, context)
-        for sentence in status.complaints():
-            draw_sentence(layout, context, sentence)
+        if not draw_native_problem(layout, context):
+            for sentence in status.complaints():
+                draw_sentence(layout, context, sentence)
         layout.prop(settings, "samples")
         layout.prop(settings, "viewport_samples")
         layout.prop(settings, "millimetres_per_unit")

@@ -46,20 +46,20 @@ class MaterialProperties(bpy.types.PropertyGroup):
         name="Reflectance", size=3, default=(0.5, 0.5, 0.5), min=0.0, max=1.0, precision=3, update=_tag,
         description="Albedo of Lambert, or reflectance of the conductor's facets, linear R, G and B, without unit")
     sigma_a: FloatVectorProperty(
-        name="Absorption sigma_a", size=3, default=(0.1, 0.1, 0.1), min=0.0, max=1e12, soft_max=10.0, step=1,
+        name="sigma_a", size=3, default=(0.1, 0.1, 0.1), min=0.0, max=1e12, soft_max=10.0, step=1,
         precision=4, update=_tag, description="Absorption coefficient for R, G and B, in 1/mm")
     sigma_s: FloatVectorProperty(
-        name="Scattering sigma_s", size=3, default=(0.9, 0.9, 0.9), min=0.0, max=1e12, soft_max=20.0, step=1,
+        name="sigma_s", size=3, default=(0.9, 0.9, 0.9), min=0.0, max=1e12, soft_max=20.0, step=1,
         precision=4, update=_tag, description="Scattering coefficient for R, G and B, in 1/mm. Not reduced: a table's "
         "sigma_s' equals sigma_s where g is 0")
     g: FloatProperty(
-        name="Anisotropy g", default=0.0, min=-1.0, max=1.0, soft_min=-0.99, soft_max=0.99, precision=3, update=_tag,
+        name="g", default=0.0, min=-1.0, max=1.0, soft_min=-0.99, soft_max=0.99, precision=3, update=_tag,
         description="Mean cosine of the scattering angle (Henyey-Greenstein), without unit; above 0 is forward")
     eta: FloatProperty(
-        name="Index eta", default=1.3, min=0.5, max=4.0, soft_min=1.0, soft_max=2.5, precision=3, update=_tag,
+        name="eta", default=1.3, min=0.5, max=4.0, soft_min=1.0, soft_max=2.5, precision=3, update=_tag,
         description="Index of refraction of the grain relative to what surrounds it, without unit")
     roughness: FloatProperty(
-        name="Roughness (alpha)", default=0.0, min=0.0, max=1.0, precision=3, update=_tag,
+        name="Roughness", default=0.0, min=0.0, max=1.0, precision=3, update=_tag,
         description="GGX alpha of the surface, without unit; the roughness of Cycles' nodes is its square root")
     scale: FloatProperty(
         name="Scale", default=1.0, min=0.0, max=1e12, soft_max=100.0, precision=3, update=_tag,

@@ -42,7 +42,7 @@ class Session:
 
     def set_camera(self, camera, width, height):
         """Takes a native.Camera and the region's size in pixels; restarts the picture if either is new."""
-        if self._view is not None and camera == self._camera and (width, height) == self.size:
+        if self._camera is not None and camera == self._camera and (width, height) == self.size:
             return
         self._interrupt()
         self._ensure_view(width, height)
@@ -104,6 +104,7 @@ class Session:
             concurrent.futures.wait([self._task])
             self._task = None
         self._chunk = 1
+        self.samples = 0
 
     def _render(self, samples):
         started = time.perf_counter()

@@ -1,0 +1,160 @@
+# Whatever is wrong with a scene becomes one sentence that names it, and Blender lives on.
+import math
+import os
+import signal
+import threading
+import time
+
+import bpy
+import pytest
+from mathutils import Matrix
+from mesograin import status
+from test_export import add_camera, add_cube, add_mesh_object, add_object, add_sun
+
+
+@pytest.fixture
+def scene():
+    """A lit cube before a camera, 16 pixels wide."""
+    scene = bpy.context.scene
+    scene.render.resolution_x = scene.render.resolution_y = 16
+    scene.mesograin.samples = 1
+    cube = add_cube()
+    cube.data.materials.append(bpy.data.materials.new("Sand"))
+    add_camera((0.0, 0.0, 6.0))
+    add_sun((0.2, 0.1, 1.0), 3.0)
+    return scene
+
+
+def error_of_render():
+    with pytest.raises(RuntimeError) as complaint:
+        bpy.ops.render.render()
+    return str(complaint.value)
+
+
+def assert_one_sentence(sentence, *words):
+    assert all(word in sentence for word in words), sentence
+    assert "Traceback" not in sentence
+
+
+def warnings_of_render(render):
+    picture = render()
+    return picture, status.get(status.RENDER).warnings
+
+
+def test_the_scene_itself_is_fine(scene, render):
+    picture, warnings = warnings_of_render(render)
+    assert warnings == () and picture[8, 8, 0] > 0.1
+
+
+@pytest.mark.parametrize("parameter", ["g", "eta", "roughness", "scale"])
+@pytest.mark.parametrize("value", [math.nan], ids=["nan"])
+def test_number_that_is_none(scene, render, parameter, value):
+    grain = bpy.data.materials["Sand"].mesograin
+    kept = getattr(grain, parameter)
+    setattr(grain, parameter, value)
+    assert_one_sentence(error_of_render(), "Material 'Sand'", parameter, "nan")
+    assert_one_sentence(status.get(status.RENDER).error, "Material 'Sand'", parameter)
+    setattr(grain, parameter, kept)
+    assert render()[8, 8, 0] > 0.1
+
+
+@pytest.mark.parametrize("parameter", ["reflectance", "sigma_a", "sigma_s"])
+@pytest.mark.parametrize("value", [math.nan], ids=["nan"])
+def test_vector_with_a_number_that_is_none(scene, parameter, value):
+    setattr(bpy.data.materials["Sand"].mesograin, parameter, (0.5, value, 0.5))
+    assert_one_sentence(error_of_render(), "Material 'Sand'", parameter, "channel G", "nan")
+
+
+def test_coordinates_that_are_none(scene):
+    bpy.data.objects["Cube"].data.vertices[3].co.x = math.nan
+    assert_one_sentence(error_of_render(), "Object 'Cube'", "finite")
+
+
+def test_sun_that_is_negative(scene):
+    bpy.data.lights["Sun"].energy = -1.0
+    assert_one_sentence(error_of_render(), "Light 'Sun'", "irradiance", "-1")
+
+
+def test_no_camera(scene, render):
+    bpy.data.objects.remove(bpy.data.objects["Camera"])
+    assert_one_sentence(error_of_render().lower(), "camera")
+    add_camera((0.0, 0.0, 6.0))
+    assert render()[8, 8, 0] > 0.1
+
+
+def test_no_light(scene, render):
+    bpy.data.objects.remove(bpy.data.objects["Sun"])
+    picture, warnings = warnings_of_render(render)
+    assert picture[..., :3].max() == 0.0
+    [sentence] = warnings
+    assert_one_sentence(sentence, "no sun light", "add one")
+
+
+def test_other_lights(scene, render):
+    for kind in ("POINT", "SPOT", "AREA"):
+        add_object(kind.title(), bpy.data.lights.new(kind.title(), kind))
+    _, warnings = warnings_of_render(render)
+    assert len(warnings) == 3
+    for kind in ("Point", "Spot", "Area"):
+        assert any(f"Light '{kind}'" in sentence and "only suns" in sentence for sentence in warnings)
+
+
+def test_empty_mesh(scene, render):
+    add_mesh_object("Dust", [], [])
+    add_mesh_object("Wire", [(0, 0, 0), (1, 0, 0)], [])
+    picture, warnings = warnings_of_render(render)
+    assert picture[8, 8, 0] > 0.1
+    assert len(warnings) == 2
+    for name in ("Dust", "Wire"):
+        assert any(f"Object '{name}' has no faces" in sentence for sentence in warnings)
+
+
+def test_empty_scene(scene, render):
+    bpy.data.objects.remove(bpy.data.objects["Cube"])
+    picture, warnings = warnings_of_render(render)
+    assert picture[..., :3].max() == 0.0
+    assert any("nothing to draw" in sentence for sentence in warnings)
+
+
+def test_object_scaled_to_nothing(scene, render):
+    add_cube("Gone", matrix=Matrix.Diagonal((1.0, 0.0, 1.0, 1.0)))
+    picture, warnings = warnings_of_render(render)
+    assert picture[8, 8, 0] > 0.1
+    assert any("Object 'Gone' is scaled to nothing" in sentence for sentence in warnings)
+
+
+def test_degenerate_faces(scene, render):
+    add_mesh_object("Sliver", [(0, 0, 2), (0, 0, 2), (0, 0, 2)], [(0, 1, 2)])
+    picture, _ = warnings_of_render(render)
+    assert (picture == picture).all() and picture[8, 8, 0] > 0.1
+
+
+def test_panoramic_camera(scene, render):
+    bpy.data.cameras["Camera"].type = "PANO"
+    _, warnings = warnings_of_render(render)
+    assert any("panoramic" in sentence for sentence in warnings)
+
+
+def test_mirrored_object_is_lit_from_outside(scene, render):
+    before = render()
+    bpy.data.objects["Cube"].scale = (-1.0, 1.0, 1.0)
+    assert abs(render() - before).max() < 1e-4
+
+
+def test_warnings_vanish_with_their_cause(scene, render):
+    add_mesh_object("Dust", [], [])
+    assert warnings_of_render(render)[1]
+    bpy.data.objects.remove(bpy.data.objects["Dust"])
+    assert warnings_of_render(render)[1] == ()
+    assert status.complaints() == []
+
+
+def test_a_cancelled_render_ends_at_once_and_keeps_what_it_has(scene):
+    scene.mesograin.samples = 1 << 20
+    # Ctrl-C is how a render without a window is cancelled.
+    timer = threading.Timer(1.0, os.kill, (os.getpid(), signal.SIGINT))
+    timer.start()
+    started = time.monotonic()
+    bpy.ops.render.render()
+    assert time.monotonic() - started < 10.0
+    assert 0 < status.get(status.RENDER).samples < 1 << 20

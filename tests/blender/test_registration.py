@@ -1,0 +1,79 @@
+# The add-on comes and goes without a trace, and names one version everywhere.
+import pathlib
+import re
+import subprocess
+import sys
+
+import bpy
+import mesograin
+import pytest
+from mesograin import compat, engine
+
+PACKAGE = pathlib.Path(mesograin.__file__).parent
+
+
+def registered():
+    handlers = {name for event in ("undo_post", "redo_post", "load_pre")
+                for name in (handler.__name__ for handler in getattr(bpy.app.handlers, event))}
+    return {
+        "classes": {name for name in dir(bpy.types) if "mesograin" in name.lower()},
+        "properties": {kind for kind in ("Material", "Scene") if hasattr(getattr(bpy.types, kind), "mesograin")},
+        "engines": {panel.__name__ for panel in compat.borrowed_panels()
+                    if engine.MesograinRenderEngine.bl_idname in panel.COMPAT_ENGINES},
+        "handlers": {name for name in handlers if name in ("_forget_meshes", "_stop_sessions")},
+    }
+
+
+def test_unregister_undoes_register_and_both_can_be_repeated():
+    before = registered()
+    assert all(before.values())
+    for _ in range(2):
+        mesograin.unregister()
+        assert not any(registered().values())
+        mesograin.register()
+        assert registered() == before
+
+
+def test_reload_scripts_keeps_everything_working(render, blend_files):
+    bpy.ops.wm.open_mainfile(filepath=str(blend_files / "sphere.blend"))
+    bpy.context.scene.mesograin.samples = 2
+    before = render()
+    bpy.ops.script.reload()
+    assert (abs(render() - before) < 1e-4).all()
+
+
+def test_one_version_everywhere(native):
+    manifest = (PACKAGE / "blender_manifest.toml").read_text()
+    assert re.search(r'^version = "(.*)"', manifest, re.M).group(1) == mesograin.__version__
+    assert native.__version__ == mesograin.__version__
+    project = (PACKAGE.parents[1] / "CMakeLists.txt").read_text()
+    assert re.search(r"project\(mesograin VERSION ([\d.]+)", project).group(1) == mesograin.__version__
+
+
+def test_enums_are_numbered_as_the_native_module_has_them(native):
+    from mesograin import properties
+
+    for parameter, items in (("model", properties.MODELS), ("boundary", properties.BOUNDARIES),
+                             ("masking", properties.MASKINGS), ("profile", properties.PROFILES)):
+        assert [item[3] for item in items] == list(range(len(items)))
+        with pytest.raises(native.Error) as complaint:
+            native.Material(**{parameter: "nothing"})
+        assert f"one of {', '.join(item[0] for item in items)};" in str(complaint.value)
+
+
+def test_defaults_are_the_native_module_s(native):
+    standard, grain = native.Material(), bpy.data.materials.new("Grain").mesograin
+    for parameter in ("model", "g", "eta", "roughness", "scale", "boundary", "masking", "profile"):
+        assert getattr(grain, parameter) == pytest.approx(getattr(standard, parameter))
+    for parameter in ("reflectance", "sigma_a", "sigma_s"):
+        assert tuple(getattr(grain, parameter)) == pytest.approx(getattr(standard, parameter))
+
+
+def test_package_imports_outside_blender():
+    run = subprocess.run([sys.executable, "-c", "import mesograin; print(mesograin.__version__)"],
+                         cwd=PACKAGE.parent, capture_output=True, text=True)
+    assert run.stdout.strip() == mesograin.__version__, run.stderr
+
+
+def test_self_test_passes():
+    assert bpy.ops.mesograin.self_test() == {"FINISHED"}

@@ -1,0 +1,53 @@
+# Runs checks inside Blender from a timer, one after the other, and leaves their results as JSON before it quits:
+#   blender --factory-startup --enable-event-simulate --python tests/window/driver.py -- FOLDER MODULE [check ...]
+import importlib
+import json
+import pathlib
+import sys
+import traceback
+
+import bpy
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE))
+
+
+def run_all(window, checks, folder):
+    results = {}
+    for name, check in checks:
+        window.begin(name)
+        try:
+            yield from check(window)
+            window.end()
+            results[name] = ""
+        except Exception:
+            results[name] = traceback.format_exc()
+        print(f"{name}: {'failed' if results[name] else 'passed'}", flush=True)
+        # After each, lest a crash takes the earlier ones along.
+        (folder / "results.json").write_text(json.dumps(results, indent=1))
+        yield from window.restore()
+
+
+def main():
+    import addon_utils
+
+    addon_utils.enable("mesograin", default_set=True)
+    import window
+
+    folder, module, *wanted = sys.argv[sys.argv.index("--") + 1:]
+    checks = [(name, function) for name, function in vars(importlib.import_module(module)).items()
+              if name.startswith("check_") and (not wanted or name in wanted)]
+    folder = pathlib.Path(folder)
+    steps = run_all(window.Window(folder), checks, folder)
+
+    def step():
+        try:
+            return next(steps)
+        except StopIteration:
+            bpy.ops.wm.quit_blender()
+            return None
+
+    bpy.app.timers.register(step, first_interval=1.0, persistent=True)
+
+
+main()

@@ -1,0 +1,69 @@
+# One test for each check that driver.py runs in a real Blender window on a virtual screen. Runs outside Blender:
+#   MESOGRAIN_BLENDER=/usr/bin/blender python3 -m pytest tests/window
+import ast
+import functools
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import tempfile
+
+import pytest
+
+HERE = pathlib.Path(__file__).resolve().parent
+EMPTY_FOLDER = tempfile.mkdtemp(prefix="mesograin-no-native-")
+SCREEN = ("xvfb-run", "--auto-servernum", "--server-args=-screen 0 1024x768x24")
+LAUNCHES = {  # what is checked, in which environment
+    "viewport": ("checks_viewport", {}),
+    "no_native_module": ("checks_unavailable", {"MESOGRAIN_NATIVE_DIR": EMPTY_FOLDER}),
+    "no_device": ("checks_unavailable", {"MESOGRAIN_GL_DEVICE": "nonexistent"}),
+}
+
+
+def names_of_checks(module):
+    tree = ast.parse((HERE / f"{module}.py").read_text())
+    return [node.name for node in tree.body if isinstance(node, ast.FunctionDef) and node.name.startswith("check_")]
+
+
+CASES = [(launch, name) for launch, (module, _) in LAUNCHES.items() for name in names_of_checks(module)]
+
+
+@pytest.fixture(scope="session")
+def launched(tmp_path_factory):
+    """launched(name) runs that launch once and gives ({check: traceback or ''}, Blender's output)."""
+
+    @functools.lru_cache(maxsize=None)
+    def launch(name):
+        assert shutil.which(SCREEN[0]), "the window tests need xvfb-run, of Debian's package xvfb"
+        module, environment = LAUNCHES[name]
+        folder = tmp_path_factory.mktemp(name)
+        command = [*SCREEN, os.environ.get("MESOGRAIN_BLENDER", "blender"), "--factory-startup",
+                   "--enable-event-simulate", "--window-geometry", "0", "0", "900", "640", "--python-exit-code", "1",
+                   "--python", str(HERE / "driver.py"), "--", str(folder), module]
+        # Installed as an artist has it, so that preferences find it.
+        addons = folder / "scripts" / "addons"
+        addons.mkdir(parents=True)
+        (addons / "mesograin").symlink_to(HERE.parents[1] / "addon" / "mesograin")
+        environment = {**os.environ, "BLENDER_USER_SCRIPTS": str(addons.parent), **environment}
+        run = subprocess.run(command, env=environment, stdout=subprocess.PIPE,
+                             stderr=subprocess.STDOUT, text=True, timeout=900)
+        results = folder / "results.json"
+        return (json.loads(results.read_text()) if results.exists() else {}), run.stdout, run.returncode
+
+    yield launch
+    os.rmdir(EMPTY_FOLDER)
+
+
+@pytest.mark.parametrize("launch, check", CASES, ids=[f"{launch}-{check}" for launch, check in CASES])
+def test_window(launched, launch, check):
+    results, output, _ = launched(launch)
+    assert check in results, f"Blender ended before this check:\n{output[-4000:]}"
+    assert results[check] == "", results[check]
+
+
+@pytest.mark.parametrize("launch", LAUNCHES)
+def test_blender_ends_well_and_shows_no_traceback(launched, launch):
+    _, output, code = launched(launch)
+    assert code == 0, f"Blender ended with {code}:\n{output[-4000:]}"
+    assert "Traceback" not in output, output[-4000:]
