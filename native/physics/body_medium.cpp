@@ -1,0 +1,57 @@
+// Coefficients per grain radius.
+#include "physics/body_medium.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mesograin::physics {
+namespace {
+
+// Thicker grains than this answer like a half-space to the last bit that is stored.
+constexpr double largest_optical_radius = 1e5;
+
+// Keeps D finite in a medium that hardly interacts; nothing comes out of the diffusion equation there.
+constexpr double least_optical_radius = 1e-9;
+
+DiffusionPart diffusion_part(const BodyMedium& medium, const BodySurface& surface, double removal) {
+  const double diffusion = 1.0 / (3.0 * std::max(medium.reduced_sigma_t(), least_optical_radius));
+  return {.source = 0.0, .extinction = 0.0, .decay = std::sqrt(removal / diffusion), .boundary_length = 2.0 * surface.diffusion.a * diffusion};
+}
+
+}  // namespace
+
+BodyMedium body_medium(const scene::Material& material, int channel, double grain_radius) {
+  const double unit = material.scale * grain_radius;
+  BodyMedium medium{material.sigma_a[channel] * unit, material.sigma_s[channel] * unit, std::clamp(material.g, -0.999, 0.999)};
+  const double sigma_t = medium.reduced_sigma_t();
+  if (sigma_t > largest_optical_radius) {
+    medium.sigma_a *= largest_optical_radius / sigma_t;
+    medium.sigma_s *= largest_optical_radius / sigma_t;
+  }
+  return medium;
+}
+
+BodySurface body_surface(const scene::Material& material) {
+  BodySurface surface;
+  surface.eta = material.boundary == scene::Boundary::dielectric ? material.eta : 1.0;
+  surface.cosine_entry =
+      material.boundary == scene::Boundary::lambert_lambert || material.boundary == scene::Boundary::lambert_refracted;
+  surface.diffusion = diffusion_boundary(surface.eta);
+  return surface;
+}
+
+DiffusionPart all_orders(const BodyMedium& medium, const BodySurface& surface) {
+  DiffusionPart part = diffusion_part(medium, surface, medium.sigma_a);
+  part.extinction = medium.reduced_sigma_t();
+  part.source = part.extinction > 0.0 ? medium.reduced_sigma_s() / part.extinction : 0.0;
+  return part;
+}
+
+DiffusionPart first_order(const BodyMedium& medium, const BodySurface& surface) {
+  DiffusionPart part = diffusion_part(medium, surface, medium.sigma_t());
+  part.extinction = medium.sigma_t();
+  part.source = part.extinction > 0.0 ? medium.sigma_s / part.extinction : 0.0;
+  return part;
+}
+
+}  // namespace mesograin::physics

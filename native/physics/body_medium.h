@@ -1,0 +1,48 @@
+// One colour channel of a grain's medium with the grain's radius as the unit of length.
+#pragma once
+
+#include "physics/fresnel_moments.h"
+#include "scene/material.h"
+
+namespace mesograin::physics {
+
+struct BodyMedium {
+  double sigma_a = 0.0;
+  double sigma_s = 0.0;
+  double g = 0.0;
+
+  double sigma_t() const { return sigma_a + sigma_s; }
+  double reduced_sigma_s() const { return (1.0 - g) * sigma_s; }
+  double reduced_sigma_t() const { return sigma_a + reduced_sigma_s(); }
+
+  bool operator==(const BodyMedium&) const = default;
+};
+
+/// `material`'s medium in one channel, per `grain_radius`; optical radii beyond 1e5 are taken as that.
+BodyMedium body_medium(const scene::Material& material, int channel, double grain_radius);
+
+/// How light gets into a body and out again.
+struct BodySurface {
+  double eta = 1.0;             ///< what refracts; 1 for every boundary but the dielectric
+  bool cosine_entry = false;    ///< light spreads by a cosine lobe as it enters
+  DiffusionBoundary diffusion;  ///< of `eta`
+};
+
+BodySurface body_surface(const scene::Material& material);
+
+/// The diffusion equation's constants for one part of the light in a BodyMedium (P1: D = 1/(3 sigma_t')).
+struct DiffusionPart {
+  double source;      ///< per unit of light that enters
+  double extinction;  ///< of the beam that feeds it: the source is source * extinction * exp(-extinction t)
+  double decay;       ///< sqrt(removal/D)
+  double boundary_length;  ///< 2 A D
+};
+
+/// Scattering of any order, with the similar medium: sigma_s', sigma_t', g = 0 (Ishimaru 1978 eq. 9-20; van de Hulst 1980 section 14.1).
+DiffusionPart all_orders(const BodyMedium& medium, const BodySurface& surface);
+
+/// Scattering once, in the same approximation: all that is scattered again is removed. all_orders - first_order are the orders from two up;
+/// each order of the diffusion equation's Neumann series is positive, hence so is the difference for g = 0.
+DiffusionPart first_order(const BodyMedium& medium, const BodySurface& surface);
+
+}  // namespace mesograin::physics

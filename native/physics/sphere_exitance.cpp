@@ -1,0 +1,219 @@
+// Beams enter by rings of equal azimuth; each is sampled along its way, and every sample adds to all Legendre orders.
+#include "physics/sphere_exitance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
+
+#include "physics/physics.h"
+#include "physics/quadrature.h"
+#include "physics/sphere_diffusion.h"
+#include "physics/sphere_refraction.h"
+
+namespace mesograin::physics {
+namespace {
+
+constexpr int largest_order = 40;
+constexpr int entry_nodes = 16;
+constexpr int depth_nodes = 16;
+
+// Calls visit(t, weight) for nodes that integrate a function times extinction exp(-extinction t) over a path of `length`. Cubes of a variable:
+// dense where a thick grain takes its light in, and reaching to the far end, which the beam itself lights in a dark grain.
+template <typename Visit>
+void for_depths(double extinction, double length, Visit visit) {
+  for (const QuadratureNode& node : gauss_legendre(depth_nodes)) {
+    const double t = length * node.x * node.x * node.x;
+    visit(t, 3.0 * node.x * node.x * node.weight * length * extinction * std::exp(-extinction * t));
+  }
+}
+
+struct Beam {
+  glm::dvec2 entry;      // (distance from the axis, height), the light comes down the axis
+  glm::dvec2 direction;  // inside
+  double chord;
+  double flux;           // per irradiance and area 2 pi
+  double reflectance;    // at either end
+};
+
+std::vector<Beam> entering_beams(double eta, int nodes) {
+  std::vector<Beam> beams;
+  for (const QuadratureNode& node : gauss_legendre(nodes)) {
+    const double mu = node.x;
+    const double mu_refracted = refracted_cosine(mu, eta);
+    const double transmittance = eta == 1.0 ? 1.0 : fresnel_transmittance(mu, mu_refracted, eta);
+    const glm::dvec2 normal(sine_of_cosine(mu), mu);
+    const glm::dvec2 direction = glm::dvec2(0.0, -1.0) / eta + (mu / eta - mu_refracted) * normal;
+    beams.push_back({normal, direction, 2.0 * mu_refracted, node.weight * mu * transmittance, 1.0 - transmittance});
+  }
+  return beams;
+}
+
+// Legendre moments of the source in the sphere, each sample already carried to the surface.
+class Moments {
+ public:
+  Moments(const DiffusionPart& part)
+      : source_(part.source),
+        solution_(part.decay, part.boundary_length, largest_order),
+        sums_(largest_order + 1),
+        transfer_(largest_order + 1),
+        legendre_(largest_order + 1) {}
+
+  void add(double radius, double cosine, double weight) {
+    solution_.transfer(radius, transfer_);
+    legendre_polynomials(cosine, legendre_);
+    for (int l = 0; l <= largest_order; ++l) sums_[l] += weight * transfer_[l] * legendre_[l];
+  }
+
+  double exitance(double cosine) const {
+    std::vector<double> legendre(largest_order + 1);
+    legendre_polynomials(cosine, legendre);
+    double sum = 0.0;
+    for (int l = 0; l <= largest_order; ++l) sum += (l + 0.5) * sums_[l] * legendre[l];
+    return source_ * sum;
+  }
+
+  void scale_order(int order, double factor) { sums_[order] *= factor; }
+
+ private:
+  double source_;
+  SphereDiffusion solution_;
+  std::vector<double> sums_;
+  std::vector<double> transfer_;
+  std::vector<double> legendre_;
+};
+
+Moments collimated_moments(const DiffusionPart& part, double eta) {
+  Moments moments(part);
+  for (Beam beam : entering_beams(eta, entry_nodes)) {
+    // Inside a sphere a ray meets the surface at the same angle each time.
+    for (int bounce = 0; bounce < 4 && beam.flux > 1e-4; ++bounce) {
+      for_depths(part.extinction, beam.chord, [&](double t, double weight) {
+        const glm::dvec2 point = beam.entry + t * beam.direction;
+        const double radius = std::min(1.0, glm::length(point));
+        moments.add(radius, radius > 0.0 ? std::clamp(point.y / radius, -1.0, 1.0) : 0.0, beam.flux * weight);
+      });
+      beam.flux *= beam.reflectance * std::exp(-part.extinction * beam.chord);
+      beam.entry += beam.chord * beam.direction;
+      beam.direction -= 2.0 * glm::dot(beam.direction, beam.entry) * beam.entry;
+    }
+  }
+  return moments;
+}
+
+// A cosine lobe at every lit point: by the addition theorem, averaging over its azimuth multiplies the moment of the irradiance by that of
+// the lobe's own light about the point where it enters.
+Moments cosine_entry_moments(const DiffusionPart& part) {
+  Moments moments(part);
+  for (const QuadratureNode& node : gauss_legendre(entry_nodes)) {
+    const double mu = node.x;
+    for_depths(part.extinction, 2.0 * mu, [&](double t, double weight) {
+      const glm::dvec2 point(t * sine_of_cosine(mu), 1.0 - t * mu);
+      const double radius = std::min(1.0, glm::length(point));
+      moments.add(radius, radius > 0.0 ? std::clamp(point.y / radius, -1.0, 1.0) : 0.0, 2.0 * mu * node.weight * weight);
+    });
+  }
+  std::vector<double> irradiance(largest_order + 1);
+  std::vector<double> legendre(largest_order + 1);
+  for (const QuadratureNode& node : gauss_legendre(48)) {
+    legendre_polynomials(node.x, legendre);
+    for (int l = 0; l <= largest_order; ++l) irradiance[l] += node.weight * node.x * legendre[l];
+  }
+  for (int l = 0; l <= largest_order; ++l) moments.scale_order(l, irradiance[l]);
+  return moments;
+}
+
+// int extinction e^{-extinction t} e^{-decay t mu} dt / (1 + b decay), over all depths.
+double half_space_part(const DiffusionPart& part, double mu_refracted) {
+  return part.source / ((1.0 + part.decay / part.extinction * mu_refracted) * (1.0 + part.boundary_length * part.decay));
+}
+
+}  // namespace
+
+std::vector<double> sphere_multiple_exitance(const BodyMedium& medium, const BodySurface& surface, const std::vector<double>& cosines) {
+  std::vector<double> exitance(cosines.size(), 0.0);
+  if (medium.reduced_sigma_s() <= 0.0) return exitance;
+  const auto add = [&](const Moments& moments, double sign) {
+    for (std::size_t i = 0; i < cosines.size(); ++i) exitance[i] += sign * moments.exitance(cosines[i]);
+  };
+  if (surface.cosine_entry) {
+    add(cosine_entry_moments(all_orders(medium, surface)), 1.0);
+  } else {
+    add(collimated_moments(all_orders(medium, surface), surface.eta), 1.0);
+    add(collimated_moments(first_order(medium, surface), surface.eta), -1.0);
+  }
+  // Orders that the sum leaves out ripple about zero where hardly any light arrives.
+  for (double& value : exitance) value = std::max(value, 0.0);
+  return exitance;
+}
+
+std::vector<double> half_space_multiple_exitance(const BodyMedium& medium, const BodySurface& surface, const std::vector<double>& cosines) {
+  std::vector<double> exitance(cosines.size(), 0.0);
+  if (medium.reduced_sigma_s() <= 0.0) return exitance;
+  const DiffusionPart all = all_orders(medium, surface);
+  const DiffusionPart first = first_order(medium, surface);
+  for (std::size_t i = 0; i < cosines.size(); ++i) {
+    const double mu = cosines[i];
+    if (mu <= 0.0) continue;
+    if (surface.cosine_entry) {
+      for (const QuadratureNode& node : gauss_legendre(entry_nodes))
+        exitance[i] += mu * 2.0 * node.x * node.weight * half_space_part(all, node.x);
+    } else {
+      const double mu_refracted = refracted_cosine(mu, surface.eta);
+      const double transmittance = surface.eta == 1.0 ? 1.0 : fresnel_transmittance(mu, mu_refracted, surface.eta);
+      exitance[i] = mu * transmittance * std::max(0.0, half_space_part(all, mu_refracted) - half_space_part(first, mu_refracted));
+    }
+  }
+  return exitance;
+}
+
+// Gathered along rays that leave: what is left of the light, times what is left of the way out.
+std::vector<double> sphere_single_exitance(double optical_radius, double eta, const std::vector<double>& cosines) {
+  constexpr int azimuths = 10;
+  std::vector<double> exitance(cosines.size(), 0.0);
+  if (optical_radius <= 0.0) return exitance;
+  const SphereRefraction& refraction = sphere_refraction(eta);
+  for (const QuadratureNode& node : gauss_legendre(8)) {
+    const double mu = node.x;
+    const double mu_inside = refracted_cosine(mu, eta);
+    const double transmittance = eta == 1.0 ? 1.0 : fresnel_transmittance(mu, mu_inside, eta);
+    const double sine_inside = sine_of_cosine(mu_inside);
+    // Radiance leaves spread by 1/eta^2; the azimuths of half a circle stand for all.
+    const double weight = 2.0 * PI * node.weight * mu * transmittance / (eta * eta) / (4.0 * PI) / azimuths;
+    for_depths(optical_radius, 2.0 * mu_inside, [&](double t, double scattered) {
+      for (std::size_t i = 0; i < cosines.size(); ++i) {
+        const double sine = sine_of_cosine(cosines[i]);
+        for (int k = 0; k < azimuths; ++k) {
+          const double azimuth = PI * (k + 0.5) / azimuths;
+          const real3 exit(sine, 0.0, cosines[i]);
+          const real3 tangent(cosines[i], 0.0, -sine);
+          const real3 point = exit - t * (mu_inside * exit + sine_inside * (std::cos(azimuth) * tangent + real3(0.0, std::sin(azimuth), 0.0)));
+          const double x = std::hypot(point.x, point.y);
+          const RefractedLight light = refraction.at(x, point.z);
+          const double depth = std::max(0.0, sine_of_cosine(x) - point.z);
+          exitance[i] += weight * scattered * light.irradiance * std::exp(-optical_radius * light.path_ratio * depth);
+        }
+      }
+    });
+  }
+  return exitance;
+}
+
+std::vector<double> half_space_single_exitance(double eta, const std::vector<double>& cosines) {
+  std::vector<double> exitance(cosines.size(), 0.0);
+  for (std::size_t i = 0; i < cosines.size(); ++i) {
+    const double mu = cosines[i];
+    if (mu <= 0.0) continue;
+    const double mu_refracted = refracted_cosine(mu, eta);
+    double sum = 0.0;
+    // Over the cosine outside, where transmission has no kink: mu' dmu' = mu dmu/eta^2 inside.
+    for (const QuadratureNode& node : gauss_legendre(48)) {
+      const double mu_exit = refracted_cosine(node.x, eta);
+      sum += node.weight * node.x / (eta * eta) * (eta == 1.0 ? 1.0 : fresnel_transmittance(node.x, mu_exit, eta)) / (mu_exit + mu_refracted);
+    }
+    exitance[i] = 0.5 * mu * (eta == 1.0 ? 1.0 : fresnel_transmittance(mu, mu_refracted, eta)) * sum;
+  }
+  return exitance;
+}
+
+}  // namespace mesograin::physics
