@@ -2,6 +2,7 @@
 #include "physics/material_inputs.h"
 
 #include "physics/model_1_inputs.h"
+#include "physics/model_2_inputs.h"
 #include "scene/error.h"
 
 namespace mesograin::physics {
@@ -25,7 +26,9 @@ MaterialInputs conductor_inputs(const Material& material) {
 
 }  // namespace
 
-MaterialInputs material_inputs(const Material& material) {
+bool depends_on_grain_radius(scene::Model model) { return model == scene::Model::model_2 || model == scene::Model::model_3; }
+
+MaterialInputs material_inputs(const Material& material, double grain_radius) {
   scene::validate(material);
   switch (material.model) {
     case scene::Model::lambert:
@@ -34,8 +37,10 @@ MaterialInputs material_inputs(const Material& material) {
       return conductor_inputs(material);
     case scene::Model::model_1:
       return model_1_inputs(material);
+    case scene::Model::model_2:
+      return model_2_inputs(material, grain_radius);
     default:
-      throw Error("model must be lambert, conductor or model_1; got '{}', which this version cannot draw.",
+      throw Error("model must be lambert, conductor, model_1 or model_2; got '{}', which this version cannot draw.",
                   scene::model_names[static_cast<std::size_t>(material.model)]);
   }
 }

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "physics/channels.h"
 #include "physics/fresnel_moments.h"
 #include "physics/half_space.h"
 #include "physics/medium.h"
@@ -20,25 +21,8 @@ using scene::Profile;
 constexpr int half_space_table_size = 64;
 constexpr int view_table_size = 128;
 
-// Calls `per_channel` for each channel, or only once for channels with the same medium.
-template <typename PerChannel>
-auto for_each_channel(const Material& material, PerChannel per_channel) {
-  std::array<decltype(per_channel(Medium{})), 3> results;
-  for (int channel = 0; channel < 3; ++channel) {
-    const Medium medium = half_space_medium(material, channel);
-    int same = 0;
-    while (half_space_medium(material, same) != medium) ++same;
-    results[channel] = same < channel ? results[same] : per_channel(medium);
-  }
-  return results;
-}
-
-Table pack(const std::array<std::vector<double>, 3>& channels, int width, int height) {
-  Table table{width, height, {}};
-  table.texels.reserve(channels[0].size());
-  for (std::size_t texel = 0; texel < channels[0].size(); ++texel)
-    table.texels.emplace_back(glm::dvec4(channels[0][texel], channels[1][texel], channels[2][texel], 1.0));
-  return table;
+std::array<Medium, 3> half_space_media(const Material& material) {
+  return {half_space_medium(material, 0), half_space_medium(material, 1), half_space_medium(material, 2)};
 }
 
 // The cosines inside at which the shader's coordinate (half_space_coordinate) is 0, 1/(n-1), ..., 1.
@@ -73,7 +57,7 @@ void add_half_space(const Material& material, double eta, MaterialInputs& inputs
   const std::vector<double> mu = table_cosines(eta);
   inputs.defines.emplace_back("MULTIPLE_TABLE");
   inputs.tables["multiple_scattering"] =
-      pack(for_each_channel(material,
+      pack(for_each_channel(half_space_media(material),
                             [&](const Medium& medium) { return HalfSpace(medium, eta).interior_table(mu, isotropic); }),
            half_space_table_size, half_space_table_size);
   if (!isotropic) add_single_scattering(material, inputs);
@@ -113,7 +97,7 @@ MaterialInputs interface_inputs(const Material& material) {
 // The light enters by a cosine lobe and the viewer sees one: the spherical albedo of the half-space, over pi.
 MaterialInputs lambert_lambert_inputs(const Material& material) {
   const std::array<double, 3> albedo =
-      for_each_channel(material, [](const Medium& medium) { return HalfSpaceInterior(medium).spherical_albedo(); });
+      for_each_channel(half_space_media(material), [](const Medium& medium) { return HalfSpaceInterior(medium).spherical_albedo(); });
   MaterialInputs inputs;
   inputs.defines.emplace_back("MULTIPLE_CONSTANT");
   inputs.uniforms["material.diffuse"] = glm::vec3(glm::dvec3(albedo[0], albedo[1], albedo[2]) / PI);
@@ -122,7 +106,7 @@ MaterialInputs lambert_lambert_inputs(const Material& material) {
 
 // Followed from the viewer: refracted into the medium, out again by a cosine lobe towards the light.
 MaterialInputs lambert_refracted_inputs(const Material& material) {
-  const auto channels = for_each_channel(material, [&](const Medium& medium) {
+  const auto channels = for_each_channel(half_space_media(material), [&](const Medium& medium) {
     const RefractedView view(medium, material.eta, material.roughness);
     std::vector<double> values;
     for (int i = 0; i < view_table_size; ++i) {

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace mesograin::render {
@@ -36,15 +37,19 @@ std::shared_ptr<gl::VertexArray> DeviceCache::mesh(const scene::MeshPointer& mes
   return device;
 }
 
-std::shared_ptr<DeviceMaterial> DeviceCache::material(const scene::Material& material) {
+std::shared_ptr<DeviceMaterial> DeviceCache::material(const scene::Material& material, double grain_radius) {
+  constexpr double radii_an_octave = 64.0;
+  const double radius = physics::depends_on_grain_radius(material.model)
+                            ? std::exp2(std::round(std::log2(grain_radius) * radii_an_octave) / radii_an_octave)
+                            : 1.0;
   for (const MaterialEntry& entry : materials_)
-    if (entry.source == material) return entry.device;
-  physics::MaterialInputs inputs = physics::material_inputs(material);
+    if (entry.source == material && entry.grain_radius == radius) return entry.device;
+  physics::MaterialInputs inputs = physics::material_inputs(material, radius);
   const gl::Program& shading = program(material.model, inputs.defines);
   ++sent_.materials;
   for (const auto& [name, table] : inputs.tables) sent_.bytes += table.texels.size() * sizeof(glm::vec4);
   auto device = std::make_shared<DeviceMaterial>(std::move(inputs), shading);
-  materials_.push_back({material, device});
+  materials_.push_back({material, radius, device});
   return device;
 }
 

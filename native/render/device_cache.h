@@ -47,7 +47,10 @@ struct Sent {
 class DeviceCache {
  public:
   std::shared_ptr<gl::VertexArray> mesh(const scene::MeshPointer& mesh);
-  std::shared_ptr<DeviceMaterial> material(const scene::Material& material);
+
+  /// `grain_radius` as in physics::material_inputs; materials are shared by grains within half a percent.
+  std::shared_ptr<DeviceMaterial> material(const scene::Material& material, double grain_radius);
+
 
   /// The program that draws a light map; compiled when the first material needs one.
   const gl::Program& light_map_program();
@@ -64,6 +67,7 @@ class DeviceCache {
   };
   struct MaterialEntry {
     scene::Material source;
+    double grain_radius;
     std::shared_ptr<DeviceMaterial> device;
   };
 

@@ -37,6 +37,22 @@ std::vector<glm::vec3> smooth_normals(const std::vector<glm::vec3>& positions,
   return normals;
 }
 
+double radius_of_mean_chord(const std::vector<glm::vec3>& positions, const std::vector<glm::uvec3>& triangles, const glm::dvec3& centre,
+                            double fallback) {
+  double area = 0.0;
+  double volume = 0.0;
+  for (const glm::uvec3& triangle : triangles) {
+    const glm::dvec3 a = glm::dvec3(positions[triangle.x]) - centre;
+    const glm::dvec3 b = glm::dvec3(positions[triangle.y]) - centre;
+    const glm::dvec3 c = glm::dvec3(positions[triangle.z]) - centre;
+    area += 0.5 * glm::length(glm::cross(b - a, c - a));
+    volume += glm::dot(a, glm::cross(b, c)) / 6.0;
+  }
+  // A closed mesh has at most the chords of the sphere around it; next to none means that it is a sheet.
+  const double radius = area > 0.0 ? 3.0 * std::abs(volume) / area : 0.0;
+  return radius > 1e-3 * fallback && radius < fallback ? radius : fallback;
+}
+
 }  // namespace
 
 Mesh::Mesh(std::vector<glm::vec3> positions, std::vector<glm::vec3> normals, std::vector<glm::uvec3> triangles,
@@ -67,6 +83,8 @@ Mesh::Mesh(std::vector<glm::vec3> positions, std::vector<glm::vec3> normals, std
     lower_ = glm::min(lower_, position);
     upper_ = glm::max(upper_, position);
   }
+  const glm::dvec3 half = 0.5 * (glm::dvec3(upper_) - glm::dvec3(lower_));
+  equivalent_radius_ = radius_of_mean_chord(positions_, triangles_, glm::dvec3(lower_) + half, glm::length(half));
 }
 
 }  // namespace mesograin::scene

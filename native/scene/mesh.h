@@ -26,6 +26,10 @@ class Mesh {
   const glm::vec3& lower() const { return lower_; }
   const glm::vec3& upper() const { return upper_; }
 
+  /// Radius of the sphere that has the same mean chord, 4 volume/area (Cauchy), in the mesh's own space. A mesh that encloses no volume
+  /// stands for the sphere around its box.
+  double equivalent_radius() const { return equivalent_radius_; }
+
  private:
   std::vector<glm::vec3> positions_;
   std::vector<glm::vec3> normals_;
@@ -33,6 +37,7 @@ class Mesh {
   std::vector<glm::vec2> uvs_;
   glm::vec3 lower_{0.0F};
   glm::vec3 upper_{0.0F};
+  double equivalent_radius_ = 0.0;
 };
 
 using MeshPointer = std::shared_ptr<const Mesh>;

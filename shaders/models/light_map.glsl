@@ -29,6 +29,12 @@ vec3 to_light_space(int light, vec3 vector) {
 // Half the width of the square that the map covers, in scene units.
 float light_map_half_width(int light) { return light_frames[light].z_axis.w; }
 
+// How far a surface of this normal may lie from its own tangent plane in the map, along z: what is nearer than this is the same surface.
+float light_map_tolerance(int light, vec3 normal) {
+  float texel_width = 2.0 * light_frames[light].z_axis.w / float(textureSize(light_maps, 0).x);
+  return texel_width * (1.0 + 2.0 * sqrt(max(1.0 - normal.z * normal.z, 0.0)) / max(normal.z, 0.05));
+}
+
 LightMapTexel light_map_at(int light, vec2 xy) {
   LightFrame frame = light_frames[light];
   float resolution = float(textureSize(light_maps, 0).x);

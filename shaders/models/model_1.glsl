@@ -1,77 +1,9 @@
 // Model 1: a grain so thick that it answers like a half-space of its medium, which makes a BRDF of the BSSRDF. No light map.
 // Not physical: no light passes through or around a grain, so its unlit side is black; a rough interface is taken as smooth.
-//
-// What is chosen at compile time (physics::material_inputs):
-//   REFRACTION           a dielectric interface: Fresnel on both ways, refracted directions, 1/eta^2
-//   MULTIPLE_TABLE       `multiple_scattering`: what the half-space solver left in a table over both directions
-//   MULTIPLE_CONSTANT    `material.diffuse`: a constant radiance per irradiance
-//   VIEW_TABLE           `multiple_scattering`: as MULTIPLE_TABLE, over the viewer's direction alone
-//   SINGLE_SCATTERING    first-order scattering in closed form, where the table does not hold it already
+#include "models/half_space_light.glsl"
 #include "models/interface.glsl"
-#include "physics/prelude.glsl"
-#include "physics/fresnel.glsl"
-#include "physics/half_space.glsl"
-#include "physics/henyey_greenstein.glsl"
-
-struct Material {
-  vec3 albedo;
-  vec3 diffuse;
-  float eta;
-  float inverse_eta_squared;
-  float absolute_g;
-  float one_minus_absolute_g;
-  float sign_g;
-};
-uniform Material material;
-
-#if defined(MULTIPLE_TABLE) || defined(VIEW_TABLE)
-uniform sampler2D multiple_scattering;
-
-// A coordinate in [0, 1] that reaches the centres of the first and the last texel.
-vec2 texel_coordinate(vec2 coordinate) {
-  vec2 size = vec2(textureSize(multiple_scattering, 0));
-  return (coordinate * (size - 1.0) + 0.5) / size;
-}
-#endif
 
 vec3 evaluate_model(SurfacePoint point, LightSample light) {
-  float mu_i = dot(point.normal, light.to_light);
-  if (mu_i <= 0.0) return vec3(0.0);
-  mu_i = min(mu_i, 1.0);
-  float mu_o = clamp(dot(point.normal, point.to_viewer), 0.0, 1.0);
-  vec3 irradiance = light.irradiance * mu_i;
-
-#if defined(VIEW_TABLE)
-  return texture(multiple_scattering, texel_coordinate(vec2(sqrt(mu_o), 0.5))).rgb * irradiance;
-#else
-#ifdef REFRACTION
-  float mu_i_refracted = refracted_cosine(mu_i, material.eta);
-  float mu_o_refracted = refracted_cosine(mu_o, material.eta);
-  float transmittance = fresnel_transmittance(mu_i, mu_i_refracted, material.eta) *
-                        fresnel_transmittance(mu_o, mu_o_refracted, material.eta);
-#else
-  float mu_i_refracted = mu_i;
-  float mu_o_refracted = mu_o;
-  float transmittance = 1.0;
-#endif
-
-  vec3 radiance = vec3(0.0);
-#ifdef MULTIPLE_CONSTANT
-  radiance += transmittance * material.diffuse;
-#endif
-#if defined(MULTIPLE_TABLE) || defined(SINGLE_SCATTERING)
-  vec3 per_factor = vec3(0.0);
-#ifdef MULTIPLE_TABLE
-  per_factor += texture(multiple_scattering, texel_coordinate(vec2(half_space_coordinate(mu_i, mu_i_refracted),
-                                                                   half_space_coordinate(mu_o, mu_o_refracted)))).rgb;
-#endif
-#ifdef SINGLE_SCATTERING
-  float versine = refracted_versine(light.to_light, mu_i, mu_i_refracted, point.to_viewer, mu_o, mu_o_refracted, point.normal,
-                                    material.inverse_eta_squared, material.sign_g);
-  per_factor += material.albedo * henyey_greenstein(versine, material.absolute_g, material.one_minus_absolute_g);
-#endif
-  radiance += half_space_factor(mu_i_refracted, mu_o_refracted, transmittance, material.inverse_eta_squared) * per_factor;
-#endif
-  return radiance * irradiance;
-#endif
+  HalfSpaceLight result = half_space_light(point, light);
+  return result.single + result.multiple;
 }
