@@ -15,14 +15,18 @@ constexpr double least_optical_radius = 1e-9;
 
 DiffusionPart diffusion_part(const BodyMedium& medium, const BodySurface& surface, double removal) {
   const double diffusion = 1.0 / (3.0 * std::max(medium.reduced_sigma_t(), least_optical_radius));
-  return {.source = 0.0, .extinction = 0.0, .decay = std::sqrt(removal / diffusion), .boundary_length = 2.0 * surface.diffusion.a * diffusion};
+  return {.source = 0.0,
+          .extinction = 0.0,
+          .decay = std::sqrt(removal / diffusion),
+          .boundary_length = 2.0 * surface.diffusion.a * diffusion};
 }
 
 }  // namespace
 
 BodyMedium body_medium(const scene::Material& material, int channel, double grain_radius) {
   const double unit = material.scale * grain_radius;
-  BodyMedium medium{material.sigma_a[channel] * unit, material.sigma_s[channel] * unit, std::clamp(material.g, -0.999, 0.999)};
+  BodyMedium medium{material.sigma_a[channel] * unit, material.sigma_s[channel] * unit,
+                    std::clamp(material.g, -0.999, 0.999)};
   const double sigma_t = medium.reduced_sigma_t();
   if (sigma_t > largest_optical_radius) {
     medium.sigma_a *= largest_optical_radius / sigma_t;

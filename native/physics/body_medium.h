@@ -32,17 +32,19 @@ BodySurface body_surface(const scene::Material& material);
 
 /// The diffusion equation's constants for one part of the light in a BodyMedium (P1: D = 1/(3 sigma_t')).
 struct DiffusionPart {
-  double source;      ///< per unit of light that enters
-  double extinction;  ///< of the beam that feeds it: the source is source * extinction * exp(-extinction t)
-  double decay;       ///< sqrt(removal/D)
+  double source;           ///< per unit of light that enters
+  double extinction;       ///< of the beam that feeds it: the source is source * extinction * exp(-extinction t)
+  double decay;            ///< sqrt(removal/D)
   double boundary_length;  ///< 2 A D
 };
 
-/// Scattering of any order, with the similar medium: sigma_s', sigma_t', g = 0 (Ishimaru 1978 eq. 9-20; van de Hulst 1980 section 14.1).
+/// Scattering of any order, with the similar medium: sigma_s', sigma_t', g = 0 (Ishimaru 1978 eq. 9-20; van de Hulst
+/// 1980 section 14.1).
 DiffusionPart all_orders(const BodyMedium& medium, const BodySurface& surface);
 
-/// Scattering once, in the same approximation: all that is scattered again is removed. all_orders - first_order are the orders from two up;
-/// each order of the diffusion equation's Neumann series is positive, hence so is the difference for g = 0.
+/// Scattering once, in the same approximation: all that is scattered again is removed. all_orders - first_order are the
+/// orders from two up; each order of the diffusion equation's Neumann series is positive, hence so is the difference
+/// for g = 0.
 DiffusionPart first_order(const BodyMedium& medium, const BodySurface& surface);
 
 }  // namespace mesograin::physics

@@ -96,8 +96,8 @@ MaterialInputs interface_inputs(const Material& material) {
 
 // The light enters by a cosine lobe and the viewer sees one: the spherical albedo of the half-space, over pi.
 MaterialInputs lambert_lambert_inputs(const Material& material) {
-  const std::array<double, 3> albedo =
-      for_each_channel(half_space_media(material), [](const Medium& medium) { return HalfSpaceInterior(medium).spherical_albedo(); });
+  const std::array<double, 3> albedo = for_each_channel(
+      half_space_media(material), [](const Medium& medium) { return HalfSpaceInterior(medium).spherical_albedo(); });
   MaterialInputs inputs;
   inputs.defines.emplace_back("MULTIPLE_CONSTANT");
   inputs.uniforms["material.diffuse"] = glm::vec3(glm::dvec3(albedo[0], albedo[1], albedo[2]) / PI);

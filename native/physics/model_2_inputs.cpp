@@ -1,4 +1,5 @@
-// The same theory solves sphere and half-space, so its own error cancels where they meet and model 2 becomes model 1 for a thick grain.
+// The same theory solves sphere and half-space, so its own error cancels where they meet and model 2 becomes model 1
+// for a thick grain.
 #include "physics/model_2_inputs.h"
 
 #include <cmath>
@@ -29,14 +30,17 @@ std::vector<double> table_cosines() {
 }
 
 // Below 0, what a body keeps of the half-space's light, less 1; above 0, the exitance it has beyond the half-space's.
-double difference(double body, double half_space) { return body < half_space ? body / half_space - 1.0 : body - half_space; }
+double difference(double body, double half_space) {
+  return body < half_space ? body / half_space - 1.0 : body - half_space;
+}
 
 struct Orders {
   bool single;
   bool multiple;
 };
 
-std::vector<double> differences(const BodyMedium& medium, const BodySurface& surface, const Orders& orders) {
+std::vector<double> differences(const BodyMedium& medium, const BodySurface& surface,
+                                const SphereSingleScattering& single, const Orders& orders) {
   const std::vector<double> cosines = table_cosines();
   const double albedo = medium.sigma_t() > 0.0 ? medium.sigma_s / medium.sigma_t() : 0.0;
   std::vector<double> half_space(cosine_count, 0.0);
@@ -52,7 +56,7 @@ std::vector<double> differences(const BodyMedium& medium, const BodySurface& sur
     const BodyMedium scaled{medium.sigma_a * radius, medium.sigma_s * radius, medium.g};
     std::vector<double> body(cosine_count, 0.0);
     if (orders.multiple) add(body, sphere_multiple_exitance(scaled, surface, cosines), 1.0);
-    if (orders.single && albedo > 0.0) add(body, sphere_single_exitance(scaled.sigma_t(), surface.eta, cosines), albedo);
+    if (orders.single && albedo > 0.0) add(body, single.exitance(scaled.sigma_t()), albedo);
     for (int i = 0; i < cosine_count; ++i) values.push_back(difference(body[i], half_space[i]));
   }
   return values;
@@ -66,9 +70,11 @@ MaterialInputs model_2_inputs(const scene::Material& material, double grain_radi
   const BodySurface surface = body_surface(material);
   const std::array<BodyMedium, 3> media{body_medium(material, 0, grain_radius), body_medium(material, 1, grain_radius),
                                         body_medium(material, 2, grain_radius)};
+  const SphereSingleScattering single(surface.eta, table_cosines());
   const auto add_table = [&](const char* name, const Orders& orders) {
     inputs.tables[name] = pack(
-        for_each_channel(media, [&](const BodyMedium& medium) { return differences(medium, surface, orders); }), cosine_count, radius_count);
+        for_each_channel(media, [&](const BodyMedium& medium) { return differences(medium, surface, single, orders); }),
+        cosine_count, radius_count);
   };
   // Anisotropic first-order scattering keeps its phase function; everything else leaves by the interface's own lobe.
   const bool separate = !surface.cosine_entry && material.g != 0.0;
@@ -78,7 +84,8 @@ MaterialInputs model_2_inputs(const scene::Material& material, double grain_radi
   }
   add_table("body_difference", {.single = !surface.cosine_entry && !separate, .multiple = true});
   inputs.uniforms["body.radius"] = static_cast<float>(grain_radius);
-  inputs.uniforms["body.exit_lobe"] = static_cast<float>(1.0 / (3.14159265358979323846 * surface.diffusion.exit_transmittance));
+  inputs.uniforms["body.exit_lobe"] =
+      static_cast<float>(1.0 / (3.14159265358979323846 * surface.diffusion.exit_transmittance));
   return inputs;
 }
 

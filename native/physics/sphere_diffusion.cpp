@@ -12,8 +12,8 @@ namespace {
 // Below this a decay is indistinguishable from none: the ratios are linear in it to 1e-12.
 constexpr double least_decay = 1e-5;
 
-// i_{l+1}(x)/i_l(x)/x for l = 0, 1, ..., by the continued fraction of the recurrence i_{l-1} = i_{l+1} + (2l+1)/x i_l (Abramowitz & Stegun
-// 10.2.18), run downwards from a value between the bounds of Amos 1974 (eqs. 9 and 11).
+// i_{l+1}(x)/i_l(x)/x for l = 0, 1, ..., by the continued fraction of the recurrence i_{l-1} = i_{l+1} + (2l+1)/x i_l
+// (Abramowitz & Stegun 10.2.18), run downwards from a value between the bounds of Amos 1974 (eqs. 9 and 11).
 void neighbour_ratios(double x, std::vector<double>& ratios) {
   constexpr int run_up = 24;
   const int count = static_cast<int>(ratios.size());

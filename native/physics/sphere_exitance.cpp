@@ -18,8 +18,9 @@ constexpr int largest_order = 48;
 constexpr int entry_nodes = 16;
 constexpr int depth_nodes = 16;
 
-// Calls visit(t, weight) for nodes that integrate a function times extinction exp(-extinction t) over a path of `length`. Cubes of a variable:
-// dense where a thick grain takes its light in, and reaching to the far end, which the beam itself lights in a dark grain.
+// Calls visit(t, weight) for nodes that integrate a function times extinction exp(-extinction t) over a path of
+// `length`. Cubes of a variable: dense where a thick grain takes its light in, and reaching to the far end, which the
+// beam itself lights in a dark grain.
 template <typename Visit>
 void for_depths(double extinction, double length, Visit visit) {
   for (const QuadratureNode& node : gauss_legendre(depth_nodes)) {
@@ -32,8 +33,8 @@ struct Beam {
   glm::dvec2 entry;      // (distance from the axis, height), the light comes down the axis
   glm::dvec2 direction;  // inside
   double chord;
-  double flux;           // per irradiance and area 2 pi
-  double reflectance;    // at either end
+  double flux;         // per irradiance and area 2 pi
+  double reflectance;  // at either end
 };
 
 std::vector<Beam> entering_beams(double eta, int nodes) {
@@ -70,8 +71,8 @@ class Moments {
     legendre_polynomials(cosine, legendre);
     double sum = 0.0;
     for (int l = 0; l <= largest_order; ++l) {
-      // An exponential filter (Gottlieb & Shu 1997, section 2.3): a thick grain's terminator is sharper than these orders can draw, and what
-      // they lack would ripple over the dark side.
+      // An exponential filter (Gottlieb & Shu 1997, section 2.3): a thick grain's terminator is sharper than these
+      // orders can draw, and what they lack would ripple over the dark side.
       const double share = static_cast<double>(l) / largest_order;
       sum += std::exp(-14.0 * share * share * share * share) * (l + 0.5) * sums_[l] * legendre[l];
     }
@@ -92,7 +93,7 @@ Moments collimated_moments(const DiffusionPart& part, double eta) {
   Moments moments(part);
   for (Beam beam : entering_beams(eta, entry_nodes)) {
     // Inside a sphere a ray meets the surface at the same angle each time.
-    for (int bounce = 0; bounce < 4 && beam.flux > 1e-4; ++bounce) {
+    for (int bounce = 0; bounce < 4 && beam.flux > 1e-3; ++bounce) {
       for_depths(part.extinction, beam.chord, [&](double t, double weight) {
         const glm::dvec2 point = beam.entry + t * beam.direction;
         const double radius = std::min(1.0, glm::length(point));
@@ -106,8 +107,8 @@ Moments collimated_moments(const DiffusionPart& part, double eta) {
   return moments;
 }
 
-// A cosine lobe at every lit point: by the addition theorem, averaging over its azimuth multiplies the moment of the irradiance by that of
-// the lobe's own light about the point where it enters.
+// A cosine lobe at every lit point: by the addition theorem, averaging over its azimuth multiplies the moment of the
+// irradiance by that of the lobe's own light about the point where it enters.
 Moments cosine_entry_moments(const DiffusionPart& part) {
   Moments moments(part);
   for (const QuadratureNode& node : gauss_legendre(entry_nodes)) {
@@ -115,7 +116,8 @@ Moments cosine_entry_moments(const DiffusionPart& part) {
     for_depths(part.extinction, 2.0 * mu, [&](double t, double weight) {
       const glm::dvec2 point(t * sine_of_cosine(mu), 1.0 - t * mu);
       const double radius = std::min(1.0, glm::length(point));
-      moments.add(radius, radius > 0.0 ? std::clamp(point.y / radius, -1.0, 1.0) : 0.0, 2.0 * mu * node.weight * weight);
+      moments.add(radius, radius > 0.0 ? std::clamp(point.y / radius, -1.0, 1.0) : 0.0,
+                  2.0 * mu * node.weight * weight);
     });
   }
   std::vector<double> irradiance(largest_order + 1);
@@ -130,12 +132,14 @@ Moments cosine_entry_moments(const DiffusionPart& part) {
 
 // int extinction e^{-extinction t} e^{-decay t mu} dt / (1 + b decay), over all depths.
 double half_space_part(const DiffusionPart& part, double mu_refracted) {
-  return part.source / ((1.0 + part.decay / part.extinction * mu_refracted) * (1.0 + part.boundary_length * part.decay));
+  return part.source /
+         ((1.0 + part.decay / part.extinction * mu_refracted) * (1.0 + part.boundary_length * part.decay));
 }
 
 }  // namespace
 
-std::vector<double> sphere_multiple_exitance(const BodyMedium& medium, const BodySurface& surface, const std::vector<double>& cosines) {
+std::vector<double> sphere_multiple_exitance(const BodyMedium& medium, const BodySurface& surface,
+                                             const std::vector<double>& cosines) {
   std::vector<double> exitance(cosines.size(), 0.0);
   if (medium.reduced_sigma_s() <= 0.0) return exitance;
   const auto add = [&](const Moments& moments, double sign) {
@@ -152,7 +156,8 @@ std::vector<double> sphere_multiple_exitance(const BodyMedium& medium, const Bod
   return exitance;
 }
 
-std::vector<double> half_space_multiple_exitance(const BodyMedium& medium, const BodySurface& surface, const std::vector<double>& cosines) {
+std::vector<double> half_space_multiple_exitance(const BodyMedium& medium, const BodySurface& surface,
+                                                 const std::vector<double>& cosines) {
   std::vector<double> exitance(cosines.size(), 0.0);
   if (medium.reduced_sigma_s() <= 0.0) return exitance;
   const DiffusionPart all = all_orders(medium, surface);
@@ -166,40 +171,52 @@ std::vector<double> half_space_multiple_exitance(const BodyMedium& medium, const
     } else {
       const double mu_refracted = refracted_cosine(mu, surface.eta);
       const double transmittance = surface.eta == 1.0 ? 1.0 : fresnel_transmittance(mu, mu_refracted, surface.eta);
-      exitance[i] = mu * transmittance * std::max(0.0, half_space_part(all, mu_refracted) - half_space_part(first, mu_refracted));
+      exitance[i] =
+          mu * transmittance * std::max(0.0, half_space_part(all, mu_refracted) - half_space_part(first, mu_refracted));
     }
   }
   return exitance;
 }
 
-// Gathered along rays that leave: what is left of the light, times what is left of the way out.
-std::vector<double> sphere_single_exitance(double optical_radius, double eta, const std::vector<double>& cosines) {
-  constexpr int azimuths = 10;
-  std::vector<double> exitance(cosines.size(), 0.0);
-  if (optical_radius <= 0.0) return exitance;
-  const SphereRefraction& refraction = sphere_refraction(eta);
-  for (const QuadratureNode& node : gauss_legendre(8)) {
-    const double mu = node.x;
-    const double mu_inside = refracted_cosine(mu, eta);
-    const double transmittance = eta == 1.0 ? 1.0 : fresnel_transmittance(mu, mu_inside, eta);
-    const double sine_inside = sine_of_cosine(mu_inside);
-    // Radiance leaves spread by 1/eta^2; the azimuths of half a circle stand for all.
-    const double weight = 2.0 * PI * node.weight * mu * transmittance / (eta * eta) / (4.0 * PI) / azimuths;
-    for_depths(optical_radius, 2.0 * mu_inside, [&](double t, double scattered) {
-      for (std::size_t i = 0; i < cosines.size(); ++i) {
-        const double sine = sine_of_cosine(cosines[i]);
-        for (int k = 0; k < azimuths; ++k) {
-          const double azimuth = PI * (k + 0.5) / azimuths;
-          const real3 exit(sine, 0.0, cosines[i]);
-          const real3 tangent(cosines[i], 0.0, -sine);
-          const real3 point = exit - t * (mu_inside * exit + sine_inside * (std::cos(azimuth) * tangent + real3(0.0, std::sin(azimuth), 0.0)));
+SphereSingleScattering::SphereSingleScattering(double eta, const std::vector<double>& cosines)
+    : points_(cosines.size()) {
+  constexpr int angles = 6;
+  const SphereRefraction refraction(eta);
+  for (std::size_t i = 0; i < cosines.size(); ++i) {
+    const double sine = sine_of_cosine(cosines[i]);
+    const real3 exit(sine, 0.0, cosines[i]);
+    const real3 tangent(cosines[i], 0.0, -sine);
+    for (const QuadratureNode& node : gauss_legendre(angles)) {
+      const double mu = node.x;
+      const double mu_inside = refracted_cosine(mu, eta);
+      const double sine_inside = sine_of_cosine(mu_inside);
+      const double transmittance = eta == 1.0 ? 1.0 : fresnel_transmittance(mu, mu_inside, eta);
+      // Radiance leaves spread by 1/eta^2, scattering is isotropic, the azimuths of half a circle stand for all.
+      const double weight = 0.5 * node.weight * mu * transmittance / (eta * eta) / angles;
+      for (int k = 0; k < angles; ++k) {
+        const double azimuth = PI * (k + 0.5) / angles;
+        const real3 sideways = std::cos(azimuth) * tangent + std::sin(azimuth) * real3(0.0, 1.0, 0.0);
+        const real3 inwards = -mu_inside * exit - sine_inside * sideways;
+        for (const QuadratureNode& depth : gauss_legendre(depth_nodes)) {
+          const double t = 2.0 * mu_inside * depth.x * depth.x * depth.x;
+          const double step = 6.0 * mu_inside * depth.x * depth.x * depth.weight;
+          const real3 point = exit + t * inwards;
           const double x = std::hypot(point.x, point.y);
           const RefractedLight light = refraction.at(x, point.z);
-          const double depth = std::max(0.0, sine_of_cosine(x) - point.z);
-          exitance[i] += weight * scattered * light.irradiance * std::exp(-optical_radius * light.path_ratio * depth);
+          const double way_in = light.path_ratio * std::max(0.0, sine_of_cosine(x) - point.z);
+          points_[i].push_back({weight * step * light.irradiance, t + way_in});
         }
       }
-    });
+    }
+  }
+}
+
+std::vector<double> SphereSingleScattering::exitance(double optical_radius) const {
+  std::vector<double> exitance;
+  for (const std::vector<Way>& ways : points_) {
+    double sum = 0.0;
+    for (const Way& way : ways) sum += way.weight * std::exp(-optical_radius * way.length);
+    exitance.push_back(optical_radius * sum);
   }
   return exitance;
 }
@@ -214,7 +231,8 @@ std::vector<double> half_space_single_exitance(double eta, const std::vector<dou
     // Over the cosine outside, where transmission has no kink: mu' dmu' = mu dmu/eta^2 inside.
     for (const QuadratureNode& node : gauss_legendre(48)) {
       const double mu_exit = refracted_cosine(node.x, eta);
-      sum += node.weight * node.x / (eta * eta) * (eta == 1.0 ? 1.0 : fresnel_transmittance(node.x, mu_exit, eta)) / (mu_exit + mu_refracted);
+      sum += node.weight * node.x / (eta * eta) * (eta == 1.0 ? 1.0 : fresnel_transmittance(node.x, mu_exit, eta)) /
+             (mu_exit + mu_refracted);
     }
     exitance[i] = 0.5 * mu * (eta == 1.0 ? 1.0 : fresnel_transmittance(mu, mu_refracted, eta)) * sum;
   }

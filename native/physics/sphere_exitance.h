@@ -1,5 +1,5 @@
-// What a spherical grain of unit radius sends out under a directional light, over the cosine between normal and light: the solution that
-// model 2 compares the half-space with.
+// What a spherical grain of unit radius sends out under a directional light, over the cosine between normal and light:
+// the solution that model 2 compares the half-space with.
 #pragma once
 
 #include <vector>
@@ -8,16 +8,32 @@
 
 namespace mesograin::physics {
 
-/// Exitance per irradiance on a plane facing the light, at each of `cosines`; scattering from the second order up, or from the first if
-/// the light enters by a cosine lobe. Diffusion from the refracted, attenuated light as its source (photon beam diffusion, Habel et al. 2013,
-/// in the sphere instead of the half-space).
-std::vector<double> sphere_multiple_exitance(const BodyMedium& medium, const BodySurface& surface, const std::vector<double>& cosines);
+/// Exitance per irradiance on a plane facing the light, at each of `cosines`; scattering from the second order up, or
+/// from the first if the light enters by a cosine lobe. Diffusion from the refracted, attenuated light as its source
+/// (photon beam diffusion, Habel et al. 2013, in the sphere instead of the half-space).
+std::vector<double> sphere_multiple_exitance(const BodyMedium& medium, const BodySurface& surface,
+                                             const std::vector<double>& cosines);
 
 /// The same for a half-space: the limit of a large sphere, 0 where the cosine is not positive.
-std::vector<double> half_space_multiple_exitance(const BodyMedium& medium, const BodySurface& surface, const std::vector<double>& cosines);
+std::vector<double> half_space_multiple_exitance(const BodyMedium& medium, const BodySurface& surface,
+                                                 const std::vector<double>& cosines);
 
-/// Light scattered once and isotropically, per albedo, in a sphere of optical radius `optical_radius`; exact but for internal reflection.
-std::vector<double> sphere_single_exitance(double optical_radius, double eta, const std::vector<double>& cosines);
+/// Light scattered once and isotropically, per albedo; exact but for internal reflection. Gathered along rays that
+/// leave, whose geometry is the same for every medium of one index.
+class SphereSingleScattering {
+ public:
+  SphereSingleScattering(double eta, const std::vector<double>& cosines);
+
+  /// At each of the cosines, for a sphere of this many mean free paths' radius.
+  std::vector<double> exitance(double optical_radius) const;
+
+ private:
+  struct Way {
+    double weight;
+    double length;  // in and out
+  };
+  std::vector<std::vector<Way>> points_;
+};
 
 /// The same for a half-space.
 std::vector<double> half_space_single_exitance(double eta, const std::vector<double>& cosines);

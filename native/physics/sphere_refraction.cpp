@@ -1,12 +1,9 @@
-// At each height, beams from neighbouring entry points enclose rings: what enters between them passes between them. A ray that has left the
-// sphere never meets a node again, for all of these lie inside.
+// At each height, beams from neighbouring entry points enclose rings: what enters between them passes between them. A
+// ray that has left the sphere never meets a node again, for all of these lie inside.
 #include "physics/sphere_refraction.h"
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <memory>
-#include <mutex>
 
 #include "physics/physics.h"
 
@@ -15,13 +12,14 @@ namespace {
 
 constexpr int beam_count = 400;
 
-// Rings thinner than this share of their entry ring's area are part of a caustic, which the sun's disc and the grain's roughness blur.
+// Rings thinner than this share of their entry ring's area are part of a caustic, which the sun's disc and the grain's
+// roughness blur.
 constexpr double least_ring = 0.02;
 
 struct Crossing {
-  double x;        // signed distance from the axis
+  double x;  // signed distance from the axis
   double path;
-  double sideways; // component along the entry's radius
+  double sideways;  // component along the entry's radius
   double down;
   double transmittance;
 };
@@ -68,16 +66,19 @@ SphereRefraction::SphereRefraction(double eta) : nodes_(size * size, RefractedLi
         for (int column = first; column < size && column <= high * (size - 1) + 1e-9; ++column) {
           // A node that two neighbouring rings share belongs to the outer one.
           if (column == 0 && side < 0.0) continue;
-          const double share = high > low ? std::clamp((static_cast<double>(column) / (size - 1) - low) / (high - low), 0.0, 1.0) : 0.5;
+          const double share =
+              high > low ? std::clamp((static_cast<double>(column) / (size - 1) - low) / (high - low), 0.0, 1.0) : 0.5;
           if (share >= 1.0 - 1e-9 && k + 1 < beam_count) continue;
           const bool forwards = (side * b.x > side * a.x);
           const double t = forwards ? share : 1.0 - share;
-          const double irradiance = ((1.0 - t) * a.transmittance / a.down + t * b.transmittance / b.down) * entered / ring;
+          const double irradiance =
+              ((1.0 - t) * a.transmittance / a.down + t * b.transmittance / b.down) * entered / ring;
           const double path = (1.0 - t) * a.path + t * b.path;
           RefractedLight& node = nodes_[row * size + column];
           const double x = width * column / (size - 1);
           const double depth = sine_of_cosine(x) - z;
-          const double ratio = depth > 1e-6 ? path / depth : sine_of_cosine(x) / refracted_cosine(sine_of_cosine(x), eta);
+          const double ratio =
+              depth > 1e-6 ? path / depth : sine_of_cosine(x) / refracted_cosine(sine_of_cosine(x), eta);
           const double total = node.irradiance + irradiance;
           if (total <= 0.0) continue;
           const double sideways = side * ((1.0 - t) * a.sideways + t * b.sideways);
@@ -103,15 +104,6 @@ RefractedLight SphereRefraction::at(double x, double z) const {
            t * ((1.0 - s) * corner[size].*member + s * corner[size + 1].*member);
   };
   return {mix(&RefractedLight::irradiance), mix(&RefractedLight::path_ratio), mix(&RefractedLight::sideways)};
-}
-
-const SphereRefraction& sphere_refraction(double eta) {
-  static std::mutex mutex;
-  static std::map<double, std::unique_ptr<SphereRefraction>> cache;
-  const std::lock_guard lock(mutex);
-  std::unique_ptr<SphereRefraction>& slot = cache[eta];
-  if (!slot) slot = std::make_unique<SphereRefraction>(eta);
-  return *slot;
 }
 
 }  // namespace mesograin::physics

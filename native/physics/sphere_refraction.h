@@ -1,4 +1,5 @@
-// Where a directional light goes once it has refracted into a sphere: how bright, from which direction, after how long a way.
+// Where a directional light goes once it has refracted into a sphere: how bright, from which direction, after how long
+// a way.
 #pragma once
 
 #include <vector>
@@ -27,8 +28,5 @@ class SphereRefraction {
  private:
   std::vector<RefractedLight> nodes_;
 };
-
-/// The last few indices' tables are kept.
-const SphereRefraction& sphere_refraction(double eta);
 
 }  // namespace mesograin::physics

@@ -51,7 +51,6 @@ class DeviceCache {
   /// `grain_radius` as in physics::material_inputs; materials are shared by grains within half a percent.
   std::shared_ptr<DeviceMaterial> material(const scene::Material& material, double grain_radius);
 
-
   /// The program that draws a light map; compiled when the first material needs one.
   const gl::Program& light_map_program();
 

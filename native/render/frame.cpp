@@ -78,7 +78,8 @@ Frame::Draw Frame::make_draw(const scene::Instance& instance) {
       glm::dvec3(glm::length(linear[0] * half.x), glm::length(linear[1] * half.y), glm::length(linear[2] * half.z)));
   const scene::Material& material = instance.material;
   // The cube root takes a mirrored or stretched grain for the one of the same volume.
-  draw.material = cache_.material(material, std::max(instance.mesh->equivalent_radius() * std::cbrt(std::abs(glm::determinant(linear))), 1e-30));
+  draw.material = cache_.material(
+      material, std::max(instance.mesh->equivalent_radius() * std::cbrt(std::abs(glm::determinant(linear))), 1e-30));
   const glm::dvec3 reduced = material.scale * (material.sigma_a + (1.0 - material.g) * material.sigma_s);
   draw.mean_free_paths_across = 2.0 * draw.radius * std::max({reduced.r, reduced.g, reduced.b});
   if (draw.material->light_maps()) draw.light_maps = take_light_maps(instance.mesh, draw.object_to_grain());

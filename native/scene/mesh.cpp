@@ -37,8 +37,8 @@ std::vector<glm::vec3> smooth_normals(const std::vector<glm::vec3>& positions,
   return normals;
 }
 
-double radius_of_mean_chord(const std::vector<glm::vec3>& positions, const std::vector<glm::uvec3>& triangles, const glm::dvec3& centre,
-                            double fallback) {
+double radius_of_mean_chord(const std::vector<glm::vec3>& positions, const std::vector<glm::uvec3>& triangles,
+                            const glm::dvec3& centre, double fallback) {
   double area = 0.0;
   double volume = 0.0;
   for (const glm::uvec3& triangle : triangles) {

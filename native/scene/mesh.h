@@ -26,8 +26,8 @@ class Mesh {
   const glm::vec3& lower() const { return lower_; }
   const glm::vec3& upper() const { return upper_; }
 
-  /// Radius of the sphere that has the same mean chord, 4 volume/area (Cauchy), in the mesh's own space. A mesh that encloses no volume
-  /// stands for the sphere around its box.
+  /// Radius of the sphere that has the same mean chord, 4 volume/area (Cauchy), in the mesh's own space. A mesh that
+  /// encloses no volume stands for the sphere around its box.
   double equivalent_radius() const { return equivalent_radius_; }
 
  private:
