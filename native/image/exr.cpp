@@ -24,7 +24,7 @@
 #include <tuple>
 #include <utility>
 
-#include "image/file.h"
+#include "file/file.h"
 #include "scene/error.h"
 
 namespace mesograin::image {
@@ -306,7 +306,7 @@ std::vector<half> to_half(const ImageView& image) {
 
 ExrFile read_exr(const fs::path& path) {
   try {
-    std::string bytes = read_file(path);
+    std::string bytes = file::read_file(path);
     return decode(bytes, path.string());
   } catch (const Error&) {
     throw;
@@ -340,7 +340,7 @@ void write_exr(const fs::path& path, const ImageView& image, std::vector<std::st
       output.setFrameBuffer(frame_buffer);
       output.writePixels(image.height);
     }  // its destructor completes the table of blocks
-    write_file_atomically(path, stream.bytes());
+    file::write_file_atomically(path, stream.bytes());
   } catch (const Error&) {
     throw;
   } catch (const std::bad_alloc&) {

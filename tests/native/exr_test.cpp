@@ -22,12 +22,14 @@
 #include <random>
 
 #include "expect_error.h"
-#include "image/file.h"
+#include "file/file.h"
 #include "temporary_folder.h"
 
 namespace mesograin::image {
 namespace {
 
+using file::read_file;
+using file::write_file_atomically;
 using test::expect_error;
 using test::TemporaryFolder;
 

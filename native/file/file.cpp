@@ -1,5 +1,5 @@
 // Whole files through POSIX calls, each of which is checked: a stream would hide the last error of a full disk.
-#include "image/file.h"
+#include "file/file.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -13,7 +13,7 @@
 
 #include "scene/error.h"
 
-namespace mesograin::image {
+namespace mesograin::file {
 namespace {
 
 namespace fs = std::filesystem;
@@ -31,23 +31,6 @@ class Descriptor {
 
  private:
   int number_;
-};
-
-/// A file that is removed unless it was kept.
-class TemporaryFile {
- public:
-  explicit TemporaryFile(fs::path path) : path_(std::move(path)) {}
-  TemporaryFile(const TemporaryFile&) = delete;
-  TemporaryFile& operator=(const TemporaryFile&) = delete;
-  ~TemporaryFile() {
-    if (!path_.empty()) ::unlink(path_.c_str());
-  }
-
-  const fs::path& path() const { return path_; }
-  void keep() { path_.clear(); }
-
- private:
-  fs::path path_;
 };
 
 [[noreturn]] void throw_not_written(const fs::path& path, int error) {
@@ -71,14 +54,55 @@ class TemporaryFile {
   }
 }
 
-void write_all(int descriptor, std::string_view bytes, const fs::path& path) {
-  while (!bytes.empty()) {
-    const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) throw_not_written(path, errno);
-    bytes.remove_prefix(static_cast<std::size_t>(written));
-  }
+/// What `path` stands for: a link keeps pointing where it does, and what it points to is replaced.
+fs::path resolve(const fs::path& path) {
+  if (path.filename().empty()) throw Error("Can't write '{}': a file name is needed.", path.string());
+  std::error_code ignored;
+  const fs::path target = fs::is_symlink(path, ignored) ? fs::weakly_canonical(path, ignored) : path;
+  if (target.empty()) throw Error("Can't write {}: it is a link that points nowhere.", path.string());
+  const fs::file_status standing = fs::status(target, ignored);
+  if (fs::exists(standing) && !fs::is_regular_file(standing))
+    throw Error("Can't write {}: a folder or device of that name is there; choose another name.", target.string());
+  return target;
 }
+
+/// A file beside the one that it will become; removed unless it does.
+class TemporaryFile {
+ public:
+  explicit TemporaryFile(const fs::path& target)
+      : target_(target),
+        path_(target.parent_path() / fmt::format(".{}.{}.tmp", ::getpid(), ++count_)),
+        descriptor_(::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666)) {
+    if (descriptor_.number() < 0) throw_not_written(target_, errno);
+  }
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  ~TemporaryFile() {
+    if (!path_.empty()) ::unlink(path_.c_str());
+  }
+
+  void write(std::string_view bytes) {
+    while (!bytes.empty()) {
+      const ssize_t written = ::write(descriptor_.number(), bytes.data(), bytes.size());
+      if (written < 0 && errno == EINTR) continue;
+      if (written < 0) throw_not_written(target_, errno);
+      bytes.remove_prefix(static_cast<std::size_t>(written));
+    }
+  }
+
+  void become_target() {
+    if (::fsync(descriptor_.number()) != 0 || !descriptor_.close() || ::rename(path_.c_str(), target_.c_str()) != 0)
+      throw_not_written(target_, errno);
+    path_.clear();
+  }
+
+ private:
+  static inline std::atomic<unsigned> count_ = 0;
+
+  fs::path target_;
+  fs::path path_;
+  Descriptor descriptor_;
+};
 
 }  // namespace
 
@@ -106,30 +130,12 @@ std::string read_file(const fs::path& path) {
   return bytes;
 }
 
-void write_file_atomically(const fs::path& asked_path, std::string_view bytes) {
-  if (asked_path.filename().empty()) throw Error("Can't write '{}': a file name is needed.", asked_path.string());
-  std::error_code ignored;
-  // A link keeps pointing where it does; what it points to is replaced.
-  const fs::path path = fs::is_symlink(asked_path, ignored) ? fs::weakly_canonical(asked_path, ignored) : asked_path;
-  if (path.empty()) throw Error("Can't write {}: it is a link that points nowhere.", asked_path.string());
-  const fs::file_status standing = fs::status(path, ignored);
-  if (fs::exists(standing) && !fs::is_regular_file(standing))
-    throw Error("Can't write {}: a folder or device of that name is there; choose another name.", path.string());
+void require_writable(const fs::path& path) { const TemporaryFile trial(resolve(path)); }
 
-  static std::atomic<unsigned> count = 0;
-  TemporaryFile temporary(path.parent_path() /
-                          fmt::format(".{}.{}.tmp", ::getpid(), count.fetch_add(1, std::memory_order_relaxed)));
-  Descriptor file(::open(temporary.path().c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
-  if (file.number() < 0) {
-    const int error = errno;
-    temporary.keep();  // it is not ours
-    throw_not_written(path, error);
-  }
-  write_all(file.number(), bytes, path);
-  if (::fsync(file.number()) != 0) throw_not_written(path, errno);
-  if (!file.close()) throw_not_written(path, errno);
-  if (::rename(temporary.path().c_str(), path.c_str()) != 0) throw_not_written(path, errno);
-  temporary.keep();
+void write_file_atomically(const fs::path& path, std::string_view bytes) {
+  TemporaryFile file(resolve(path));
+  file.write(bytes);
+  file.become_target();
 }
 
-}  // namespace mesograin::image
+}  // namespace mesograin::file

@@ -1,0 +1,65 @@
+// Scenes from JSON for Python: a file, its text, or the dict that json.loads makes of it.
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "python/bindings.h"
+#include "scene/error.h"
+#include "scene/scene_json.h"
+
+namespace py = pybind11;
+
+namespace mesograin::python {
+namespace {
+
+scene::SceneFile read(const py::object& source, const scene::SceneChoices& choices) {
+  std::string text;
+  if (py::isinstance<py::dict>(source))
+    text = py::module_::import("json").attr("dumps")(source).cast<std::string>();
+  else if (py::isinstance<py::str>(source))
+    text = source.cast<std::string>();
+
+  const std::size_t start = text.find_first_not_of(" \t\r\n");
+  const bool is_json = start != std::string::npos && text[start] == '{';
+  if (!is_json) {
+    const auto path = source.cast<std::filesystem::path>();
+    const py::gil_scoped_release release;
+    return scene::read_scene(path, choices);
+  }
+  const py::gil_scoped_release release;
+  try {
+    return scene::parse_scene(text, {}, choices);
+  } catch (const Error& error) {
+    throw Error("Can't use the scene: {}", error.what());
+  }
+}
+
+py::tuple load_scene(const py::object& source, const std::optional<std::string>& model,
+                     const std::optional<std::pair<int, int>>& size) {
+  scene::SceneChoices choices;
+  if (model) choices.model = scene::parse_model(*model);
+  if (size) {
+    choices.width = size->first;
+    choices.height = size->second;
+    require_size(choices);
+  }
+  scene::SceneFile file = read(source, choices);
+  return py::make_tuple(std::move(file.scene), file.camera, py::make_tuple(file.width, file.height));
+}
+
+}  // namespace
+
+void bind_scene_file(py::module_& module) {
+  module.def("load_scene", &load_scene, py::arg("source"), py::arg("model") = py::none(), py::arg("size") = py::none(),
+             "(Scene, Camera, (width, height)) from a scene in JSON: a path, the text itself, or a dict of the same "
+             "form (docs/scene-json.md); of text and dicts, mesh files are looked for in the current folder. `model` "
+             "answers the material instead of the best one for its kind; `size` is (width, height) instead of the "
+             "scene's resolution. Raises Error naming the key, what is needed and what came.");
+}
+
+}  // namespace mesograin::python

@@ -1,0 +1,134 @@
+// mesograin-render: a scene in JSON, a picture in OpenEXR, nothing of Blender.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <chrono>
+#include <cstdint>
+#include <exception>
+#include <filesystem>
+#include <future>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "file/file.h"
+#include "gl/context_thread.h"
+#include "image/exr.h"
+#include "render/view.h"
+#include "scene/error.h"
+#include "scene/scene_json.h"
+#include "tool/interruption.h"
+#include "tool/progress.h"
+#include "tool/provenance.h"
+
+namespace {
+
+using namespace mesograin;
+
+constexpr int exit_failure = 1, exit_usage = 2;
+constexpr std::string_view exit_codes =
+    "Exit codes: 0 the picture was written; 1 the scene, the device or the output did not serve (one sentence says\n"
+    "why); 2 the command line was wrong; 130 Ctrl-C, 143 SIGTERM: nothing was written. The picture appears complete "
+    "or\n"
+    "not at all. MESOGRAIN_GL_DEVICE chooses the device.";
+
+struct Options {
+  std::string scene;
+  std::string output;
+  std::string model;
+  std::string size;
+  int samples = 64;
+  std::uint32_t seed = 0;
+  bool quiet = false;
+};
+
+/// The two numbers of "400x300".
+scene::SceneChoices parse_choices(const Options& options) {
+  scene::SceneChoices choices;
+  if (!options.model.empty()) choices.model = scene::parse_model(options.model);
+  if (options.size.empty()) return choices;
+  const char* const end = options.size.data() + options.size.size();
+  const auto width = std::from_chars(options.size.data(), end, choices.width);
+  if (width.ec == std::errc{} && width.ptr != end && *width.ptr == 'x') {
+    const auto height = std::from_chars(width.ptr + 1, end, choices.height);
+    if (height.ec == std::errc{} && height.ptr == end && choices.width > 0) {
+      require_size(choices);
+      return choices;
+    }
+  }
+  throw Error("--size must be WIDTHxHEIGHT, such as 400x300; got '{}'.", options.size);
+}
+
+void run(const Options& options) {
+  const std::filesystem::path output = options.output;
+  if (output.extension() != ".exr")
+    throw Error("The output is OpenEXR and must end in .exr; got '{}'.", options.output);
+  const scene::SceneFile file = scene::read_scene(options.scene, parse_choices(options));
+  file::require_writable(output);
+
+  render::View view(file.width, file.height, options.seed);
+  view.set_scene(file.scene);
+  view.set_camera(file.camera);
+  tool::Progress progress(options.samples);
+  std::future<void> done = view.start(options.samples);
+  while (done.wait_for(std::chrono::milliseconds(50)) != std::future_status::ready)
+    if (!options.quiet) progress.show(view.samples());
+  done.get();
+  const double seconds = progress.seconds();
+
+  image::Image picture{.width = file.width, .height = file.height, .channels = 4, .pixels = {}};
+  picture.pixels.resize(static_cast<std::size_t>(file.width) * static_cast<std::size_t>(file.height) * 4);
+  view.read(picture.pixels.data());
+  const gl::DeviceInfo& device = gl::ContextThread::instance().device_info();
+  {
+    const tool::Uninterrupted uninterrupted;
+    image::write_exr(output, picture.view(), {}, tool::provenance(file, options.samples, options.seed, device));
+  }
+  if (options.quiet) return;
+  progress.finish();
+  const scene::Model model = file.scene.instances.front().material.model;
+  fmt::print(stderr, "{}: {} x {} pixels, {} samples by {} in {:.1f} s on {}\n", output.string(), file.width,
+             file.height, options.samples, scene::model_names[static_cast<std::size_t>(model)], seconds,
+             device.renderer);
+}
+
+}  // namespace
+
+int main(int argument_count, char** arguments) {
+  Options options;
+  CLI::App app("Renders a scene in JSON to OpenEXR: linear RGB radiance and coverage, float32, row 0 at the top.",
+               "mesograin-render");
+  app.add_option("scene", options.scene, "Scene in JSON")->required()->option_text("SCENE.json");
+  app.add_option("-o,--output", options.output, "Picture to write")->required()->option_text("OUT.exr");
+  app.add_option("-m,--model", options.model,
+                 fmt::format("{}; default: the best for the material's kind", fmt::join(scene::model_names, ", ")))
+      ->check(CLI::IsMember(std::vector<std::string>(scene::model_names.begin(), scene::model_names.end())))
+      ->option_text("MODEL");
+  app.add_option("-n,--samples", options.samples, "Samples for each pixel; default 64")
+      ->check(CLI::Range(1, 1000000))
+      ->option_text("N");
+  app.add_option("--seed", options.seed, "Of the samples' places and of the models' own; default 0")->option_text("S");
+  app.add_option("--size", options.size, "Pixels, instead of the scene's resolution")->option_text("WIDTHxHEIGHT");
+  app.add_flag("-q,--quiet", options.quiet, "No progress, only errors");
+  app.set_version_flag("--version", MESOGRAIN_VERSION);
+  app.footer(std::string(exit_codes));
+  try {
+    app.parse(argument_count, arguments);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : exit_usage;
+  }
+
+  tool::handle_interruptions();
+  int code = 0;
+  try {
+    run(options);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "mesograin-render: {}\n", error.what());
+    code = exit_failure;
+  }
+  gl::ContextThread::shut_down();
+  return code;
+}

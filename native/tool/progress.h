@@ -1,0 +1,30 @@
+// How far a render is and how long it will take yet, on stderr.
+#pragma once
+
+#include <chrono>
+
+namespace mesograin::tool {
+
+/// On a terminal one line that is rewritten; elsewhere a line every few seconds, so that a log stays readable.
+class Progress {
+ public:
+  explicit Progress(int samples);
+
+  /// May be called as often as one likes.
+  void show(int samples_done);
+
+  /// Clears the terminal's line.
+  void finish();
+
+  double seconds() const;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  bool terminal_;
+  int samples_;
+  Clock::time_point start_ = Clock::now();
+  Clock::time_point shown_ = start_;
+};
+
+}  // namespace mesograin::tool

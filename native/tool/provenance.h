@@ -1,0 +1,16 @@
+// What an EXR's header tells of how its picture was made, so that it can be made again.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+
+#include "gl/egl_context.h"
+#include "scene/scene_json.h"
+
+namespace mesograin::tool {
+
+std::map<std::string, std::string> provenance(const scene::SceneFile& file, int samples, std::uint32_t seed,
+                                              const gl::DeviceInfo& device);
+
+}  // namespace mesograin::tool
