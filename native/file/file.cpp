@@ -9,6 +9,7 @@
 #include <atomic>
 #include <cerrno>
 #include <cstring>
+#include <exception>
 #include <utility>
 
 #include "scene/error.h"
@@ -117,7 +118,12 @@ std::string read_file(const fs::path& path) {
   }
   if (!S_ISREG(status.st_mode)) throw Error("Can't read {}: a file is needed, and it is not one.", path.string());
 
-  std::string bytes(static_cast<std::size_t>(status.st_size), '\0');
+  std::string bytes;
+  try {
+    bytes.resize(static_cast<std::size_t>(status.st_size));
+  } catch (const std::exception&) {  // too large for memory or for any string
+    throw Error("Can't read {}: there is not enough memory for its {} bytes.", path.string(), status.st_size);
+  }
   std::size_t filled = 0;
   while (filled < bytes.size()) {
     const ssize_t count = ::read(file.number(), bytes.data() + filled, bytes.size() - filled);

@@ -44,7 +44,7 @@ class Corrupt : public std::runtime_error {
 
 class MemoryInput : public Imf::IStream {
  public:
-  MemoryInput(std::string& bytes, const std::string& name) : Imf::IStream(name.c_str()), bytes_(bytes) {}
+  explicit MemoryInput(std::string& bytes) : Imf::IStream("an OpenEXR file"), bytes_(bytes) {}
 
   bool isMemoryMapped() const override { return true; }
   char* readMemoryMapped(int count) override {
@@ -76,7 +76,7 @@ class MemoryInput : public Imf::IStream {
 
 class MemoryOutput : public Imf::OStream {
  public:
-  explicit MemoryOutput(const std::string& name) : Imf::OStream(name.c_str()) {}
+  MemoryOutput() : Imf::OStream("an OpenEXR file") {}
 
   void write(const char source[], int count) override {
     const std::size_t end = position_ + static_cast<std::size_t>(count);
@@ -199,9 +199,9 @@ std::tuple<std::string, std::size_t, std::string> channel_order(const std::strin
   return {layer, colour, base};
 }
 
-ExrFile decode(std::string& bytes, const std::string& name) {
+ExrFile decode(std::string& bytes) {
   const std::size_t chunk_table = end_of_header(bytes);
-  MemoryInput stream(bytes, name);
+  MemoryInput stream(bytes);
   stream.seekg(8);
   Imf::Header header;
   int version = little_endian<std::int32_t>(bytes, 4);
@@ -304,16 +304,22 @@ std::vector<half> to_half(const ImageView& image) {
 
 }  // namespace
 
-ExrFile read_exr(const fs::path& path) {
+ExrFile parse_exr(std::string bytes) {
   try {
-    std::string bytes = file::read_file(path);
-    return decode(bytes, path.string());
-  } catch (const Error&) {
-    throw;
+    return decode(bytes);
   } catch (const std::bad_alloc&) {
-    throw Error("Can't read {}: there is not enough memory for it.", path.string());
+    throw Error("there is not enough memory for it.");
   } catch (const std::exception& problem) {
-    throw Error("Can't read {}: {}.", path.string(), one_line(problem.what()));
+    throw Error("{}.", one_line(problem.what()));
+  }
+}
+
+ExrFile read_exr(const fs::path& path) {
+  std::string bytes = file::read_file(path);
+  try {
+    return parse_exr(std::move(bytes));
+  } catch (const Error& error) {
+    throw Error("Can't read {}: {}", path.string(), error.what());
   }
 }
 
@@ -334,7 +340,7 @@ void write_exr(const fs::path& path, const ImageView& image, std::vector<std::st
     for (std::size_t channel = 0; channel < channels.size(); ++channel)
       frame_buffer.insert(channels[channel], Imf::Slice(type, first + channel * sample, sample * channels.size(),
                                                         sample * channels.size() * image.width));
-    MemoryOutput stream(path.string());
+    MemoryOutput stream;
     {
       Imf::OutputFile output(stream, header);
       output.setFrameBuffer(frame_buffer);

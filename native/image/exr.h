@@ -25,6 +25,9 @@ struct ExrFile {
 /// announces more than 65535 pixels a side or 2^30 samples in all (checked before anything is allocated).
 ExrFile read_exr(const std::filesystem::path& path);
 
+/// The same from a file's bytes.
+ExrFile parse_exr(std::string bytes);
+
 /// Writes scanlines with ZIP compression; `path` appears complete or not at all. Without names, 1 channel is Y, 3 are
 /// R G B and 4 are R G B A. In half, values from 65520 up become Inf.
 /// Throws Error if names, attributes or the image's shape don't fit, or the file can't be written.

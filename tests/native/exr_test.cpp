@@ -197,15 +197,14 @@ std::string small_file(const TemporaryFolder& folder, Imf::Compression compressi
 }
 
 /// Reads damaged bytes: a picture or an Error may come, nothing else.
-bool is_readable(const TemporaryFolder& folder, const std::string& bytes) {
-  std::ofstream(folder / "damaged.exr", std::ios::binary) << bytes;
+bool is_readable(std::string bytes) {
   try {
-    read_exr(folder / "damaged.exr");
+    parse_exr(std::move(bytes));
     return true;
   } catch (const Error& error) {
     const std::string sentence = error.what();
-    EXPECT_NE(sentence.find("damaged.exr"), std::string::npos) << sentence;
     EXPECT_EQ(sentence.find('\n'), std::string::npos) << sentence;
+    EXPECT_EQ(sentence.back(), '.') << sentence;
     return false;
   }
 }
@@ -214,10 +213,10 @@ TEST(Exr, EveryTruncationIsRefused) {
   const TemporaryFolder folder;
   for (const bool tiled : {false, true}) {
     const std::string bytes = small_file(folder, Imf::ZIP_COMPRESSION, tiled);
-    ASSERT_TRUE(is_readable(folder, bytes));
+    ASSERT_TRUE(is_readable(bytes));
     for (std::size_t length = 0; length < bytes.size(); length += 1 + length / 200)
-      EXPECT_FALSE(is_readable(folder, bytes.substr(0, length))) << length << " of " << bytes.size() << " bytes";
-    EXPECT_FALSE(is_readable(folder, bytes.substr(0, bytes.size() - 1)));
+      EXPECT_FALSE(is_readable(bytes.substr(0, length))) << length << " of " << bytes.size() << " bytes";
+    EXPECT_FALSE(is_readable(bytes.substr(0, bytes.size() - 1)));
   }
 }
 
@@ -236,7 +235,7 @@ TEST(Exr, FlippedBitsNeverDoMoreThanThrow) {
         const std::size_t reach = attempt % 2 ? bytes.size() : std::min<std::size_t>(bytes.size(), 500);
         for (int flip = 0; flip < 1 + attempt % 4; ++flip)
           damaged[generator() % reach] ^= static_cast<char>(1U << (generator() % 8));
-        if (!is_readable(folder, damaged)) ++refused;
+        if (!is_readable(damaged)) ++refused;
       }
     }
   EXPECT_GT(refused, 500);

@@ -61,7 +61,7 @@ TEST(Obj, ACubeOfQuads) {
 TEST(Obj, CornersWithUvsAndNormalsBecomeVertices) {
   const Mesh mesh = parse_obj(
       "v 0 0 0\r\nv 1 0 0\r\nv 0 1 0\r\nvt 0 0\r\nvt 1 0 0\r\nvt 0 +1e0\r\nvn 0 0 1\r\nvn 0 0.6 0.8\r\n"
-      "f 1/1/1 2/2/1 3/3/1\r\nf -3/-3/-1 -2/-2/-2 -1/-1/-2 # comment\r\n");
+      "f 1/1/1 2/2/1 3/3/1\r\nf -3/-3/-1 -2/-2/-1 -1/-1/-1 # comment\r\n");
   EXPECT_EQ(mesh.positions().size(), 6U) << "the second face has other normals";
   EXPECT_EQ(mesh.uvs()[2], glm::vec2(0.0F, 1.0F));
   EXPECT_EQ(mesh.normals()[5], glm::vec3(0.0F, 0.6F, 0.8F));
