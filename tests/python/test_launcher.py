@@ -1,0 +1,124 @@
+"""The launcher answers for itself: help for every command, one sentence and an exit code for what is wrong."""
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import zipfile
+
+import pytest
+
+SOURCE = pathlib.Path(__file__).resolve().parents[2]
+COMMANDS = ("compare", "sweep", "render", "test", "bench", "build", "package", "install")
+
+
+def launcher(*arguments, folder=SOURCE, **environment):
+    return subprocess.run([str(SOURCE / "mesograin"), *map(str, arguments)], cwd=folder, capture_output=True, text=True,
+                          stdin=subprocess.DEVNULL, env=dict(os.environ, **environment))
+
+
+def options_in(text):
+    return set(re.findall(r"(?<![\w-])--[a-z][a-z0-9-]*", text)) - {"--help"}
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_every_command_has_help(command, tmp_path):
+    outcome = launcher(command, "--help", folder=tmp_path)
+    assert outcome.returncode == 0
+    assert f"./mesograin {command}" in outcome.stdout
+    assert launcher("help", command).stdout == outcome.stdout
+    assert re.search(rf"^  {command} ", launcher("help").stdout, re.MULTILINE)
+
+
+def test_help_of_compare_names_the_options_there_are():
+    command = [sys.executable, str(SOURCE / "addon/mesograin/comparison/arguments.py")]
+    from_argparse = subprocess.run(command, check=True, capture_output=True, text=True).stdout
+    assert options_in(launcher("compare", "--help").stdout) == options_in(from_argparse) | {"--blender"}
+
+
+def test_help_of_render_names_the_options_there_are():
+    build = pathlib.Path(os.environ.get("MESOGRAIN_BUILD", SOURCE / "build/release"))
+    from_tool = subprocess.run([str(build / "native/tool/mesograin-render"), "--help"], check=True, capture_output=True,
+                               text=True).stdout
+    assert options_in(launcher("render", "--help").stdout) == options_in(from_tool)
+
+
+@pytest.mark.parametrize("arguments, code, sentence", [
+    ((), 2, "./mesograin COMMAND"),
+    (("paint",), 2, "There is no command 'paint'"),
+    (("help", "paint"), 2, "There is no help about 'paint'"),
+    (("compare", "no such.blend"), 2, "There is no scene 'no such.blend'"),
+    (("compare", "picture.png"), 2, "'picture.png' is none"),
+    (("compare", "--blender"), 2, "--blender needs the path"),
+    (("test", "everything"), 2, "no test part or option 'everything'"),
+    (("bench", "marks"), 2, "no benchmark 'marks'"),
+    (("render",), 2, "render needs a scene"),
+    (("build", "--blender", "/no/such/blender"), 3, "There is no Blender at '/no/such/blender'"),
+    (("build", "--blender", "/bin/true"), 3, "did not say which Python it embeds"),
+])
+def test_what_is_wrong_is_said_in_one_sentence(arguments, code, sentence, tmp_path):
+    outcome = launcher(*arguments, folder=tmp_path)
+    assert outcome.returncode == code
+    assert sentence in outcome.stderr
+    assert not arguments or len(outcome.stderr.splitlines()) == 1
+
+
+class TestRunTests:
+    """What the tests' runner makes of suites that end in every possible way."""
+
+    @pytest.fixture
+    def run(self, tmp_path):
+        sys.path.insert(0, str(SOURCE / "launcher"))
+        import argparse
+
+        import run_tests
+
+        options = argparse.Namespace(build="", blender="", results=str(tmp_path / "results"))
+
+        def run_script(script):
+            runner = run_tests.Runner(options)
+            runner.run_suite(run_tests.Suite("suite", ["sh", "-c", script, "sh", "{junit}"]))
+            return runner.results[0]
+
+        yield run_script
+        sys.path.remove(str(SOURCE / "launcher"))
+
+    def test_cases_are_counted_by_how_they_ended(self, run):
+        result = run("""echo '<testsuites><testsuite><testcase name="a" classname="s"/><testcase name="b" classname="s">
+            <failure message="two is not one"/></testcase><testcase name="c" classname="s"><skipped/></testcase>
+            <testcase name="d" classname="s"><error message="broke"/></testcase>
+            <testcase name="e" classname="s" status="notrun"/></testsuite></testsuites>' > "$1"; exit 1""")
+        assert (result.passed, result.failed, result.skipped) == (1, 2, 2)
+        assert result.failures == [("s.b", "two is not one"), ("s.d", "broke")]
+
+    @pytest.mark.parametrize("script", [
+        "kill -SEGV $$",
+        "exit 0",
+        "echo '<testsuites/>' > \"$1\"",
+        "echo 'no xml' > \"$1\"",
+        "echo '<testsuites><testcase name=\"a\"><skipped/></testcase></testsuites>' > \"$1\"",
+        "echo '<testsuites><testcase name=\"a\"/></testsuites>' > \"$1\"; exit 3",
+    ], ids=["crash", "nothing", "no test", "no file", "all skipped", "failed after its tests"])
+    def test_a_suite_that_proves_nothing_failed(self, run, script):
+        assert run(script).failed == 1
+
+
+def test_the_package_holds_what_blender_needs(tmp_path):
+    archive = tmp_path / "folder" / "mesograin.zip"
+    subprocess.run([sys.executable, str(SOURCE / "launcher/package.py"), str(SOURCE), str(archive)], check=True)
+    names = zipfile.ZipFile(archive).namelist()
+    assert {"mesograin/__init__.py", "mesograin/blender_manifest.toml", "mesograin/LICENSE"} <= set(names)
+    assert any(name.startswith("mesograin/mesograin_native.") and name.endswith(".so") for name in names)
+    assert not [name for name in names if "__pycache__" in name or not name.startswith("mesograin/")]
+    assert [path.name for path in archive.parent.iterdir()] == ["mesograin.zip"]
+
+
+def test_versions_agree():
+    """The build, the add-on and its manifest state one version, and the change log tells of it."""
+    sys.path.insert(0, str(SOURCE / "launcher"))
+    import package
+
+    version = package.version_of(SOURCE)
+    assert f'version = "{version}"' in (SOURCE / "addon/mesograin/blender_manifest.toml").read_text()
+    assert f'"version": ({version.replace(".", ", ")})' in (SOURCE / "addon/mesograin/__init__.py").read_text()
+    assert f"## {version}" in (SOURCE / "CHANGELOG.md").read_text()
