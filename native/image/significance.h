@@ -1,0 +1,41 @@
+// Which pixels differ from a sampled reference by more than its noise: a per-pixel test, corrected for their number.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "image/image.h"
+#include "image/metrics.h"
+
+namespace mesograin::image {
+
+struct SignificanceOptions {
+  /// Probability that an image without any error is called different.
+  double false_alarm_rate = 0.01;
+
+  /// A difference up to this part of the reference is not looked for: two right renderers still sample edges and
+  /// tessellate differently.
+  double relative_tolerance = 0.002;
+};
+
+struct Significance {
+  Image p_value;  ///< one channel: the smallest over the pixel's channels; 1 outside the mask
+  Image score;    ///< as many channels as compared: signed, in standard deviations of the reference's mean
+  std::int64_t tests = 0;
+  std::int64_t significant_pixels = 0;
+  double threshold = 0.0;  ///< p-value below which one test is significant (Sidak)
+  bool differs = false;    ///< some pixel is significant
+};
+
+/// Tests the colour of `image` against K >= 2 references of independent noise: in every masked pixel and channel a
+/// t-test of the mean of the references, with the variance pooled over the masked pixels of a square of
+/// `variance_window` pixels (so K = 2 serves), the score turned into a normal one after Wallace, "Bounds on normal
+/// approximations to Student's and the chi-square distributions" (1959), and the threshold corrected after Sidak,
+/// "Rectangular confidence regions for the means of multivariate normal distributions" (1967). Pixels with NaN or Inf
+/// in any image are not tested. Throws Error if shapes differ, fewer than two references came or no pixel remains.
+Significance test_significance(const ImageView& image, const std::vector<ImageView>& references, const Mask& mask,
+                               const SignificanceOptions& options = {});
+
+inline constexpr int variance_window = 9;
+
+}  // namespace mesograin::image
