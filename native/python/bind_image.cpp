@@ -3,6 +3,7 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <map>
@@ -13,7 +14,9 @@
 #include <vector>
 
 #include "image/exr.h"
+#include "image/filters.h"
 #include "image/metrics.h"
+#include "image/significance.h"
 #include "python/bindings.h"
 #include "scene/error.h"
 
@@ -85,19 +88,61 @@ void write_exr(const std::filesystem::path& path, const Pixels& pixels,
                    half ? image::SampleFormat::half : image::SampleFormat::float32);
 }
 
-py::array_t<bool> default_mask(const Pixels& coverage, int erode) {
-  const image::Mask mask = image::default_mask(to_view(coverage, "coverage"), erode);
+py::array_t<bool> to_selection(const image::Mask& mask) {
   py::array_t<bool> selection({mask.height, mask.width});
   std::copy(mask.pixels.begin(), mask.pixels.end(), selection.mutable_data());
   return selection;
 }
 
+image::Mask to_mask(const Selection& selection) {
+  if (selection.ndim() != 2) throw Error("mask must have shape (h, w); got ({}).", shape_of(selection));
+  return {.width = static_cast<int>(selection.shape(1)),
+          .height = static_cast<int>(selection.shape(0)),
+          .pixels = {selection.data(), selection.data() + selection.size()}};
+}
+
 std::optional<image::Mask> to_mask(const std::optional<Selection>& selection) {
   if (!selection) return std::nullopt;
-  if (selection->ndim() != 2) throw Error("mask must have shape (h, w); got ({}).", shape_of(*selection));
-  return image::Mask{.width = static_cast<int>(selection->shape(1)),
-                     .height = static_cast<int>(selection->shape(0)),
-                     .pixels = {selection->data(), selection->data() + selection->size()}};
+  return to_mask(*selection);
+}
+
+py::array_t<bool> default_mask(const Pixels& coverage, int erode) {
+  return to_selection(image::default_mask(to_view(coverage, "coverage"), erode));
+}
+
+py::array_t<bool> crop_mask(const Selection& mask, const std::array<int, 4>& crop) {
+  return to_selection(image::crop_mask(to_mask(mask), crop[0], crop[1], crop[2], crop[3]));
+}
+
+py::array_t<bool> mean_deviation_mask(const Pixels& error, const Selection& mask, double deviations) {
+  return to_selection(image::mean_deviation_mask(to_view(error, "error"), to_mask(mask), deviations));
+}
+
+py::array_t<bool> otsu_mask(const Pixels& error, const Selection& mask, int median_size) {
+  return to_selection(image::otsu_mask(to_view(error, "error"), to_mask(mask), median_size));
+}
+
+py::dict test_significance(const Pixels& pixels, const std::vector<Pixels>& references, const Selection& selection,
+                           double false_alarm_rate, double relative_tolerance) {
+  const image::ImageView view = to_view(pixels, "image");
+  std::vector<image::ImageView> reference_views;
+  for (const Pixels& reference : references) reference_views.push_back(to_view(reference, "references"));
+  const image::Mask mask = to_mask(selection);
+  image::Significance significance;
+  {
+    const py::gil_scoped_release release;
+    significance = image::test_significance(view, reference_views, mask, {false_alarm_rate, relative_tolerance});
+  }
+  py::dict result;
+  result["differs"] = significance.differs;
+  result["significant_pixels"] = significance.significant_pixels;
+  result["tests"] = significance.tests;
+  result["threshold"] = significance.threshold;
+  result["false_alarm_rate"] = false_alarm_rate;
+  result["relative_tolerance"] = relative_tolerance;
+  result["p_value"] = to_array(std::move(significance.p_value));
+  result["score"] = to_array(std::move(significance.score));
+  return result;
 }
 
 py::object member_or_none(const std::optional<image::Errors>& errors, double image::Errors::*member) {
@@ -183,6 +228,23 @@ void bind_image(py::module_& module) {
   module.def("default_mask", &default_mask, py::arg("coverage"), py::arg("erode") = 2,
              "(h, w) bool: where coverage, of shape (h, w), is 1 (within 1e-4), less a rim of `erode` pixels. Raises "
              "Error for another shape or a negative `erode`.");
+  module.def("crop_mask", &crop_mask, py::arg("mask"), py::arg("crop"),
+             "(h, w) bool: mask inside crop = (left, top, right, bottom) in pixels, row 0 at the top, right and bottom "
+             "not included. Raises Error if the crop does not lie in the mask.");
+  module.def("mean_deviation_mask", &mean_deviation_mask, py::arg("error"), py::arg("mask"),
+             py::arg("deviations") = 1.0,
+             "(h, w) bool: mask where error, (h, w, channels), is at most its masked mean plus `deviations` standard "
+             "deviations. Pixels with NaN or Inf stay, to be counted. Raises Error if shapes differ.");
+  module.def("otsu_mask", &otsu_mask, py::arg("error"), py::arg("mask"), py::arg("median_size") = 4,
+             "(h, w) bool: mask where the median of error over median_size x median_size pixels is in the lower of the "
+             "two classes that Otsu's threshold parts. Raises Error if shapes differ.");
+  module.def(
+      "test_significance", &test_significance, py::arg("image"), py::arg("references"), py::arg("mask"),
+      py::arg("false_alarm_rate") = 0.01, py::arg("relative_tolerance") = 0.002,
+      "Tests an image against K >= 2 references of independent noise, pixel by pixel (docs/metrics.md): "
+      "{'differs', 'significant_pixels', 'tests', 'threshold', 'false_alarm_rate', 'relative_tolerance', "
+      "'p_value': (h, w, 1) float32, 'score': (h, w, 1 or 3) float32, in standard deviations, positive where the "
+      "image is too bright}. Raises Error if shapes differ or nothing can be tested.");
   module.def("compare", &compare, py::arg("image"), py::arg("reference_a"), py::arg("reference_b") = py::none(),
              py::arg("mask") = py::none(),
              "Metrics of an image against a reference, or against the mean of two whose noise is independent: a flat "
