@@ -1,4 +1,4 @@
-// Traces a half-space: photons start below the surface, refracted, so that every result is per transmitted flux.
+// Traces a half-space: one conservative walk a photon, weighed for every albedo.
 #include "half_space.h"
 
 #include <algorithm>
@@ -9,18 +9,6 @@
 
 namespace mesograin::referee {
 namespace {
-
-/// The photon just below the surface.
-Photon enter(const HalfSpaceCase& setup, const Interface& interface, Rng& rng) {
-  double cosine = setup.cosine;
-  if (setup.diffuse) {
-    do cosine = std::sqrt(rng.uniform_positive());
-    while (rng.uniform() <
-           interface.reflectance_from_outside(cosine));  // keeps each angle in proportion to its transmitted flux
-  }
-  const double sine = std::sqrt((1 - cosine) * (1 + cosine)) / setup.eta;
-  return {{0, 0, 0}, {sine, 0, std::sqrt(std::max(0.0, 1 - sine * sine))}};
-}
 
 struct Visitor {
   const HalfSpaceCase& setup;
@@ -62,7 +50,7 @@ HalfSpaceResult trace_half_space(const HalfSpaceCase& setup, const Effort& effor
       effort, (3 + rings + setup.lobe_bins) * albedos, [&](Rng& rng, std::uint64_t photons, std::span<double> tally) {
         Visitor visitor{setup, powers, tally};
         for (std::uint64_t i = 0; i < photons; ++i)
-          walk(HalfSpace{}, interface, Medium{1, setup.g}, enter(setup, interface, rng), rng, visitor);
+          walk(HalfSpace{}, interface, Medium{1, setup.g}, setup.incidence.enter(interface, rng), rng, visitor);
       });
 
   HalfSpaceResult result;

@@ -4,14 +4,14 @@
 #include <vector>
 
 #include "batches.h"
+#include "planar_incidence.h"
 
 namespace mesograin::referee {
 
 struct HalfSpaceCase {
   double eta = 1;
   double g = 0;
-  double cosine = 1;     ///< of the incident beam outside; ignored for diffuse light
-  bool diffuse = false;  ///< cosine-weighted incidence outside (with eta = 1: Lambertian entry)
+  PlanarIncidence incidence;
   std::vector<double> albedos;
   std::vector<double>
       radii;          ///< edges of the radial profile's rings, ascending from 0, in mean free paths; empty: no profile

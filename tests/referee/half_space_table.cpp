@@ -28,13 +28,8 @@ const nlohmann::json head{{"about",
                           {"seed", seed}};
 
 nlohmann::json trace(double eta, double g, double cosine, bool diffuse, unsigned threads) {
-  const HalfSpaceCase setup{.eta = eta,
-                            .g = g,
-                            .cosine = cosine,
-                            .diffuse = diffuse,
-                            .albedos = albedos,
-                            .radii = {},
-                            .lobe_bins = lobe_bins};
+  const HalfSpaceCase setup{
+      .eta = eta, .g = g, .incidence = {cosine, diffuse}, .albedos = albedos, .radii = {}, .lobe_bins = lobe_bins};
   const HalfSpaceResult result = trace_half_space(setup, {photons, seed, threads});
   nlohmann::json lobe = nlohmann::json::array(), lobe_noise = nlohmann::json::array();
   for (double albedo : head["lobe_albedos"]) {

@@ -28,7 +28,7 @@ TEST(HalfSpace, WithoutInterfaceIsChandrasekharsSolution) {
   const std::vector<double> albedos{0.1, 0.5, 0.8, 0.9, 0.99, 0.999, 0.9999};
   for (bool diffuse : {false, true}) {
     HalfSpaceCase setup = normal_incidence(1, albedos);
-    setup.diffuse = diffuse;
+    setup.incidence.diffuse = diffuse;
     const HalfSpaceResult result = trace_half_space(setup, {400'000, 41, 0});
     for (std::size_t a = 0; a < albedos.size(); ++a) {
       const ChandrasekharH h(albedos[a]);
@@ -85,8 +85,8 @@ TEST(HalfSpace, ItsTableHoldsForFreshSeeds) {
     if (++compared % 6 != 1) continue;  // every sixth case: all would take minutes
     HalfSpaceCase setup = normal_incidence(stored["eta"], albedos);
     setup.g = stored["g"];
-    setup.diffuse = stored["incidence"].is_string();
-    if (!setup.diffuse) setup.cosine = stored["incidence"];
+    setup.incidence.diffuse = stored["incidence"].is_string();
+    if (!setup.incidence.diffuse) setup.incidence.cosine = stored["incidence"];
     const HalfSpaceResult result = trace_half_space(setup, {100'000, 45, 0});
     for (std::size_t a = 0; a < albedos.size(); ++a) {
       const double noise = std::hypot(result.total[a].noise, stored["total_noise"][a].get<double>());

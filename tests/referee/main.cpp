@@ -3,7 +3,10 @@
 
 #include <CLI/CLI.hpp>
 #include <exception>
+#include <memory>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
 #include "half_space.h"
 #include "table_file.h"
@@ -32,10 +35,10 @@ void add_half_space(CLI::App& application) {
       ->check(CLI::Range(-0.99, 0.99))
       ->capture_default_str();
   command->add_option("--albedo", setup->albedos, "sigma_s / sigma_t, any number of them")->check(CLI::Range(0.0, 1.0));
-  command->add_option("--cosine", setup->cosine, "of the incident beam, outside")
+  command->add_option("--cosine", setup->incidence.cosine, "of the incident beam, outside")
       ->check(CLI::Range(0.01, 1.0))
       ->capture_default_str();
-  command->add_flag("--diffuse", setup->diffuse, "cosine-weighted incidence instead of a beam");
+  command->add_flag("--diffuse", setup->incidence.diffuse, "cosine-weighted incidence instead of a beam");
   add_effort(command, *effort);
   command->callback([setup, effort] {
     const HalfSpaceResult result = trace_half_space(*setup, *effort);
@@ -54,9 +57,16 @@ void add_tables(CLI::App& application) {
   CLI::App* command = application.add_subcommand("tables", "make or complete the tables the tests read");
   auto directory = std::make_shared<std::string>("tests/data/referee");
   auto threads = std::make_shared<unsigned>(1);
+  auto names = std::make_shared<std::vector<std::string>>(std::vector<std::string>{"half_space", "sphere"});
   command->add_option("--directory", *directory, "where the tables are")->capture_default_str();
   command->add_option("--threads", *threads, "0: as many as the machine has")->capture_default_str();
-  command->callback([directory, threads] { make_half_space_table(*directory, *threads); });
+  command->add_option("--only", *names, "which tables, in this order")->check(CLI::IsMember(*names));
+  command->callback([directory, threads, names] {
+    for (const std::string& name : *names) {
+      if (name == "half_space") make_half_space_table(*directory, *threads);
+      if (name == "sphere") make_sphere_table(*directory, *threads);
+    }
+  });
 }
 
 }  // namespace

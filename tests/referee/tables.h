@@ -8,4 +8,7 @@ namespace mesograin::referee {
 /// half_space.json: reflectance per transmitted flux over albedo, eta and incidence.
 void make_half_space_table(const std::filesystem::path& directory, unsigned threads);
 
+/// sphere.json: exitance in parallel light over material, eta and radius.
+void make_sphere_table(const std::filesystem::path& directory, unsigned threads);
+
 }  // namespace mesograin::referee
