@@ -2,9 +2,9 @@
 #include "batches.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <thread>
+
+#include "parallel.h"
 
 namespace mesograin::referee {
 
@@ -13,22 +13,13 @@ std::vector<Estimate> run_batches(const Effort& effort, std::size_t tally_size,
   constexpr std::uint64_t batch_count = 64;
   const std::uint64_t photons = std::max<std::uint64_t>(1, effort.photons / batch_count);
   std::vector<std::vector<double>> batches(batch_count);
-  std::atomic<std::uint64_t> next{0};
-  const auto work = [&] {
-    for (std::uint64_t batch = next++; batch < batch_count; batch = next++) {
-      std::vector<double> tally(tally_size,
-                                0.0);  // made by its own thread, so that no two threads write to one cache line
-      Rng rng(effort.seed, batch);
-      trace(rng, photons, tally);
-      batches[batch] = std::move(tally);
-    }
-  };
-  const unsigned threads = effort.threads ? effort.threads : std::max(1u, std::thread::hardware_concurrency());
-  {
-    std::vector<std::jthread> helpers;
-    for (unsigned helper = 1; helper < threads; ++helper) helpers.emplace_back(work);
-    work();
-  }
+  parallel(batch_count, effort.threads, [&](std::size_t batch) {
+    std::vector<double> tally(tally_size,
+                              0.0);  // made by its own thread, so that no two threads write to one cache line
+    Rng rng(effort.seed, batch);
+    trace(rng, photons, tally);
+    batches[batch] = std::move(tally);
+  });
 
   std::vector<Estimate> estimates(tally_size);
   for (std::size_t i = 0; i < tally_size; ++i) {

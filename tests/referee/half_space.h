@@ -11,8 +11,8 @@ namespace mesograin::referee {
 struct HalfSpaceCase {
   double eta = 1;
   double g = 0;
-  PlanarIncidence incidence;
-  std::vector<double> albedos;
+  PlanarIncidence incidence{};
+  std::vector<double> albedos{};
   std::vector<double>
       radii;          ///< edges of the radial profile's rings, ascending from 0, in mean free paths; empty: no profile
   int lobe_bins = 0;  ///< of the exit lobe over the cosine outside, equal widths

@@ -12,8 +12,8 @@ struct SlabCase {
   double thickness = 1;  ///< in mean free paths
   double eta = 1;
   double g = 0;
-  PlanarIncidence incidence;
-  std::vector<double> albedos;
+  PlanarIncidence incidence{};
+  std::vector<double> albedos{};
 };
 
 /// All per unit of flux transmitted into the slab. `ballistic` is order 0, whatever the albedo.

@@ -17,7 +17,7 @@ struct SphereCase {
   double eta = 1;
   double g = 0;
   Entry entry = Entry::refracted;
-  std::vector<double> albedos;
+  std::vector<double> albedos{};
   int bins = 40;  ///< of the cosine, equal widths from -1 to 1 (so of equal area)
 };
 
