@@ -169,11 +169,18 @@ class Runner:
         print(f"{counts:<40}{result.seconds:6.1f} s", flush=True)
         for test, text in result.failures:
             print(f"  FAILED {test}")
-            for line in text.splitlines()[:12]:
+            for line in telling(text):
                 print(f"    {line}")
         if result.failures and log:
             print(f"  the whole log: {log}")
         self.results.append(result)
+
+
+def telling(text, count=12):
+    """The lines of a failure worth a look: the message, then what pytest marks with E, or else how it begins."""
+    lines = text.splitlines()
+    marked = [line for line in lines[1:] if line.startswith("E ")]
+    return (lines[:1] + marked if marked else lines)[:count]
 
 
 def tail(path, count=30):
