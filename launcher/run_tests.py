@@ -57,7 +57,8 @@ def suites_of(part, options):
     if part == "physics":
         return google_tests(part, build / "tests/physics", {}) + google_tests(part, build / "tests/referee", {})
     if part == "native":
-        strict = {"ASAN_OPTIONS": "detect_leaks=1:detect_stack_use_after_return=1", "UBSAN_OPTIONS": "print_stacktrace=1"}
+        strict = {"ASAN_OPTIONS": "detect_leaks=1:detect_stack_use_after_return=1",
+                  "UBSAN_OPTIONS": "print_stacktrace=1"}
         plain = google_tests(part, build / "tests/native", {})
         sanitized = google_tests("native, sanitized", SOURCE / "build/sanitize/tests/native", strict)
         return plain + sanitized
