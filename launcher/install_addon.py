@@ -3,8 +3,11 @@
     blender --background --python install_addon.py -- FILE.zip
     blender --background --python install_addon.py -- --remove
 """
+import pathlib
+import shutil
 import sys
 
+import addon_utils
 import bpy
 
 REPOSITORY = "user_default"  # where Blender 4.2 and later keep extensions that are installed from a file
@@ -26,15 +29,17 @@ def install(path):
 
 
 def remove():
-    if MODULE not in bpy.context.preferences.addons:
+    folder = pathlib.Path(bpy.utils.user_resource("SCRIPTS", path="addons"), "mesograin")
+    if MODULE not in bpy.context.preferences.addons and not folder.is_dir():
         sys.exit(f"mesograin: the add-on is not installed in Blender {bpy.app.version_string}.")
-    bpy.ops.preferences.addon_disable(module=MODULE)
     if ARE_EXTENSIONS:
         index = next(index for index, repository in enumerate(bpy.context.preferences.extensions.repos)
                      if repository.module == REPOSITORY)
         bpy.ops.extensions.package_uninstall(repo_index=index, pkg_id="mesograin")
     else:
-        bpy.ops.preferences.addon_remove(module=MODULE)
+        # Blender's own operator wants a window to redraw.
+        addon_utils.disable(MODULE, default_set=True)
+        shutil.rmtree(folder)
     bpy.ops.wm.save_userpref()
     print(f"Mesograin is taken out of Blender {bpy.app.version_string}.")
 

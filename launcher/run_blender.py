@@ -11,8 +11,9 @@ import subprocess
 import sys
 
 CHATTER = re.compile(
-    rb"^(Blender \d|Read (blend|prefs|new)|Fra:\d|Saved: |Saving: |Blender quit|Info: |\s*Time: |Writing: |"
-    rb"found bundled python|Color management: |AL lib: |\s*$)")
+    rb"^(Blender \d|Read (blend|prefs|new)|Fra:\d|Saved: |Saving: |Blender quit|Info: |\s*Time: |Writing |Writing: |"
+    rb"found bundled python|Color management: |AL lib: |addon_utils\.|reloading addon|module changed|Modules Installed|"
+    rb"Warning: Add-on path|\s*$)")
 
 
 def run(log_path, command):
