@@ -1,0 +1,56 @@
+"""Scenes in JSON as Python sees them: paths, text and dicts; the native tests hold every key and every mistake."""
+
+import json
+import pathlib
+
+import mesograin_native as native
+import numpy as np
+import pytest
+
+SPHERE = pathlib.Path(__file__).resolve().parents[1] / "data/sphere.json"
+
+
+def test_path_text_and_dict_are_one_scene():
+    text = SPHERE.read_text()
+    for source in (SPHERE, str(SPHERE), text, json.loads(text)):
+        scene, camera, size = native.load_scene(source)
+        assert size == (400, 400)
+        assert len(scene.instances) == 1 and len(scene.lights) == 2
+        assert scene.instances[0].material.model == "lambert"
+        assert scene.instances[0].material.reflectance == [0.8, 0.6, 0.4]
+        assert scene.lights[1].irradiance == [10, 10, 10]
+        expected = native.Camera.look_at((0, 0, 6.5), (0, 0, 0), (0, 1, 0), 45.0)
+        np.testing.assert_array_equal(camera.world_to_camera, expected.world_to_camera)
+
+
+def test_model_and_size_are_the_callers():
+    scene = json.loads(SPHERE.read_text())
+    scene["material"] = {"kind": "subsurface", "sigma_s": 1, "sigma_a": 0.1}
+    loaded, _, size = native.load_scene(scene, model="model_2", size=(40, 30))
+    assert loaded.instances[0].material.model == "model_2"
+    assert size == (40, 30)
+
+
+@pytest.mark.parametrize("change, part", [
+    ({"material": {"kind": "diffuse", "reflectance": float("nan")}}, "which has no NaN"),
+    ({"material": {"kind": "diffuse", "reflectance": -1}}, "material.reflectance must lie between 0 and 1; got -1"),
+    ({"lights": []}, "lights must be a list of at least one light"),
+    ({"colour": 1}, "colour is an unknown key"),
+    ({"geometry": {"shape": "mesh", "file": "none.obj"}}, "There is no file none.obj"),
+])
+def test_mistakes_raise_one_sentence(change, part):
+    with pytest.raises(native.Error, match=r"\.$") as raised:
+        native.load_scene({**json.loads(SPHERE.read_text()), **change})
+    assert part in str(raised.value)
+
+
+def test_unknown_files_models_and_sizes_are_named():
+    for arguments, part in [
+        (("none.json",), "There is no file none.json"),
+        ((SPHERE, "model_9"), "got 'model_9'"),
+        ((SPHERE, "conductor"), "which lambert answers; got the model conductor"),
+        ((SPHERE, None, (0, 5)), "1 to 16384 pixels a side; got 0 x 5"),
+    ]:
+        with pytest.raises(native.Error) as raised:
+            native.load_scene(*arguments)
+        assert part in str(raised.value)
