@@ -23,9 +23,11 @@ constexpr int depth_nodes = 16;
 // beam itself lights in a dark grain.
 template <typename Visit>
 void for_depths(double extinction, double length, Visit visit) {
+  constexpr double nothing_left = 50.0;
+  const double end = std::min(length, nothing_left / extinction);
   for (const QuadratureNode& node : gauss_legendre(depth_nodes)) {
-    const double t = length * node.x * node.x * node.x;
-    visit(t, 3.0 * node.x * node.x * node.weight * length * extinction * std::exp(-extinction * t));
+    const double t = end * node.x * node.x * node.x;
+    visit(t, 3.0 * node.x * node.x * node.weight * end * extinction * std::exp(-extinction * t));
   }
 }
 
@@ -39,13 +41,16 @@ struct Beam {
 
 std::vector<Beam> entering_beams(double eta, int nodes) {
   std::vector<Beam> beams;
+  // What is totally reflected at a rarer grain does not enter.
+  const double critical = eta < 1.0 ? sine_of_cosine(eta) : 0.0;
   for (const QuadratureNode& node : gauss_legendre(nodes)) {
-    const double mu = node.x;
+    const double mu = critical + (1.0 - critical) * node.x;
     const double mu_refracted = refracted_cosine(mu, eta);
     const double transmittance = eta == 1.0 ? 1.0 : fresnel_transmittance(mu, mu_refracted, eta);
     const glm::dvec2 normal(sine_of_cosine(mu), mu);
     const glm::dvec2 direction = glm::dvec2(0.0, -1.0) / eta + (mu / eta - mu_refracted) * normal;
-    beams.push_back({normal, direction, 2.0 * mu_refracted, node.weight * mu * transmittance, 1.0 - transmittance});
+    beams.push_back({normal, direction, 2.0 * mu_refracted, (1.0 - critical) * node.weight * mu * transmittance,
+                     1.0 - transmittance});
   }
   return beams;
 }
@@ -179,7 +184,7 @@ std::vector<double> half_space_multiple_exitance(const BodyMedium& medium, const
 }
 
 SphereSingleScattering::SphereSingleScattering(double eta, const std::vector<double>& cosines)
-    : points_(cosines.size()) {
+    : half_space_(half_space_single_exitance(eta, cosines)), points_(cosines.size()) {
   constexpr int angles = 6;
   const SphereRefraction refraction(eta);
   for (std::size_t i = 0; i < cosines.size(); ++i) {
@@ -212,11 +217,15 @@ SphereSingleScattering::SphereSingleScattering(double eta, const std::vector<dou
 }
 
 std::vector<double> SphereSingleScattering::exitance(double optical_radius) const {
+  // Beyond what the depths resolve, the difference from the half-space goes on falling like the curvature.
+  constexpr double largest = 40.0;
+  const double radius = std::min(optical_radius, largest);
+  const double curvature = optical_radius > largest ? largest / optical_radius : 1.0;
   std::vector<double> exitance;
-  for (const std::vector<Way>& ways : points_) {
+  for (std::size_t i = 0; i < points_.size(); ++i) {
     double sum = 0.0;
-    for (const Way& way : ways) sum += way.weight * std::exp(-optical_radius * way.length);
-    exitance.push_back(optical_radius * sum);
+    for (const Way& way : points_[i]) sum += way.weight * std::exp(-radius * way.length);
+    exitance.push_back(half_space_[i] + curvature * (radius * sum - half_space_[i]));
   }
   return exitance;
 }

@@ -32,6 +32,7 @@ class SphereSingleScattering {
     double weight;
     double length;  // in and out
   };
+  std::vector<double> half_space_;
   std::vector<std::vector<Way>> points_;
 };
 

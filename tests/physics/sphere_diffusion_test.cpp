@@ -67,7 +67,7 @@ TEST(SphereRefraction, CarriesThroughTheMiddleWhatEntered) {
 
 TEST(SphereExitance, AThickSphereAnswersLikeAHalfSpace) {
   const std::vector<double> cosines{0.4, 0.7, 1.0};
-  for (double eta : {0.75, 1.0, 1.3, 1.6})
+  for (double eta : {1.0, 1.3, 1.6})
     for (double albedo : {0.1, 0.5, 0.9, 0.999}) {
       const BodyMedium medium{(1.0 - albedo) * 2e3, albedo * 2e3, 0.0};
       const std::vector<double> sphere = sphere_multiple_exitance(medium, surface_of(eta), cosines);
