@@ -6,6 +6,7 @@
 namespace mesograin::python {
 
 void bind_image(pybind11::module_& module);
+void bind_physics(pybind11::module_& module);
 void bind_scene(pybind11::module_& module);
 void bind_scene_file(pybind11::module_& module);
 void bind_view(pybind11::module_& module);

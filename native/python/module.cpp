@@ -15,6 +15,7 @@ PYBIND11_MODULE(mesograin_native, module) {
 
   mesograin::python::bind_image(module);
   mesograin::python::bind_scene(module);
+  mesograin::python::bind_physics(module);
   mesograin::python::bind_scene_file(module);
   mesograin::python::bind_view(module);
 

@@ -6,8 +6,10 @@
 #include <cmath>
 #include <random>
 
+#include "physics/half_space_albedo.h"
 #include "physics/physics.h"
 #include "physics/quadrature.h"
+#include "scene/error.h"
 
 namespace mesograin::physics {
 namespace {
@@ -204,6 +206,29 @@ TEST(HalfSpace, CountsNoOrderTwice) {
     EXPECT_NEAR(first_order, anchor.first_order, 0.012 * anchor.first_order + 5e-5)
         << anchor.eta << " " << anchor.albedo;
   }
+}
+
+TEST(HalfSpaceAlbedo, AnswersForEveryBoundary) {
+  scene::Material material;
+  material.model = scene::Model::model_1;
+  material.sigma_a = {0.5, 0.2, 0.1};
+  material.sigma_s = {0.5, 0.8, 0.9};
+  material.eta = 1.5;
+  // Photon Monte Carlo at normal incidence, times the 4 % that the interface keeps out.
+  EXPECT_NEAR(half_space_albedo(material, 1.0).b, 0.96 * 0.2288, 0.003);
+  material.boundary = scene::Boundary::index_matched;
+  EXPECT_NEAR(half_space_albedo(material, 1.0).b, 0.4147, 0.002);
+  // Light from everywhere is the cosine lobe.
+  const glm::dvec3 even = half_space_albedo(material, std::nullopt);
+  material.boundary = scene::Boundary::lambert_lambert;
+  const glm::dvec3 lobe = half_space_albedo(material, 0.3);
+  for (int channel = 0; channel < 3; ++channel) EXPECT_NEAR(even[channel], lobe[channel], 1e-5);
+  // A view that is refracted looks in more steeply, where less comes back.
+  material.boundary = scene::Boundary::lambert_refracted;
+  EXPECT_LT(half_space_albedo(material, 0.3).r, lobe.r);
+  EXPECT_GT(half_space_albedo(material, 0.3).r, 0.0);
+  EXPECT_THROW(half_space_albedo(material, 0.0), Error);
+  EXPECT_THROW(half_space_albedo(material, std::nan("")), Error);
 }
 
 }  // namespace
