@@ -34,7 +34,9 @@ ensure_packages() {
   # shellcheck disable=SC2086 # the names are separate words
   set -- $missing
   [ "$(id -u)" -eq 0 ] || sudo -v || fail "$exit_prerequisite" "sudo refused; as root, run: apt-get install --no-install-recommends $missing"
-  step "Installing $# Debian packages" packages install_packages "$@" ||
+  what="$# Debian packages"
+  [ $# -gt 3 ] || what=$*
+  step "Installing $what" packages install_packages "$@" ||
     step_failed "$exit_prerequisite" "These packages could not be installed: $missing"
 }
 
