@@ -13,7 +13,7 @@ import sys
 CHATTER = re.compile(
     rb"^(Blender \d|Read (blend|prefs|new)|Fra:\d|Saved: |Saving: |Blender quit|Info: |\s*Time: |Writing |Writing: |"
     rb"found bundled python|Color management: |AL lib: |addon_utils\.|reloading addon|module changed|Modules Installed|"
-    rb"Warning: Add-on path|\s*$)")
+    rb"Warning: Add-on path|STATUS |\s*$)")
 
 
 def run(log_path, command):
