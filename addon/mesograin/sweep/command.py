@@ -26,8 +26,8 @@ def parser():
     made = Parser(
         prog="mesograin sweep",
         description="Compares every case of a sweep file: one case one folder, resumable, failures recorded.",
-        epilog="Exit codes: 0 all cases done, 1 some failed (the others are there), 2 bad arguments or sweep file, 3 the "
-        "output folder cannot be written, 130 interrupted. Run again, it does only what is missing.",
+        epilog="Exit codes: 0 all cases done, 1 some failed (the others are there), 2 bad arguments or sweep file, "
+        "3 the output folder cannot be written, 130 interrupted. Run again, it does only what is missing.",
     )
     made.add_argument("file", help="the sweep, a TOML file (docs/sweeps.md)")
     made.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder for cases, tables and plots")
