@@ -91,7 +91,7 @@ Renders a scene described in JSON to an EXR file; needs no Blender.
 
   ./mesograin render SCENE.json -o OUT.exr [option ...]
 
-  SCENE.json            geometry, camera, resolution, lights and material; docs/scene.md describes it
+  SCENE.json            geometry, camera, resolution, lights and material; docs/scene-json.md describes it
   -o, --output OUT.exr  linear RGB radiance and coverage, 32-bit float, row 0 at the top
   -m, --model MODEL     lambert, conductor or model_1 (default: the best for the material's kind)
   -n, --samples N       samples per pixel (default: 64)
