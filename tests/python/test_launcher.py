@@ -105,7 +105,7 @@ class TestRunTests:
 
 def test_the_package_holds_what_blender_needs(tmp_path):
     archive = tmp_path / "folder" / "mesograin.zip"
-    subprocess.run([sys.executable, str(SOURCE / "launcher/package.py"), str(SOURCE), str(archive)], check=True)
+    subprocess.run([sys.executable, str(SOURCE / ".launcher/package.py"), str(SOURCE), str(archive)], check=True)
     names = zipfile.ZipFile(archive).namelist()
     assert {"mesograin/__init__.py", "mesograin/blender_manifest.toml", "mesograin/LICENSE"} <= set(names)
     assert any(name.startswith("mesograin/mesograin_native.") and name.endswith(".so") for name in names)

@@ -48,7 +48,7 @@ run_compare() {
   ensure_lists report
   ensure_product product
   mkdir -p "$logs"
-  exec /usr/bin/python3 "$source_folder/launcher/run_blender.py" "$logs/compare.log" "$blender" --background "$scene" \
+  exec /usr/bin/python3 "$source_folder/.launcher/run_blender.py" "$logs/compare.log" "$blender" --background "$scene" \
     --factory-startup --python-exit-code 1 --python "$source_folder/addon/mesograin/comparison/command.py" -- "$@"
 }
 
@@ -102,7 +102,7 @@ run_test() {
   case $parts in
     *lint*) ensure_lists lint ;;
   esac
-  set -- "$source_folder/launcher/run_tests.py" --build "$build" --python "$python" --blender "$blender" \
+  set -- "$source_folder/.launcher/run_tests.py" --build "$build" --python "$python" --blender "$blender" \
     --blender-version "$blender_version" --results "$build/test-results"
   if [ "$blender_4" = yes ]; then
     ensure_debian_13
@@ -151,7 +151,7 @@ run_package() {
   ensure_blender
   ensure_product product
   [ "$blender_4" = no ] || build_in_debian_13
-  exec "$python" "$source_folder/launcher/package.py" "$source_folder" ${zip:+"$zip"}
+  exec "$python" "$source_folder/.launcher/package.py" "$source_folder" ${zip:+"$zip"}
 }
 
 run_install() {
@@ -161,15 +161,15 @@ run_install() {
     '') ;;
     --remove)
       ensure_blender
-      exec /usr/bin/python3 "$source_folder/launcher/run_blender.py" "$logs/install.log" "$blender" --background \
-        --python-exit-code 1 --python "$source_folder/launcher/install_addon.py" -- --remove
+      exec /usr/bin/python3 "$source_folder/.launcher/run_blender.py" "$logs/install.log" "$blender" --background \
+        --python-exit-code 1 --python "$source_folder/.launcher/install_addon.py" -- --remove
       ;;
     *) fail "$exit_usage" "install knows no '$1'." ;;
   esac
   ensure_blender
   ensure_product product
   zip=$source_folder/build/package/mesograin.zip
-  "$python" "$source_folder/launcher/package.py" "$source_folder" "$zip" >/dev/null
-  exec /usr/bin/python3 "$source_folder/launcher/run_blender.py" "$logs/install.log" "$blender" --background \
-    --python-exit-code 1 --python "$source_folder/launcher/install_addon.py" -- "$zip"
+  "$python" "$source_folder/.launcher/package.py" "$source_folder" "$zip" >/dev/null
+  exec /usr/bin/python3 "$source_folder/.launcher/run_blender.py" "$logs/install.log" "$blender" --background \
+    --python-exit-code 1 --python "$source_folder/.launcher/install_addon.py" -- "$zip"
 }

@@ -1,9 +1,9 @@
 # Makes sure of the Debian packages that a command needs.
 
-# package_names LIST...: the names in packages/LIST.txt.
+# package_names LIST...: the names in .launcher/packages/LIST.txt.
 package_names() {
   for list in "$@"; do
-    sed '/^#/d;/^$/d' "$source_folder/packages/$list.txt"
+    sed '/^#/d;/^$/d' "$source_folder/.launcher/packages/$list.txt"
   done | sort -u
 }
 
@@ -24,7 +24,7 @@ install_packages() {
 # ensure_packages NAME...: installs what is missing; says nothing when nothing is.
 ensure_packages() {
   if ! command -v dpkg-query >/dev/null; then
-    [ -n "${packages_note_given:-}" ] || printf 'This is not Debian: packages are not checked; packages/*.txt names what is needed.\n' >&2
+    [ -n "${packages_note_given:-}" ] || printf 'This is not Debian: packages are not checked; .launcher/packages/*.txt names what is needed.\n' >&2
     packages_note_given=yes
     return
   fi
@@ -40,7 +40,7 @@ ensure_packages() {
     step_failed "$exit_prerequisite" "These packages could not be installed: $missing"
 }
 
-# ensure_lists LIST...: ensure_packages for all that is named in packages/LIST.txt.
+# ensure_lists LIST...: ensure_packages for all that is named in .launcher/packages/LIST.txt.
 ensure_lists() {
   # shellcheck disable=SC2046 # the names are separate words
   ensure_packages $(package_names "$@")

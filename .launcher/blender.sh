@@ -20,7 +20,7 @@ ask_blender() {
   answer=$cache/blender/$(printf '%s' "$blender $(stat -c '%Y %s' "$blender")" | cksum | tr ' ' '-').txt
   if [ ! -s "$answer" ]; then
     mkdir -p "$cache/blender"
-    "$blender" --background --factory-startup --python-exit-code 1 --python "$source_folder/launcher/say_python.py" \
+    "$blender" --background --factory-startup --python-exit-code 1 --python "$source_folder/.launcher/say_python.py" \
       </dev/null 2>/dev/null | sed -n 's/^embedded_python //p' >"$answer.partial"
     [ -s "$answer.partial" ] ||
       fail "$exit_prerequisite" "'$blender' did not say which Python it embeds; is it a Blender that starts?"
