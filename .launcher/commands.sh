@@ -128,7 +128,7 @@ run_bench() {
   ensure_blender
   ensure_lists report
   ensure_product product
-  exec "$python" "$source_folder/bench/frame.py" "$build" "$@"
+  exec "$python" "$source_folder/tests/bench/frame.py" "$build" "$@"
 }
 
 run_package() {
