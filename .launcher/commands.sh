@@ -48,8 +48,9 @@ run_compare() {
   ensure_lists report
   ensure_product product
   mkdir -p "$logs"
-  exec /usr/bin/python3 "$source_folder/.launcher/run_blender.py" "$logs/compare.log" "$blender" --background "$scene" \
-    --factory-startup --python-exit-code 1 --python "$source_folder/addon/mesograin/comparison/command.py" -- "$@"
+  exec /usr/bin/python3 "$source_folder/.launcher/run_blender.py" "$logs/compare.log" "$blender" --background \
+    --factory-startup --python-exit-code 1 --python "$source_folder/addon/mesograin/comparison/command.py" -- \
+    "$scene" "$@"
 }
 
 run_sweep() {

@@ -44,7 +44,7 @@ def test_settings():
         (["--set", "sigma_s=1,2"], "one number or three"),
         (["--set", "g=high"], "one number"),
         (["--cache-limit", "much"], "number of bytes"),
-        (["scene.blend"], "unrecognized"),
+        (["missing.blend"], "no scene 'missing.blend'"),
     ],
 )
 def test_bad_words_get_one_sentence(capsys, words, needed):

@@ -42,6 +42,7 @@ def build():
             "3 the output folder cannot be written, 130 interrupted. A second run finds its references in the cache."
         ),
     )
+    parser.add_argument("scene", nargs="?", type=Path, default=None, metavar="SCENE.blend", help="the scene to compare")
     parser.add_argument(
         "--models",
         nargs="+",
@@ -120,6 +121,8 @@ def parse(words):
     parser = build()
     chosen = parser.parse_args(words)
     chosen.settings = dict(chosen.settings)
+    if chosen.scene and not chosen.scene.is_file():
+        parser.error(f"there is no scene '{chosen.scene}'")
     return chosen
 
 

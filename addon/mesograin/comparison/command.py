@@ -1,4 +1,4 @@
-# The comparison as a command: blender -b SCENE.blend --factory-startup --python-exit-code 1 --python THIS -- [options]
+# The comparison as a command: blender -b --factory-startup --python-exit-code 1 --python THIS -- [SCENE.blend] [options]
 """Puts the add-on into a Blender without window, compares, writes the report, and ends Blender with a meaningful
 exit code."""
 
@@ -41,6 +41,14 @@ def _run(chosen, words):
     if not hasattr(bpy.types.Scene, "mesograin"):
         mesograin.register()
 
+    if chosen.scene:
+        # Only now, so that the file finds its engine and its properties.
+        try:
+            bpy.ops.wm.open_mainfile(filepath=str(chosen.scene.absolute()), load_ui=False)
+        except RuntimeError as error:
+            reason = " ".join(str(error).split()).removeprefix("Error: ")
+            return _complain(f"{chosen.scene} cannot be opened: {reason}", BAD_INPUT)
+
     from mesograin.comparison.progress import Progress
     from mesograin.comparison.results import OutputError
     from mesograin.comparison.run import Request, cases, compare
@@ -72,7 +80,7 @@ def _run(chosen, words):
         settings=chosen.settings,
         frames=chosen.frames,
         cache=cache,
-        command=_command(bpy.data.filepath, words),
+        command=_command(words),
     )
     progress = Progress()
     try:
@@ -97,10 +105,9 @@ def _complain(error, code):
     return code
 
 
-def _command(scene, words):
+def _command(words):
     """The line that repeats this comparison, from the repository's root."""
-    where = [os.path.relpath(scene)] if scene else []
-    return shlex.join(["./mesograin", "compare", *where, *words])
+    return shlex.join(["./mesograin", "compare", *words])
 
 
 def _print_table(results):

@@ -150,6 +150,8 @@ def _shot(depsgraph, kind, size, samples, seed, cache, overrides, on_progress):
         "materials": list(used.values()),
         "key": key,
     }
+    # As it will come back from a file.
+    provenance = json.loads(json.dumps(provenance))
     if cache:
         try:
             cache.store(

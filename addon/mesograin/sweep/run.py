@@ -36,13 +36,13 @@ def command(blender, case, out):
     return [
         blender,
         "--background",
-        case.scene,
         "--factory-startup",
         "--python-exit-code",
         "1",
         "--python",
         str(COMPARE),
         "--",
+        case.scene,
         *arguments(case, out),
     ]
 

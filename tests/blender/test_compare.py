@@ -1,0 +1,210 @@
+# The comparison as a whole: files complete and consistent, failures recorded, interruption clean.
+import csv
+import io
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import time
+
+import bpy
+import numpy as np
+import pytest
+from cycles_scenes import make_sphere
+
+from mesograin.comparison import progress, results, run
+from mesograin.cycles import reference
+from mesograin.cycles.cache import Cache
+
+COMMAND = pathlib.Path(__file__).resolve().parents[2] / "addon/mesograin/comparison/command.py"
+SUNS = [((1.0, 1.0, 1.0), 20.0), ((-1.0, -1.0, -1.6), 10.0)]
+
+
+def compare(folder, **changes):
+    done = {
+        "models": ("lambert", "conductor", "model_1"),
+        "out": folder / "out",
+        "size": (40, 32),
+        "samples": 8,
+        "reference_samples": 8,
+        "frames": 3,
+        "cache": Cache(folder / "cache"),
+        "command": "./mesograin compare",
+    }
+    line = progress.Progress(io.StringIO())
+    return run.compare(run.Request(**{**done, **changes}), line)
+
+
+def read_rows(folder):
+    return list(csv.DictReader(io.StringIO((folder / "results.csv").read_text())))
+
+
+def test_every_file_is_there_and_agrees(tmp_path, native):
+    make_sphere(SUNS, roughness=0.4, reflectance=(0.5, 0.4, 0.3))
+    found = compare(tmp_path)
+    out = tmp_path / "out"
+    assert json.loads((out / "results.json").read_text()) == json.loads(json.dumps(found))
+    assert found["complete"] and found["size"] == [40, 32]
+    assert [case["name"] for case in found["cases"]] == [
+        "lambert.diffuse",
+        "conductor.glossy",
+        "model_1.volume_index_matched",
+    ]
+    for case in found["cases"]:
+        assert case["status"] == "done" and case["frame_ms"] > 0.0 and case["reference_seconds"] > 0.0
+        assert {"rse_mean", "rse_max", "relative_l1", "bias"} <= set(case["metrics"])
+        assert case["noise_floor"]["relative_l1"] > 0.0
+        assert case["mask"]["pixels"] > 100 and case["mask"]["nan"] == case["mask"]["inf"] == 0
+        assert set(case["versions"]) >= {"mesograin", "blender"} and set(found["definitions"]) >= set(case["metrics"])
+        pictures = {name: native.read_exr(out / path) for name, path in case["files"].items() if path.endswith(".exr")}
+        model, theirs, error = (pictures[name][0] for name in ("model", "reference", "error"))
+        assert model.shape == theirs.shape == (32, 40, 4) and error.shape == (32, 40, 3)
+        np.testing.assert_allclose(error, model[..., :3] - theirs[..., :3], atol=1e-5)
+        again = native.compare(model, theirs)
+        assert again["relative_l1"] == pytest.approx(case["metrics"]["relative_l1"], rel=1e-3)
+        assert json.loads(pictures["model"][2][reference.PROVENANCE])["materials"]["Sand"]["model"] == case["model"]
+        assert len(json.loads(pictures["reference"][2][reference.PROVENANCE])["mean_of"]) == 2
+        for path in case["files"].values():
+            assert (out / path).stat().st_size > 0
+    assert {case["boundary"] for case in found["cases"][2:]} == {"index_matched"}
+    rows = read_rows(out)
+    assert [row["name"] for row in rows] == [case["name"] for case in found["cases"]]
+    assert float(rows[0]["relative_l1"]) == found["cases"][0]["metrics"]["relative_l1"]
+    assert float(rows[2]["noise_floor.relative_l1"]) == found["cases"][2]["noise_floor"]["relative_l1"]
+    assert not list(out.rglob("*.part*"))
+
+
+def test_lambert_and_conductor_agree_with_cycles(tmp_path):
+    make_sphere(SUNS, roughness=0.3, reflectance=(0.5,) * 3)
+    found = compare(tmp_path, models=("lambert", "conductor"), size=(64, 64), samples=64, reference_samples=48)
+    lambert, conductor = (case["metrics"] for case in found["cases"])
+    assert lambert["relative_l1"] < 0.005 and abs(lambert["bias"] - 1.0) < 0.002
+    assert conductor["relative_l1"] < 0.01
+
+
+def test_a_failing_case_is_recorded_and_the_others_go_on(tmp_path):
+    make_sphere(SUNS, segments=16, rings=8, roughness=0.0)
+    found = compare(tmp_path, size=(16, 16))
+    assert [case["status"] for case in found["cases"]] == ["done", "failed", "done"]
+    assert "raise the roughness" in found["cases"][1]["error"] and "metrics" not in found["cases"][1]
+    rows = read_rows(tmp_path / "out")
+    assert [row["status"] for row in rows] == ["done", "failed", "done"] and "roughness" in rows[1]["error"]
+
+
+def test_settings_reach_both_sides_and_leave_the_material_alone(tmp_path, native):
+    material = make_sphere(SUNS, segments=16, rings=8, scale=3.0)
+    bpy.context.scene.mesograin.millimetres_per_unit = 2.0
+    found = compare(tmp_path, models=("model_1",), size=(16, 16), settings={"sigma_s": (0.5, 0.5, 0.5), "scale": 10.0})
+    ours = found["cases"][0]["material"]["Sand"]
+    assert (ours["sigma_s"], ours["scale"], ours["boundary"]) == ([1.0] * 3, 10.0, "index_matched")
+    theirs = json.loads(
+        native.read_exr(tmp_path / "out" / found["cases"][0]["files"]["reference"])[2][reference.PROVENANCE]
+    )
+    assert theirs["mean_of"][0]["materials"][0]["nodes"]["Scatter"]["inputs"]["Density"] == pytest.approx(10.0)
+    assert (material.mesograin.scale, material.mesograin.boundary) == (3.0, "dielectric")
+
+
+def test_cases_pair_models_with_references_that_answer_them():
+    names = [case.name for case in run.cases(("lambert", "model_1"), ("subsurface", "diffuse", "volume_index_matched"))]
+    assert names == ["lambert.diffuse", "model_1.subsurface", "model_1.volume_index_matched"]
+
+
+def test_an_output_that_cannot_be_written_is_said_before_anything_is_rendered(tmp_path):
+    make_sphere(SUNS, segments=16, rings=8)
+    (tmp_path / "file").write_text("")
+    with pytest.raises(results.OutputError, match="cannot be written"):
+        compare(tmp_path, out=tmp_path / "file" / "out")
+
+
+@pytest.fixture
+def start(tmp_path):
+    """Starts the command in a Blender of its own on the current scene; ends what is left of it."""
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "scene.blend"), copy=True)
+    started = []
+
+    def do(*words):
+        command = [
+            bpy.app.binary_path,
+            "-b",
+            "--factory-startup",
+            "--python-exit-code",
+            "1",
+            "--python",
+            str(COMMAND),
+            "--",
+            str(tmp_path / "scene.blend"),
+            "--out",
+            str(tmp_path / "out"),
+            "--cache",
+            str(tmp_path / "cache"),
+            "--no-report",
+            *words,
+        ]
+        environment = {**os.environ, "TMPDIR": str(tmp_path / "temporary")}
+        (tmp_path / "temporary").mkdir(exist_ok=True)
+        process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment)
+        started.append(process)
+        return process
+
+    yield do
+    for process in started:
+        process.kill()
+
+
+@pytest.fixture
+def scene():
+    make_sphere(SUNS, segments=32, rings=16, roughness=0.3)
+
+
+def test_interruption_is_prompt_and_clean(scene, start, tmp_path):
+    process = start(
+        "--models", "lambert", "model_1", "--size", "256x256", "--reference-samples", "4000", "--samples", "4"
+    )
+    while process.poll() is None and "model_1: reference" not in (line := process.stderr.readline()):
+        assert "failed" not in line
+        if "lambert: reference" in line:
+            break
+    time.sleep(1.0)
+    process.send_signal(signal.SIGINT)
+    asked = time.monotonic()
+    _, said = process.communicate(timeout=60)
+    assert process.returncode == 130 and time.monotonic() - asked < 30
+    assert "Interrupted" in said and "Traceback" not in said
+    assert list((tmp_path / "temporary").glob("mesograin-*")) == []
+    left = [
+        path.name
+        for folder in ("out", "cache")
+        if (tmp_path / folder).exists()
+        for path in (tmp_path / folder).rglob("*")
+        if path.is_file()
+    ]
+    assert not [name for name in left if not name.endswith((".exr", ".png", ".json", ".csv")) or ".part" in name]
+
+
+def test_second_run_finds_its_references(scene, start, tmp_path):
+    words = ("--models", "lambert", "--size", "32x32", "--reference-samples", "4", "--samples", "4")
+    for cached in (False, True):
+        process = start(*words)
+        said = process.communicate(timeout=300)
+        assert process.returncode == 0, said
+        case = json.loads((tmp_path / "out" / "results.json").read_text())["cases"][0]
+        assert case["reference_cached"] is cached
+    process = start("--clear-cache")
+    assert "2 references removed" in process.communicate(timeout=120)[0] and process.returncode == 0
+
+
+@pytest.mark.parametrize(
+    "words, code, sentence",
+    [
+        (("--models", "model_9"), 2, "model_9"),
+        (("--models", "lambert", "--references", "glossy"), 2, "answers"),
+        (("--models", "conductor", "--set", "roughness=0", "--size", "16x16"), 1, "raise the roughness"),
+        (("--models", "lambert", "--out", "/dev/null/out"), 3, "cannot be written"),
+    ],
+)
+def test_bad_input_is_one_sentence_and_an_exit_code(scene, start, words, code, sentence):
+    process = start(*words)
+    _, said = process.communicate(timeout=300)
+    assert process.returncode == code and "Traceback" not in said
+    assert sentence in said

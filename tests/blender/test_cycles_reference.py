@@ -1,0 +1,270 @@
+# A reference leaves the user's scene as it was, is found again if and only if nothing that it shows has changed, and
+# shows what theory says.
+import math
+
+import bpy
+import numpy as np
+import pytest
+from cycles_scenes import RADIUS, depsgraph, make_sphere, sphere_points, unit
+
+from mesograin.cycles import nodes, reference
+from mesograin.cycles.cache import Cache
+from mesograin.cycles.stage import StageError
+
+FRONT = [((1.0, 1.0, 1.0), 20.0)]
+
+
+def state():
+    """All that a render could disturb: the data-blocks and the scene's settings. Blender itself keeps its last render."""
+    blocks = {
+        name: sorted(block.name for block in getattr(bpy.data, name) if block.name != "Render Result")
+        for name in ("scenes", "worlds", "meshes", "objects", "lights", "cameras", "materials", "images", "node_groups")
+    }
+    scene = bpy.context.scene
+    owners = (scene.render, scene.render.image_settings, scene.cycles, scene.view_settings)
+    settings = [
+        {
+            name: getattr(owner, name)
+            for name, kind in owner.bl_rna.properties.items()
+            if kind.type in ("INT", "FLOAT", "BOOLEAN") and not getattr(kind, "is_array", False)
+        }
+        for owner in owners
+    ]
+    return blocks, settings, bpy.context.window.scene if bpy.context.window else None
+
+
+@pytest.fixture
+def counted(monkeypatch):
+    """Puts a quick stand-in where Cycles renders; returns the list of scenes it was given."""
+    rendered = []
+
+    def stand_in(native, scene, on_progress):
+        rendered.append(scene.cycles.seed)
+        on_progress(1.0)
+        return np.full((scene.render.resolution_y, scene.render.resolution_x, 4), 1.0 + scene.cycles.seed, np.float32)
+
+    monkeypatch.setattr(reference, "_render_stage", stand_in)
+    return rendered
+
+
+def test_scene_stays_as_it_was(tmp_path):
+    make_sphere(FRONT, segments=16, rings=8)
+    bpy.context.scene.cycles.samples = 123
+    before = state()
+    found = reference.render(depsgraph(), "diffuse", (16, 16), samples=2, cache=Cache(tmp_path))
+    assert found.mean.shape == (16, 16, 4) and not found.cached and found.seconds > 0.0
+    assert state() == before
+
+
+def test_scene_stays_as_it_was_when_rendering_fails(monkeypatch):
+    make_sphere(FRONT, segments=16, rings=8)
+    before = state()
+
+    def fail(*_):
+        raise MemoryError("no more")
+
+    monkeypatch.setattr(reference, "_render_stage", fail)
+    with pytest.raises(MemoryError):
+        reference.render(depsgraph(), "diffuse", (16, 16), samples=2)
+    assert state() == before
+
+
+def test_found_again_bit_for_bit(tmp_path):
+    make_sphere(FRONT, segments=16, rings=8)
+    fractions = []
+    first = reference.render(
+        depsgraph(), "volume_index_matched", (16, 16), samples=2, cache=Cache(tmp_path), on_progress=fractions.append
+    )
+    again = reference.render(depsgraph(), "volume_index_matched", (16, 16), samples=2, cache=Cache(tmp_path))
+    assert again.cached and again.seconds == first.seconds and again.provenance == first.provenance
+    np.testing.assert_array_equal(again.images, first.images)
+    assert not np.array_equal(first.images[0], first.images[1])
+    assert fractions == sorted(fractions) and fractions[-1] == 1.0
+
+
+def move_camera(_):
+    bpy.context.scene.camera.location.x += 1e-3
+
+
+def move_vertex(_):
+    bpy.data.objects["Sphere"].data.vertices[0].co.x += 1e-3
+
+
+def flatten(_):
+    bpy.data.objects["Sphere"].data.polygons[0].use_smooth = False
+
+
+def turn_sun(_):
+    bpy.data.objects["Sun"].rotation_euler.x += 1e-3
+
+
+def brighten(_):
+    bpy.data.lights["Sun"].energy *= 1.001
+
+
+def colour(_):
+    bpy.data.lights["Sun"].color[1] = 0.9
+
+
+def widen(_):
+    bpy.data.lights["Sun"].angle = 0.1
+
+
+def zoom(_):
+    bpy.context.scene.camera.data.lens += 0.1
+
+
+def squeeze(_):
+    bpy.context.scene.render.pixel_aspect_x = 1.1
+
+
+def scatter(material):
+    material.mesograin.g = 0.1
+
+
+def densify(_):
+    bpy.context.scene.mesograin.millimetres_per_unit = 2.0
+
+
+@pytest.mark.parametrize(
+    "change", [move_camera, move_vertex, flatten, turn_sun, brighten, colour, widen, zoom, squeeze, scatter, densify]
+)
+def test_not_found_after_a_change(counted, tmp_path, change):
+    material = make_sphere(FRONT, segments=16, rings=8)
+
+    def render(**changes):
+        done = {"size": (8, 8), "samples": 2, "seeds": (1,), "cache": Cache(tmp_path), **changes}
+        return reference.render(depsgraph(), "subsurface", **done)
+
+    render()
+    assert render().cached
+    change(material)
+    assert not render().cached
+    assert len(counted) == 2
+
+
+def test_not_found_with_other_settings(counted, tmp_path):
+    make_sphere(FRONT, segments=16, rings=8)
+    base = {"kind": "subsurface", "size": (8, 8), "samples": 2, "seeds": (1,), "cache": Cache(tmp_path)}
+    reference.render(depsgraph(), **base)
+    for change in (
+        {"samples": 3},
+        {"seeds": (7,)},
+        {"size": (9, 8)},
+        {"kind": "diffuse"},
+        {"overrides": {"sigma_s": (0.5, 0.5, 0.5)}},
+    ):
+        assert not reference.render(depsgraph(), **{**base, **change}).cached
+    # What the picture doesn't show may change.
+    bpy.context.scene.cycles.samples = 5
+    bpy.data.objects["Sphere"].name = "Other"
+    assert reference.render(depsgraph(), **base).cached
+
+
+def test_an_unreadable_file_is_rendered_again(counted, tmp_path):
+    make_sphere(FRONT, segments=16, rings=8)
+    base = {"kind": "diffuse", "size": (8, 8), "samples": 2, "seeds": (1,), "cache": Cache(tmp_path)}
+    first = reference.render(depsgraph(), **base)
+    for path in tmp_path.iterdir():
+        path.write_bytes(path.read_bytes()[:40])
+    np.testing.assert_array_equal(reference.render(depsgraph(), **base).images, first.images)
+    assert len(counted) == 2 and reference.render(depsgraph(), **base).cached
+
+
+def test_a_cache_that_cannot_be_written_costs_nothing_but_time(counted, tmp_path, capsys):
+    make_sphere(FRONT, segments=16, rings=8)
+    (tmp_path / "file").write_text("")
+    found = reference.render(depsgraph(), "diffuse", (8, 8), samples=2, cache=Cache(tmp_path / "file" / "cache"))
+    assert len(counted) == 2 and not found.cached
+    assert "not kept" in capsys.readouterr().out
+
+
+def test_what_cannot_be_rendered_is_said():
+    material = make_sphere(FRONT, segments=16, rings=8, g=-0.5)
+    with pytest.raises(reference.ReferenceError, match="'Sand'.*g between 0 and 0.9"):
+        reference.render(depsgraph(), "subsurface", (8, 8), samples=1)
+    material.mesograin.g, material.mesograin.eta = 0.0, 4.0
+    assert "1.01 to 3.8" in reference.render(depsgraph(), "subsurface", (8, 8), samples=1).notes[0]
+    bpy.context.scene.camera = None
+    with pytest.raises(StageError, match="no camera"):
+        reference.render(depsgraph(), "diffuse", (8, 8), samples=1)
+
+
+def test_no_light_and_no_mesh_are_said():
+    make_sphere([], segments=16, rings=8)
+    with pytest.raises(StageError, match="no visible sun"):
+        reference.render(depsgraph(), "diffuse", (8, 8), samples=1)
+    bpy.data.objects["Sphere"].hide_viewport = True
+    with pytest.raises(StageError, match="no visible mesh"):
+        reference.render(depsgraph(), "diffuse", (8, 8), samples=1)
+
+
+def mean_where(inside, image, hits):
+    """Relative L1 and ratio of sums against `inside`, over pixels that the sphere covers wholly, but for the rim."""
+    covered = hits.all(axis=(2, 3))
+    for axis in (0, 1):
+        covered = covered & np.roll(covered, 1, axis) & np.roll(covered, -1, axis)
+    expected = inside.mean(axis=(2, 3))[covered]
+    found = image[covered][:, 0]
+    return np.abs(found - expected).sum() / expected.sum(), found.sum() / expected.sum()
+
+
+def test_diffuse_is_lambert():
+    suns = [((1.0, 1.0, 1.0), 20.0), ((-1.0, -1.0, -1.6), 10.0)]
+    make_sphere(suns, reflectance=(0.5,) * 3)
+    image = reference.render(depsgraph(), "diffuse", (64, 64), samples=32).mean
+    normals, _, hits = sphere_points(64)
+    radiance = (
+        sum(irradiance * np.maximum(normals @ unit(towards), 0.0) for towards, irradiance in suns) * 0.5 / math.pi
+    )
+    error, total = mean_where(radiance, image, hits)
+    assert error < 0.003 and total == pytest.approx(1.0, abs=0.001)
+    assert np.abs(image[..., 3] - hits.mean(axis=(2, 3))).max() < 0.2
+
+
+def ggx(normals, viewer, light, alpha, masking):
+    """GGX reflection with F = 1, per irradiance on a facing plane: Walter et al. 2007, Heitz 2014."""
+    half = viewer + light
+    half /= np.linalg.norm(half, axis=-1, keepdims=True)
+    n_h, n_l, n_v = ((normals * other).sum(axis=-1) for other in (half, np.broadcast_to(light, normals.shape), viewer))
+    n_l, n_v = np.maximum(n_l, 1e-6), np.maximum(n_v, 1e-6)
+    distribution = alpha**2 / (math.pi * (n_h**2 * (alpha**2 - 1.0) + 1.0) ** 2)
+    lambdas = [0.5 * (np.sqrt(1.0 + alpha**2 * (1.0 / c**2 - 1.0)) - 1.0) for c in (n_l, n_v)]
+    visible = 1.0 / ((1.0 + lambdas[0]) * (1.0 + lambdas[1]) if masking == "separable" else 1.0 + sum(lambdas))
+    return np.where(n_l > 1e-6, distribution * visible / (4.0 * n_v), 0.0)
+
+
+def test_glossy_is_ggx_with_the_masking_we_claim():
+    make_sphere(FRONT, reflectance=(1.0,) * 3, roughness=1.0)
+    image = reference.render(depsgraph(), "glossy", (48, 48), samples=32).mean
+    normals, viewer, hits = sphere_points(48)
+    errors = {
+        masking: mean_where(20.0 * ggx(normals, viewer, unit((1, 1, 1)), 1.0, masking), image, hits)[0]
+        for masking in ("separable", "correlated")
+    }
+    claimed = nodes.features().glossy_masking
+    other = {"separable": "correlated", "correlated": "separable"}[claimed]
+    assert errors[claimed] < 0.01 < 0.03 < errors[other]
+
+
+# Exitance per irradiance of a sphere of 2.4 mean free paths and albedo 0.9 at cos(n, l) = -0.9, 0.1 and 0.9, seen at right
+# angles to the light: Monte Carlo of an index-matched walk that starts on a cosine lobe round the normal, or along the view
+# ray refracted by 1.3.
+COSINE, REFRACTED = (0.034, 0.150, 0.492), (0.0231, 0.1410, 0.5042)
+
+
+def test_subsurface_is_the_walk_we_claim():
+    make_sphere([((0.0, 1.0, 0.0), 20.0)], sigma_s=(0.9,) * 3, sigma_a=(0.1,) * 3, eta=1.3, roughness=0.0)
+    lens = bpy.context.scene.camera.data
+    lens.type, lens.ortho_scale = "ORTHO", 2.0 * RADIUS
+    bpy.context.scene.camera.rotation_euler = (0.0, 0.0, 0.0)
+    size = 64
+    image = reference.render(depsgraph(), "subsurface", (size, size), samples=96).mean
+    cosines = 1.0 - (np.arange(size)[:, None] + 0.5) / size * 2.0
+    covered = image[..., 3] > 0.9999
+    claimed, other = (REFRACTED, COSINE) if nodes.features().subsurface_refracts else (COSINE, REFRACTED)
+    for cosine, tolerance, expected, not_expected in zip((-0.9, 0.1, 0.9), (0.12, 0.04, 0.03), claimed, other):
+        found = math.pi * image[covered & (np.abs(cosines - cosine) < 0.04)][:, 0].mean() / 20.0
+        assert found == pytest.approx(expected, rel=tolerance)
+        if abs(expected - not_expected) > 2.0 * tolerance * expected:
+            assert abs(found - expected) < abs(found - not_expected)
