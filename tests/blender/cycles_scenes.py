@@ -10,7 +10,7 @@ DISTANCE = 6.5
 
 
 def make_sphere(suns, camera=(0.0, 0.0, DISTANCE), segments=128, rings=64, **parameters):
-    """A smooth sphere of radius RADIUS seen from `camera`, which looks at its centre with 45 degrees; returns its material.
+    """A smooth sphere of radius RADIUS, seen from `camera` with 45 degrees; returns its material.
     suns: [(direction to the light, irradiance)]."""
     bpy.ops.mesh.primitive_uv_sphere_add(segments=segments, ring_count=rings, radius=RADIUS)
     sphere = bpy.context.object
@@ -44,8 +44,8 @@ def depsgraph():
 
 
 def sphere_points(size, camera=(0.0, 0.0, DISTANCE), subpixels=4):
-    """What a pinhole camera sees of the sphere: (normals, directions to the viewer), each (size, size, s, s, 3), and the
-    hits, (size, size, s, s) bool; s = subpixels a side."""
+    """What the camera sees of the sphere: (normals, directions to the viewer), each (size, size, s, s, 3), and the
+    the hits, (size, size, s, s) bool; s = subpixels a side."""
     view = bpy.context.scene.camera.matrix_world.to_3x3()
     samples = ((np.arange(size * subpixels) + 0.5) / (size * subpixels) * 2.0 - 1.0) * math.tan(math.radians(22.5))
     x, y = np.meshgrid(samples, -samples)

@@ -15,7 +15,8 @@ FRONT = [((1.0, 1.0, 1.0), 20.0)]
 
 
 def state():
-    """All that a render could disturb: the data-blocks and the scene's settings. Blender itself keeps its last render."""
+    """All that a render could disturb: the data-blocks and the scene's settings. Blender itself keeps its last
+    render."""
     blocks = {
         name: sorted(block.name for block in getattr(bpy.data, name) if block.name != "Render Result")
         for name in ("scenes", "worlds", "meshes", "objects", "lights", "cameras", "materials", "images", "node_groups")
@@ -247,8 +248,10 @@ def test_glossy_is_ggx_with_the_masking_we_claim():
     assert errors[claimed] < 0.01 < 0.03 < errors[other]
 
 
-# Exitance per irradiance of a sphere of 2.4 mean free paths and albedo 0.9 at cos(n, l) = -0.9, 0.1 and 0.9, seen at right
-# angles to the light: Monte Carlo of an index-matched walk that starts on a cosine lobe round the normal, or along the view
+# Exitance per irradiance of a sphere of 2.4 mean free paths and albedo 0.9 at cos(n, l) = -0.9, 0.1 and 0.9, seen at
+# right
+# angles to the light: Monte Carlo of an index-matched walk that starts on a cosine lobe round the normal, or along the
+# view
 # ray refracted by 1.3.
 COSINE, REFRACTED = (0.034, 0.150, 0.492), (0.0231, 0.1410, 0.5042)
 

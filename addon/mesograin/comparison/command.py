@@ -1,6 +1,5 @@
-# The comparison as a command: blender -b --factory-startup --python-exit-code 1 --python THIS -- [SCENE.blend] [options]
-"""Puts the add-on into a Blender without window, compares, writes the report, and ends Blender with a meaningful
-exit code."""
+# The comparison as a command: blender -b --factory-startup --python THIS -- [SCENE.blend] [OPTION ...]
+"""Puts the add-on into a Blender without window, compares, writes the report; the exit code says how it went."""
 
 import os
 import shlex

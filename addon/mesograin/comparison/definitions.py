@@ -1,6 +1,5 @@
 # What every number of a result means, in one sentence each, kept with the numbers themselves.
-"""`i` is a sample of our image, `r` of the reference, the mean of its seeds `a` and `b`; both linear RGB radiance
-inside the mask."""
+"""`i` is a sample of our image, `r` of the reference, the mean of its seeds `a` and `b`: masked linear radiance."""
 
 METRICS = {
     "relative_l1": "sum |i - r| / sum r; 0 is perfect, no unit",

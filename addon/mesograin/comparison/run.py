@@ -66,12 +66,10 @@ def cases(models, references=None):
 
 
 def compare(request, progress):
-    """Renders and compares every case of a Request in Blender's current scene and writes its files; returns the
-    results.
+    """Compares every case of a Request in Blender's current scene and writes its files; returns the results.
 
     A case that fails is recorded with its sentence and the others go on. progress: a `progress.Progress`.
-    Raises OutputError if the folder cannot be written, native.Error or native_module.Unavailable if nothing can be
-    rendered.
+    Raises OutputError if the folder cannot be written, native.Error or Unavailable if nothing can be rendered.
     """
     native = native_module.get()
     scene = bpy.context.scene

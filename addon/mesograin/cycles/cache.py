@@ -18,8 +18,7 @@ def default_folder():
 
 
 def default_limit():
-    """`MESOGRAIN_CACHE_LIMIT` (bytes), else `DEFAULT_LIMIT`. Raises ValueError with a sentence if it is no whole
-    number."""
+    """`MESOGRAIN_CACHE_LIMIT` (bytes), else `DEFAULT_LIMIT`. Raises ValueError with a sentence."""
     chosen = os.environ.get("MESOGRAIN_CACHE_LIMIT")
     if not chosen:
         return DEFAULT_LIMIT
@@ -54,8 +53,7 @@ class Cache:
         return path
 
     def store(self, key, write):
-        """Has `write(path)` put a file there (by atomic rename), then trims. Raises OSError where the folder cannot
-        be made."""
+        """Has `write(path)` put a file there (by atomic rename), then trims. Raises OSError without a folder."""
         self.folder.mkdir(parents=True, exist_ok=True)
         path = self.path(key)
         write(path)
@@ -83,8 +81,7 @@ class Cache:
         return sum(size for _, size, _ in self.files())
 
     def trim(self):
-        """Removes the longest unused files until the rest fit the limit; returns how many. The newest file always
-        stays."""
+        """Removes the longest unused files until the rest fit the limit; returns how many. The newest stays."""
         files = self.files()
         excess = sum(size for _, size, _ in files) - self.limit
         removed = 0

@@ -22,8 +22,7 @@ class GrainValues:
 
     @classmethod
     def from_parameters(cls, parameters):
-        """From {name: value} with coefficients per scene unit and a `scale` that multiplies them; other names are
-        passed over."""
+        """From {name: value}, coefficients per scene unit and a `scale` that multiplies them; ignores other names."""
         return cls(
             reflectance=tuple(parameters["reflectance"]),
             sigma_a=tuple(parameters["scale"] * value for value in parameters["sigma_a"]),

@@ -100,8 +100,7 @@ def _fit(g):
 
 
 def single_scattering_albedo(colour, g=0.0):
-    """The albedo sigma_s / sigma_t that Cycles gives the medium for one channel of the node's colour, both in [0,
-    1]."""
+    """The albedo sigma_s / sigma_t that Cycles gives the medium for one channel of the node's colour."""
     a, b, c, d, e, f = _fit(g)
     blend = colour**0.25
     albedo = (1.0 - blend) * a * math.atan(b * colour) ** c + blend * d * math.atan(e * colour) ** f
@@ -112,8 +111,7 @@ def colour_of_albedo(albedo, g=0.0):
     """The node's colour for which Cycles uses this single-scattering albedo, one channel, both in [0, 1].
 
     Bisection over the exponent of the colour, because the fit rises with a power of it: albedos of 1e-6 and 0.999 are
-    found to the same relative precision. At or above `ALBEDO_LIMIT` the colour is the smallest one that is clamped
-    there.
+    found to the same relative precision. From `ALBEDO_LIMIT` up the colour is the smallest one clamped there.
     """
     if not 0.0 <= albedo <= 1.0:
         raise ValueError(f"albedo must lie between 0 and 1; got {albedo}.")
@@ -133,16 +131,14 @@ def colour_of_albedo(albedo, g=0.0):
 
 
 def radius_of_extinction(sigma_t, g=0.0):
-    """The node's radius (scene units, one channel) for a fixed-radius random walk of extinction sigma_t (per scene
-    unit)."""
+    """The node's radius (scene units, one channel) for a fixed-radius walk of extinction sigma_t (per scene unit)."""
     if not sigma_t > 0.0:
         raise ValueError(f"sigma_t must be positive for a random walk; got {sigma_t}.")
     return FIXED_RADIUS_FACTOR / (sigma_t * (1.0 - g))
 
 
 def _dipole_albedo(colour, ior):
-    """Reduced albedo that Cycles' other random walk derives from the colour: 12 bisection steps through the dipole's
-    R_d.
+    """Reduced albedo that Cycles' other random walk derives from the colour: 12 bisection steps through R_d.
 
     Jensen, Marschner, Levoy, Hanrahan: "A Practical Model for Subsurface Light Transport", SIGGRAPH 2001, equation 15
     of the shortened form, with the Egan-Hilgeman fit of the diffuse Fresnel reflectance.

@@ -21,8 +21,7 @@ def build_material(material, reference, millimetres_per_unit=1.0):
 
 
 def build(name, recipe):
-    """A new material from a recipe. Raises RuntimeError if this Blender's nodes have a socket that the recipe leaves
-    open."""
+    """A new material from a recipe. Raises RuntimeError if a node has a socket that the recipe leaves open."""
     material = bpy.data.materials.new(name)
     try:
         material.use_nodes = True

@@ -30,8 +30,7 @@ class ReferenceError(Exception):
 
 @dataclass(frozen=True)
 class Reference:
-    """images: one (h, w, 4) float32 array for each seed, linear, premultiplied, row 0 at the top; alpha is the
-    coverage.
+    """images: one (h, w, 4) float32 array for each seed, linear, premultiplied, row 0 at the top; alpha: coverage.
     seconds: what rendering them took, now or when they were put into the cache. cached: whether nothing was rendered.
     provenance: one dict for each seed. notes: sentences about what Cycles could not express exactly."""
 

@@ -1,6 +1,5 @@
 # Every Cycles setting that a reference depends on, as plain data, and the one place that applies it.
-"""Nothing is left to a user's file or to a Blender's defaults: no denoiser, no clamp, no early end, a box filter of
-one pixel."""
+"""Nothing is left to a file or to a Blender's defaults: no denoiser, no clamp, a box filter of one pixel."""
 
 
 def settings(kind, samples, seed, size, pixel_aspect=(1.0, 1.0)):
@@ -89,8 +88,7 @@ def settings(kind, samples, seed, size, pixel_aspect=(1.0, 1.0)):
 
 
 def apply(scene, description):
-    """Sets them on a scene; a property that this Blender lacks is passed over, a tuple is a choice in order of
-    preference."""
+    """Sets them on a scene; what this Blender lacks is passed over, a tuple is a choice in order of preference."""
     owners = {
         "cycles": scene.cycles,
         "render": scene.render,

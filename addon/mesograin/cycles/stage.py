@@ -12,12 +12,10 @@ class StageError(Exception):
 
 
 class Stage:
-    """A context manager that holds a new scene: meshes, sun lights and camera of a depsgraph, a black world, nothing
-    else.
+    """A context manager that holds a new scene: a depsgraph's meshes, sun lights and camera under a black world.
 
     depsgraph: evaluated; copied from, never kept. description: `settings.settings(...)`.
-    build_material: called once for each bpy.types.Material in use (None for faces without one), returns the new Cycles
-    material.
+    build_material: makes the new Cycles material for a bpy.types.Material in use, or for None (faces without one).
     Everything made here is removed on exit, whatever happened inside.
     """
 

@@ -4,8 +4,7 @@
 import numpy
 
 ERROR_RANGE = (1e-3, 1.0)
-"""Relative error at the two ends of the false colours, which are logarithmic; the same in every picture, so that all
-compare."""
+"""Relative error at the two ends of the false colours, which are logarithmic; the same in every picture."""
 
 SIGNED_RANGE = 0.5
 """Relative error at either end of the signed colours, which are linear."""

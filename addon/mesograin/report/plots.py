@@ -37,8 +37,7 @@ _STYLE = {
 
 
 def trade(cases):
-    """Error against milliseconds of a frame for all cases that are done; the bar reaches down to what noise alone
-    would score."""
+    """Error against milliseconds of a frame; the bar reaches down to what the reference's noise alone would score."""
     with matplotlib.rc_context(_STYLE):
         figure, axes = _figure(9.0, 2.9)
         axes.set_xscale("log")
