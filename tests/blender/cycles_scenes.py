@@ -45,7 +45,7 @@ def depsgraph():
 
 def sphere_points(size, camera=(0.0, 0.0, DISTANCE), subpixels=4):
     """What the camera sees of the sphere: (normals, directions to the viewer), each (size, size, s, s, 3), and the
-    the hits, (size, size, s, s) bool; s = subpixels a side."""
+    hits, (size, size, s, s) bool; s = subpixels a side."""
     view = bpy.context.scene.camera.matrix_world.to_3x3()
     samples = ((np.arange(size * subpixels) + 0.5) / (size * subpixels) * 2.0 - 1.0) * math.tan(math.radians(22.5))
     x, y = np.meshgrid(samples, -samples)

@@ -42,8 +42,8 @@ KINDS = {
     for kind in (
         Kind("diffuse", "Cycles Diffuse BSDF", ("lambert",), 0, 64, False, 0.6),
         Kind("glossy", "Cycles Glossy BSDF, GGX", ("conductor",), 0, 64, False, 0.6),
-        Kind("volume_index_matched", "Cycles volume, index-matched", TRANSLUCENT_MODELS, 1024, 128, True, 3.0),
-        Kind("subsurface", "Cycles Subsurface Scattering, random walk", TRANSLUCENT_MODELS, 1024, 128, False, 4.0),
+        Kind("volume_index_matched", "Cycles volume, index-matched", TRANSLUCENT_MODELS, 1024, 128, True, 5.0),
+        Kind("subsurface", "Cycles Subsurface Scattering, random walk", TRANSLUCENT_MODELS, 1024, 128, False, 5.0),
     )
 }
 

@@ -142,18 +142,20 @@ def _text(value):
 
 def _verdict(case):
     """One sentence on how the model fares, as far as the reference's noise lets us see."""
-    error, corrected, floor = (
-        case["metrics"]["relative_l1"],
-        case["metrics"]["relative_l1_corrected"],
-        case["noise_floor"]["relative_l1"],
-    )
+    metrics, floors = case["metrics"], case["noise_floor"]
+    error, floor = metrics["relative_l1"], floors["relative_l1"]
     if error is None:
         return "The reference is black: there is nothing to be relative to."
-    if corrected is None:
+    if floor is None:
         return f"{form(error, 'percent')} from the reference, whose noise is not known."
-    if error <= 1.1 * floor:
-        return f"Within the reference's own noise, {form(floor, 'percent')}."
-    return f"{form(corrected, 'percent')} from the reference, its noise of {form(floor, 'percent')} taken off."
+    noise = form(floor, "percent")
+    if error > 1.1 * floor:
+        return f"{form(metrics['relative_l1_corrected'], 'percent')} off, the reference's noise of {noise} taken out."
+    blocks, block_floor = metrics["relative_l1_blocks"], floors["relative_l1_blocks"]
+    if blocks <= 1.25 * block_floor:
+        return f"Within the reference's own noise: {noise} in a pixel, {form(block_floor, 'percent')} in 8×8 blocks."
+    off = form(metrics["relative_l1_blocks_corrected"], "percent")
+    return f"Within the reference's noise of {noise} in a pixel; {off} off in 8×8 blocks, where the noise is low."
 
 
 def form(value, how):
