@@ -101,6 +101,17 @@ def apply(scene, description):
             if not hasattr(owner, name):
                 continue
             if isinstance(value, tuple):
-                allowed = {item.identifier for item in owner.bl_rna.properties[name].enum_items}
-                value = next(choice for choice in value if choice in allowed)
-            setattr(owner, name, value)
+                _set_first(owner, name, value)
+            else:
+                setattr(owner, name, value)
+
+
+def _set_first(owner, name, choices):
+    """The first choice that this Blender knows; the items of some of its enums can only be found out by trying."""
+    for choice in choices:
+        try:
+            setattr(owner, name, choice)
+            return
+        except TypeError:
+            continue
+    raise ValueError(f"{name} can be set to none of {', '.join(choices)}.")
