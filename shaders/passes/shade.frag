@@ -22,11 +22,19 @@ void main() {
   SurfacePoint point;
   point.position = grain_position;
   point.to_viewer = normalize(viewer.xyz - viewer.w * grain_position);
-  point.normal = normalize(gl_FrontFacing ? grain_normal : -grain_normal);
+  point.normal = normalize(grain_normal);
+
+  // The side that is seen is the side that is lit, so that open meshes have two. On a closed grain's silhouette a back
+  // face can win the depth test against the front face beside it; its normal is at grazing and must not be turned.
+  const float grazing = -0.1;
+  float cosine = dot(point.normal, point.to_viewer);
+  if (!gl_FrontFacing && cosine < grazing) {
+    point.normal = -point.normal;
+    cosine = -cosine;
+  }
 
   // Near a silhouette the interpolated normal can point away from the viewer although the surface does not.
   const float least_cosine = 1e-4;
-  float cosine = dot(point.normal, point.to_viewer);
   if (cosine < least_cosine) point.normal = normalize(point.normal + (least_cosine - cosine) * point.to_viewer);
 
   vec3 sum = vec3(0.0);

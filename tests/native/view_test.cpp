@@ -10,6 +10,7 @@
 
 #include "expect_error.h"
 #include "gl/context_thread.h"
+#include "scene/sphere.h"
 
 namespace mesograin::render {
 namespace {
@@ -118,6 +119,17 @@ TEST_F(ViewTest, BothSidesOfAnOpenMeshAreLit) {
   view.set_scene(scene);
   view.set_camera(scene::Camera::look_at({0, 0, -4}, {0, 0, 0}, {0, 1, 0}, 45.0));
   EXPECT_FLOAT_EQ(pixel(picture(view), 16, 8, 8)[0], 0.5F);
+}
+
+TEST_F(ViewTest, NoLightLeaksOverTheSilhouetteOfAClosedGrain) {
+  scene::Scene scene{{{std::make_shared<scene::Mesh>(scene::unit_sphere(64, 32)), lambert_}},
+                     {{{0, 0.3, -1}, {1, 1, 1}}}};
+  View view(128, 128);
+  view.set_scene(scene);
+  view.set_camera(straight_camera());
+  const std::vector<float> pixels = picture(view, 16);
+  for (int y = 72; y < 128; ++y)
+    for (int x = 0; x < 128; ++x) EXPECT_EQ(pixel(pixels, 128, x, y)[0], 0.0F) << x << ", " << y;
 }
 
 TEST_F(ViewTest, LightsAddUpAndNoneIsBlack) {
