@@ -2,13 +2,18 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <chrono>
 #include <exception>
 #include <memory>
+#include <mutex>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "file/file.h"
 #include "half_space.h"
+#include "picture_file.h"
+#include "scene/scene_json.h"
 #include "table_file.h"
 #include "tables.h"
 
@@ -21,6 +26,30 @@ void add_effort(CLI::App* command, Effort& effort) {
   command->add_option("--seed", effort.seed, "the answer depends on it alone")->capture_default_str();
   command->add_option("--threads", effort.threads, "0: as many as the machine has")->capture_default_str();
 }
+
+/// Says on stderr, at most once a second, how far the picture is and how long it will take.
+class Progress {
+ public:
+  explicit Progress(int rows) : rows_(rows) {}
+
+  void row_done() {
+    const std::scoped_lock lock(mutex_);
+    ++done_;
+    const auto now = Clock::now();
+    if (now - said_ < std::chrono::seconds(1)) return;
+    said_ = now;
+    const double elapsed = std::chrono::duration<double>(now - start_).count();
+    fmt::print(stderr, "{} of {} rows, about {:.0f} s left\n", done_, rows_, elapsed / done_ * (rows_ - done_));
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  std::mutex mutex_;
+  const int rows_;
+  int done_ = 0;
+  const Clock::time_point start_ = Clock::now();
+  Clock::time_point said_ = start_;
+};
 
 void add_half_space(CLI::App& application) {
   CLI::App* command =
@@ -53,6 +82,34 @@ void add_half_space(CLI::App& application) {
   });
 }
 
+void add_render(CLI::App& application) {
+  CLI::App* command = application.add_subcommand("render", "a picture of a scene's sphere, in OpenEXR, with its noise");
+  auto scene_path = std::make_shared<std::string>();
+  auto output = std::make_shared<std::string>();
+  auto choices = std::make_shared<mesograin::scene::SceneChoices>();
+  auto wanted = std::make_shared<PictureCase>();
+  command->add_option("scene", *scene_path, "scene in JSON")->required()->option_text("SCENE.json");
+  command->add_option("-o,--output", *output, "picture to write")->required()->option_text("OUT.exr");
+  command->add_option("-n,--samples", wanted->samples, "paths a pixel")
+      ->check(CLI::Range(1, 10'000'000))
+      ->capture_default_str();
+  command->add_option("--width", choices->width, "pixels, instead of the scene's")->check(CLI::Range(1, 16384));
+  command->add_option("--height", choices->height, "pixels, instead of the scene's")->check(CLI::Range(1, 16384));
+  command->add_option("--seed", wanted->seed, "the picture depends on it alone")->capture_default_str();
+  command->add_option("--threads", wanted->threads, "0: as many as the machine has")->capture_default_str();
+  command->callback([=] {
+    mesograin::file::require_writable(*output);
+    const mesograin::scene::SceneFile file = mesograin::scene::read_scene(*scene_path, *choices);
+    PictureCase setup = picture_case(file);
+    setup.samples = wanted->samples;
+    setup.seed = wanted->seed;
+    setup.threads = wanted->threads;
+    Progress progress(setup.height);
+    const Picture picture = trace_picture(setup, [&progress] { progress.row_done(); });
+    write_picture(*output, file, setup, picture);
+  });
+}
+
 void add_tables(CLI::App& application) {
   CLI::App* command = application.add_subcommand("tables", "make or complete the tables the tests read");
   auto directory = std::make_shared<std::string>("tests/data/referee");
@@ -76,6 +133,7 @@ int main(int argument_count, char** arguments) {
                        "mesograin-referee"};
   application.require_subcommand(1);
   add_half_space(application);
+  add_render(application);
   add_tables(application);
   try {
     application.parse(argument_count, arguments);

@@ -1,54 +1,58 @@
 // Backward walks from each pixel; at every scattering the unscattered sunlight that crosses the point is gathered.
 #include "picture.h"
 
+#include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
+#include <glm/exponential.hpp>
 #include <glm/geometric.hpp>
-#include <glm/trigonometric.hpp>
 #include <numbers>
 #include <optional>
-#include <stdexcept>
 
 #include "parallel.h"
 #include "reduced_light.h"
+#include "scene/error.h"
 #include "walk.h"
 
 namespace mesograin::referee {
 namespace {
 
+using scene::Boundary;
+
+struct Ray {
+  glm::dvec3 origin, direction;
+};
+
+/// Through the point x, y of the image, from -1 to 1, to the right and upwards.
+Ray view_ray(const glm::dmat4& clip_to_world, double x, double y) {
+  const glm::dvec4 near = clip_to_world * glm::dvec4(x, y, -1, 1), far = clip_to_world * glm::dvec4(x, y, 1, 1);
+  const glm::dvec3 origin = glm::dvec3(near) / near.w;
+  return {origin, glm::normalize(glm::dvec3(far) / far.w - origin)};
+}
+
 void check(const PictureCase& setup) {
-  const auto need = [](bool held, const char* sentence) {
-    if (!held) throw std::invalid_argument(sentence);
-  };
-  need(setup.width > 0 && setup.height > 0 && setup.samples > 0, "width, height and samples must be at least 1.");
-  need(setup.radius > 0, "The sphere's radius must be positive.");
-  need(glm::distance(setup.camera, setup.centre) > setup.radius,
-       "The camera must stand outside the sphere; move it away.");
-  need(glm::length(glm::cross(setup.look_at - setup.camera, setup.up)) > 0,
-       "The camera must look somewhere other than along its up direction.");
-  need(setup.fov_degrees > 0 && setup.fov_degrees < 180, "The field of view must lie between 0 and 180 degrees.");
-  need(setup.eta >= 0.5 && setup.eta <= 4, "eta must lie in [0.5, 4].");
-  need(std::abs(setup.g) < 1, "g must lie inside (-1, 1).");
-  need(setup.scale > 0, "scale must be positive.");
-  for (int channel = 0; channel < 3; ++channel) {
-    need(setup.sigma_a[channel] >= 0 && setup.sigma_s[channel] >= 0, "sigma_a and sigma_s must not be negative.");
-    need(setup.sigma_a[channel] + setup.sigma_s[channel] > 0,
-         "Every channel needs some medium: sigma_a + sigma_s must be positive in each.");
-  }
-  for (const Sun& sun : setup.suns) need(glm::length(sun.to_light) > 0, "A light needs a direction with a length.");
+  const scene::Material& material = setup.material;
+  if (material.boundary == Boundary::dielectric && material.roughness > 0)
+    throw Error("The referee's interface is smooth: roughness must be 0; got {}.", material.roughness);
+  if (!(std::abs(material.g) < 1)) throw Error("The referee needs g inside (-1, 1); got {}.", material.g);
+  if (!(setup.radius > 0)) throw Error("The sphere's radius must be positive; got {}.", setup.radius);
+  if (glm::distance(view_ray(setup.clip_to_world, 0, 0).origin, setup.centre) <= setup.radius)
+    throw Error("The camera must stand outside the sphere, its near plane too; move it away.");
 }
 
 /// One channel's sphere, its lengths in mean free paths.
 struct Grain {
+  static constexpr double thinnest = 1e-6;  // mean free paths; nothing to be seen, but lengths to reckon with
+
   double radius, albedo, eta, g;
   Boundary boundary;
   std::optional<ReducedLight> reduced_light;  ///< only behind an interface that bends light
 
   Grain(const PictureCase& setup, int channel)
-      : radius(setup.radius * setup.scale * (setup.sigma_a[channel] + setup.sigma_s[channel])),
-        albedo(setup.sigma_s[channel] / (setup.sigma_a[channel] + setup.sigma_s[channel])),
-        eta(setup.eta),
-        g(setup.g),
-        boundary(setup.boundary) {
+      : eta(setup.material.eta), g(setup.material.g), boundary(setup.material.boundary) {
+    const double sigma_s = setup.material.sigma_s[channel], sigma_t = sigma_s + setup.material.sigma_a[channel];
+    radius = std::max(thinnest, setup.radius * setup.material.scale * sigma_t);
+    albedo = sigma_t > 0 ? sigma_s / sigma_t : 0;
     if (boundary == Boundary::dielectric && eta != 1) reduced_light.emplace(radius, eta);
   }
 
@@ -118,90 +122,92 @@ void trace_path(const Grain& grain, const glm::dvec3& normal, const glm::dvec3& 
   walk(Sphere{grain.radius}, grain.interface(), Medium{grain.albedo, grain.g}, photon, rng, gatherer);
 }
 
-struct View {
-  glm::dvec3 right, up, forward;
-
-  explicit View(const PictureCase& setup) : forward(glm::normalize(setup.look_at - setup.camera)) {
-    const double reach = std::tan(glm::radians(setup.fov_degrees) / 2) / std::min(setup.width, setup.height);
-    right = glm::normalize(glm::cross(forward, setup.up));
-    up = glm::cross(right, forward) * (reach * setup.height);
-    right *= reach * setup.width;
-  }
-
-  /// x and y from -1 to 1, to the right and upwards.
-  glm::dvec3 ray(double x, double y) const { return glm::normalize(forward + x * right + y * up); }
-};
-
-/// Distance along the ray to the unit-less sphere, or nothing.
+/// Distance along the ray to a sphere around the origin, or nothing.
 std::optional<double> hit(const glm::dvec3& origin, const glm::dvec3& direction, double radius) {
   const double along = glm::dot(origin, direction);
   const glm::dvec3 nearest = origin - along * direction;
   const double room = radius * radius - glm::dot(nearest, nearest);
-  if (room <= 0 || along >= 0) return std::nullopt;
+  if (room <= 0 || along >= 0 || glm::dot(origin, origin) <= radius * radius) return std::nullopt;
   return -along - std::sqrt(room);
 }
 
-glm::dvec3 sample_sun(const Sun& sun, Rng& rng) {
-  const glm::dvec3 centre = glm::normalize(sun.to_light);
+glm::dvec3 sample_sun(const scene::DirectionalLight& sun, Rng& rng) {
+  const glm::dvec3 centre = glm::normalize(sun.direction_to_light);
   if (sun.angle <= 0) return centre;
   return sample_cone(centre, 1 - rng.uniform() * (1 - std::cos(sun.angle / 2)), rng);
 }
 
 }  // namespace
 
-Picture trace_picture(const PictureCase& setup) {
+Picture trace_picture(const PictureCase& setup, const std::function<void()>& row_done) {
   check(setup);
+  const scene::Material& material = setup.material;
   std::vector<Grain> grains;
   std::size_t grain_of[3];
   for (int channel = 0; channel < 3; ++channel) {
     grain_of[channel] = grains.size();
     for (int before = 0; before < channel; ++before)
-      if (setup.sigma_a[before] == setup.sigma_a[channel] && setup.sigma_s[before] == setup.sigma_s[channel])
+      if (material.sigma_a[before] == material.sigma_a[channel] &&
+          material.sigma_s[before] == material.sigma_s[channel])
         grain_of[channel] = grain_of[before];
     if (grain_of[channel] == grains.size()) grains.emplace_back(setup, channel);
   }
-  const View view(setup);
-  const glm::dvec3 origin = setup.camera - setup.centre;
   const int strata = static_cast<int>(std::sqrt(setup.samples));
+  const std::size_t suns = setup.lights.size();
   Picture picture;
-  picture.radiance.resize(static_cast<std::size_t>(setup.width) * setup.height);
+  picture.radiance.resize(static_cast<std::size_t>(setup.width) * static_cast<std::size_t>(setup.height));
   picture.noise.resize(picture.radiance.size());
+  picture.coverage.resize(picture.radiance.size());
 
-  parallel(setup.height, setup.threads, [&](std::size_t row) {
+  /// One path's radiance; nothing where the ray misses.
+  const auto trace_sample = [&](double x, double y, Rng& rng, std::vector<glm::dvec3>& to_light,
+                                std::vector<double>& per_sun) -> std::optional<glm::dvec3> {
+    const Ray ray = view_ray(setup.clip_to_world, x, y);
+    const glm::dvec3 origin = ray.origin - setup.centre;
+    const std::optional<double> distance = hit(origin, ray.direction, setup.radius);
+    if (!distance) return std::nullopt;
+    const glm::dvec3 normal = glm::normalize(origin + *distance * ray.direction);
+    for (std::size_t sun = 0; sun < suns; ++sun) to_light[sun] = sample_sun(setup.lights[sun], rng);
+    glm::dvec3 radiance(0);
+    for (std::size_t grain = 0; grain < grains.size(); ++grain) {
+      std::fill(per_sun.begin(), per_sun.end(), 0.0);
+      trace_path(grains[grain], normal, ray.direction, to_light, rng, per_sun);
+      for (int channel = 0; channel < 3; ++channel)
+        for (std::size_t sun = 0; sun < suns && grain_of[channel] == grain; ++sun)
+          radiance[channel] += per_sun[sun] * setup.lights[sun].irradiance[channel];
+    }
+    return radiance;
+  };
+
+  parallel(static_cast<std::size_t>(setup.height), setup.threads, [&](std::size_t row) {
     Rng rng(setup.seed, row);
-    std::vector<glm::dvec3> to_light(setup.suns.size());
-    std::vector<double> per_sun(setup.suns.size());
+    std::vector<glm::dvec3> to_light(suns);
+    std::vector<double> per_sun(suns);
     for (int column = 0; column < setup.width; ++column) {
       glm::dvec3 sum(0), squares(0);
+      int hits = 0;
       for (int sample = 0; sample < setup.samples; ++sample) {
         // The first strata^2 paths are stratified over the pixel, the rest are anywhere in it.
         const bool stratified = sample < strata * strata;
-        const double u = stratified ? (sample % strata + rng.uniform()) / strata : rng.uniform();
-        const double v = stratified ? (sample / strata + rng.uniform()) / strata : rng.uniform();
-        const glm::dvec3 ray = view.ray(2 * (column + u) / setup.width - 1, 1 - 2 * (row + v) / setup.height);
-        const std::optional<double> distance = hit(origin, ray, setup.radius);
-        if (!distance) continue;
-        const glm::dvec3 normal = glm::normalize(origin + *distance * ray);
-        for (std::size_t sun = 0; sun < setup.suns.size(); ++sun) to_light[sun] = sample_sun(setup.suns[sun], rng);
-        glm::dvec3 radiance(0);
-        for (std::size_t grain = 0; grain < grains.size(); ++grain) {
-          std::fill(per_sun.begin(), per_sun.end(), 0.0);
-          trace_path(grains[grain], normal, ray, to_light, rng, per_sun);
-          for (int channel = 0; channel < 3; ++channel)
-            if (grain_of[channel] == grain)
-              for (std::size_t sun = 0; sun < setup.suns.size(); ++sun)
-                radiance[channel] += per_sun[sun] * setup.suns[sun].irradiance[channel];
-        }
-        sum += radiance;
-        squares += radiance * radiance;
+        const int stratum_x = sample % strata, stratum_y = sample / strata;
+        const double u = stratified ? (stratum_x + rng.uniform()) / strata : rng.uniform();
+        const double v = stratified ? (stratum_y + rng.uniform()) / strata : rng.uniform();
+        const double x = 2 * (column + u) / setup.width - 1, y = 1 - 2 * (static_cast<double>(row) + v) / setup.height;
+        const std::optional<glm::dvec3> radiance = trace_sample(x, y, rng, to_light, per_sun);
+        if (!radiance) continue;
+        ++hits;
+        sum += *radiance;
+        squares += *radiance * *radiance;
       }
       const double samples = setup.samples;
+      const std::size_t pixel = row * static_cast<std::size_t>(setup.width) + static_cast<std::size_t>(column);
       const glm::dvec3 mean = sum / samples;
-      const glm::dvec3 variance = glm::max(squares / samples - mean * mean, glm::dvec3(0)) / std::max(1.0, samples - 1);
-      const std::size_t pixel = row * setup.width + column;
       picture.radiance[pixel] = mean;
-      picture.noise[pixel] = {std::sqrt(variance.x), std::sqrt(variance.y), std::sqrt(variance.z)};
+      picture.noise[pixel] =
+          glm::sqrt(glm::max(squares / samples - mean * mean, glm::dvec3(0)) / std::max(1.0, samples - 1));
+      picture.coverage[pixel] = hits / samples;
     }
+    if (row_done) row_done();
   });
   return picture;
 }

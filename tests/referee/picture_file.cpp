@@ -1,0 +1,58 @@
+// Reads the sphere out of a scene, writes the picture with its noise beside it.
+#include "picture_file.h"
+
+#include <glm/matrix.hpp>
+#include <nlohmann/json.hpp>
+
+#include "image/exr.h"
+#include "scene/error.h"
+
+namespace mesograin::referee {
+
+PictureCase picture_case(const scene::SceneFile& file) {
+  const nlohmann::json source = nlohmann::json::parse(file.source);  // already read once, and found complete
+  const nlohmann::json& geometry = source.at("geometry");
+  if (geometry.at("shape") != "sphere")
+    throw Error("The referee traces spheres: geometry.shape must be 'sphere'; got '{}'.",
+                geometry.at("shape").get<std::string>());
+  const std::string kind = source.at("material").at("kind");
+  if (kind == "diffuse" || kind == "conductor")
+    throw Error("The referee traces media: material.kind must be 'subsurface', 'medium' or 'smooth_mc'; got '{}'.",
+                kind);
+  PictureCase setup;
+  if (geometry.contains("centre"))
+    for (int axis = 0; axis < 3; ++axis) setup.centre[axis] = geometry["centre"][static_cast<std::size_t>(axis)];
+  setup.radius = geometry.at("radius");
+  setup.material = file.scene.instances.front().material;
+  setup.lights = file.scene.lights;
+  setup.clip_to_world = glm::inverse(file.camera.camera_to_clip * file.camera.world_to_camera);
+  setup.width = file.width;
+  setup.height = file.height;
+  return setup;
+}
+
+void write_picture(const std::filesystem::path& path, const scene::SceneFile& file, const PictureCase& setup,
+                   const Picture& picture) {
+  image::Image pixels{.width = setup.width, .height = setup.height, .channels = 7, .pixels = {}};
+  for (std::size_t pixel = 0; pixel < picture.radiance.size(); ++pixel) {
+    for (int channel = 0; channel < 3; ++channel)
+      pixels.pixels.push_back(static_cast<float>(picture.radiance[pixel][channel]));
+    pixels.pixels.push_back(static_cast<float>(picture.coverage[pixel]));
+    for (int channel = 0; channel < 3; ++channel)
+      pixels.pixels.push_back(static_cast<float>(picture.noise[pixel][channel]));
+  }
+  image::write_exr(
+      path, pixels.view(), {"R", "G", "B", "A", "noise.R", "noise.G", "noise.B"},
+      {{"mesograin:version", MESOGRAIN_VERSION},
+       {"mesograin:method", "photon Monte Carlo, backward, smooth interface; light of at least one scattering"},
+       {"mesograin:material", scene::to_json(setup.material)},
+       {"mesograin:scene", file.source},
+       {"mesograin:samples", std::to_string(setup.samples)},
+       {"mesograin:seed", std::to_string(setup.seed)},
+       {"mesograin:units",
+        "linear RGB radiance, premultiplied by the coverage in A; noise is its standard error; coefficients per scene "
+        "unit"},
+       {"mesograin:pixel_filter", "box, one pixel"}});
+}
+
+}  // namespace mesograin::referee
