@@ -200,6 +200,8 @@ def main():
     parser.add_argument("parts", nargs="+", choices=PARTS)
     options = parser.parse_args()
     runner = Runner(options)
+    # Started in a shell's background, Ctrl-C is ignored, and so it would be in every process that a test starts.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     try:
         for part in PARTS:
             if part in options.parts:
