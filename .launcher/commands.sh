@@ -94,7 +94,10 @@ run_test() {
   parts=${parts:- lint physics native python blender window}
   ensure_blender
   ensure_lists test
-  ensure_product all
+  case $parts in
+    *lint* | *physics* | *native*) ensure_product all ;;
+    *) ensure_product product ;;
+  esac
   case $parts in
     *native*)
       ensure_built sanitize "$source_folder/build/sanitize" tests/native/all "the native tests with sanitizers"
