@@ -83,6 +83,17 @@ def test_lambert_and_conductor_agree_with_cycles(tmp_path):
     assert conductor["relative_l1"] < 0.01
 
 
+def test_a_thick_grain_agrees_with_both_walks_of_cycles(tmp_path):
+    """Where the surface is all there is, model 1 is exact: what is left is the sphere's curvature and noise."""
+    make_sphere(SUNS, sigma_s=(0.9,) * 3, sigma_a=(0.1,) * 3, eta=1.3, roughness=0.5, scale=100.0)
+    kinds = ("volume_index_matched", "subsurface")
+    found = compare(tmp_path, models=("model_1",), references=kinds, size=(64, 64), samples=64, reference_samples=64)
+    for case in found["cases"]:
+        assert case["status"] == "done"
+        assert case["metrics"]["relative_l1_blocks"] < 0.02
+        assert abs(case["metrics"]["bias"] - 1.0) < 0.01
+
+
 def test_a_failing_case_is_recorded_and_the_others_go_on(tmp_path):
     make_sphere(SUNS, segments=16, rings=8, roughness=0.0)
     found = compare(tmp_path, size=(16, 16))

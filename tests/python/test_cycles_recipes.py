@@ -73,6 +73,11 @@ def test_subsurface_sockets():
     assert (sockets["Scale"], sockets["Anisotropy"], sockets["IOR"]) == (1.0, 0.0, 1.3)
 
 
+def test_subsurface_takes_alpha_itself():
+    node = recipes.recipe("subsurface", grain(roughness=0.25), BLENDER_4)["nodes"]["Subsurface"]
+    assert node["optional"]["Roughness"] == 0.25
+
+
 def test_our_side_solves_what_cycles_solves():
     assert kinds.our_side("subsurface", BLENDER_3) == {"boundary": "lambert_lambert"}
     assert kinds.our_side("subsurface", BLENDER_4) == {"boundary": "lambert_refracted"}

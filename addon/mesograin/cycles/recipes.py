@@ -98,8 +98,8 @@ def _subsurface(values, features):
             "IOR": min(max(values.eta, low), high),
             "Anisotropy": values.g,
         },
-        # The node takes the root of GGX's alpha, as the glossy one does.
-        "optional": {"Roughness": values.roughness**0.5},
+        # GGX's alpha itself, unlike the other nodes' roughness: measured,.
+        "optional": {"Roughness": values.roughness},
     }
     return _recipe({"Subsurface": node}, surface=("Subsurface", "BSSRDF"))
 
