@@ -26,7 +26,9 @@ MaterialInputs conductor_inputs(const Material& material) {
 
 }  // namespace
 
-bool depends_on_grain_radius(scene::Model model) { return model == scene::Model::model_2 || model == scene::Model::model_3; }
+bool depends_on_grain_radius(scene::Model model) {
+  return model == scene::Model::model_2 || model == scene::Model::model_3;
+}
 
 MaterialInputs material_inputs(const Material& material, double grain_radius) {
   scene::validate(material);

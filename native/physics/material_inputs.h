@@ -29,8 +29,8 @@ struct MaterialInputs {
   bool light_maps = false;                       ///< the model reads shaders/models/light_map.glsl
 };
 
-/// Computed once for each material, in double. Throws Error if the material is not valid. `grain_radius` is that of the sphere with the
-/// grain's mean chord, in scene units; only models 2 and 3 depend on it.
+/// Computed once for each material, in double. Throws Error if the material is not valid. `grain_radius` is that of the
+/// sphere with the grain's mean chord, in scene units; only models 2 and 3 depend on it.
 MaterialInputs material_inputs(const scene::Material& material, double grain_radius = 1.0);
 
 /// Whether the model's inputs depend on the grain's radius.

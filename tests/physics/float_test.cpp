@@ -35,12 +35,14 @@ std::vector<ProbeInput> grid(const std::vector<std::vector<double>>& axes) {
 
 std::vector<double> geometric(double low, double high, int count) {
   std::vector<double> values;
+  values.reserve(count);
   for (int i = 0; i < count; ++i) values.push_back(low * std::pow(high / low, static_cast<double>(i) / (count - 1)));
   return values;
 }
 
 std::vector<double> even(double low, double high, int count) {
   std::vector<double> values;
+  values.reserve(count);
   for (int i = 0; i < count; ++i) values.push_back(low + (high - low) * i / (count - 1));
   return values;
 }
