@@ -59,7 +59,7 @@ class Descriptor {
 fs::path resolve(const fs::path& path) {
   if (path.filename().empty()) throw Error("Can't write '{}': a file name is needed.", path.string());
   std::error_code ignored;
-  const fs::path target = fs::is_symlink(path, ignored) ? fs::weakly_canonical(path, ignored) : path;
+  fs::path target = fs::is_symlink(path, ignored) ? fs::weakly_canonical(path, ignored) : path;
   if (target.empty()) throw Error("Can't write {}: it is a link that points nowhere.", path.string());
   const fs::file_status standing = fs::status(target, ignored);
   if (fs::exists(standing) && !fs::is_regular_file(standing))

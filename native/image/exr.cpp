@@ -162,7 +162,7 @@ std::int64_t chunks_of_finest_level(const Imf::Header& header, std::int64_t widt
 
 /// Refuses what would cost memory or time out of proportion, and files whose pixels are not all there.
 void check_header(const Imf::Header& header, const std::string& bytes, std::size_t chunk_table) {
-  const Imath::Box2i window = header.dataWindow();
+  const Imath::Box2i& window = header.dataWindow();
   const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
   const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
   std::int64_t channels = 0;

@@ -58,8 +58,7 @@ py::array_t<float> to_array(image::Image image) {
   const std::vector<py::ssize_t> shape{image.height, image.width, image.channels};
   auto pixels = std::make_unique<std::vector<float>>(std::move(image.pixels));
   float* first = pixels->data();
-  const py::capsule owner(pixels.get(), [](void* memory) { delete static_cast<std::vector<float>*>(memory); });
-  pixels.release();
+  const py::capsule owner(pixels.release(), [](void* memory) { delete static_cast<std::vector<float>*>(memory); });
   return py::array_t<float>(shape, first, owner);
 }
 
@@ -126,6 +125,7 @@ py::dict test_significance(const Pixels& pixels, const std::vector<Pixels>& refe
                            double false_alarm_rate, double relative_tolerance) {
   const image::ImageView view = to_view(pixels, "image");
   std::vector<image::ImageView> reference_views;
+  reference_views.reserve(references.size());
   for (const Pixels& reference : references) reference_views.push_back(to_view(reference, "references"));
   const image::Mask mask = to_mask(selection);
   image::Significance significance;

@@ -308,6 +308,7 @@ Material read_material(const Node& node, const std::optional<Model>& asked) {
   material.model = asked.value_or(models.front());
   if (std::find(models.begin(), models.end(), material.model) == models.end()) {
     std::vector<std::string_view> names;
+    names.reserve(models.size());
     for (const Model model : models) names.push_back(name_of(model));
     throw Error("{}.kind is \"{}\", which {} answers; got the model {}.", node.path(), node["kind"].text(),
                 fmt::join(names, " or "), name_of(material.model));

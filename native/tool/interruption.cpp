@@ -1,10 +1,10 @@
 // The handler does only what POSIX allows in one: write and _exit. Drivers clean up after a process by themselves.
 #include "tool/interruption.h"
 
-#include <signal.h>
 #include <unistd.h>
 
 #include <array>
+#include <csignal>
 #include <string_view>
 
 namespace mesograin::tool {
@@ -21,13 +21,13 @@ void leave(int signal) {
 }  // namespace
 
 void handle_interruptions() {
-  for (const int signal : ending_signals) ::signal(signal, leave);
-  for (const int signal : {SIGXFSZ, SIGPIPE}) ::signal(signal, SIG_IGN);
+  for (const int signal : ending_signals) std::signal(signal, leave);
+  for (const int signal : {SIGXFSZ, SIGPIPE}) std::signal(signal, SIG_IGN);
 }
 
 // Ignored, not blocked: any thread of the driver's could take a signal that only this one blocks.
 Uninterrupted::Uninterrupted() {
-  for (const int signal : ending_signals) ::signal(signal, SIG_IGN);
+  for (const int signal : ending_signals) std::signal(signal, SIG_IGN);
 }
 
 Uninterrupted::~Uninterrupted() { handle_interruptions(); }

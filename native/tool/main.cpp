@@ -67,7 +67,10 @@ void run(const Options& options) {
   if (output.extension() != ".exr")
     throw Error("The output is OpenEXR and must end in .exr; got '{}'.", options.output);
   const scene::SceneFile file = scene::read_scene(options.scene, parse_choices(options));
-  file::require_writable(output);
+  {
+    const tool::Uninterrupted uninterrupted;
+    file::require_writable(output);
+  }
 
   render::View view(file.width, file.height, options.seed);
   view.set_scene(file.scene);
