@@ -68,7 +68,7 @@ class TestRunTests:
 
     @pytest.fixture
     def run(self, tmp_path):
-        sys.path.insert(0, str(SOURCE / "launcher"))
+        sys.path.insert(0, str(SOURCE / ".launcher"))
         import argparse
 
         import run_tests
@@ -81,7 +81,7 @@ class TestRunTests:
             return runner.results[0]
 
         yield run_script
-        sys.path.remove(str(SOURCE / "launcher"))
+        sys.path.remove(str(SOURCE / ".launcher"))
 
     def test_cases_are_counted_by_how_they_ended(self, run):
         result = run("""echo '<testsuites><testsuite><testcase name="a" classname="s"/><testcase name="b" classname="s">
@@ -115,7 +115,7 @@ def test_the_package_holds_what_blender_needs(tmp_path):
 
 def test_versions_agree():
     """The build, the add-on and its manifest state one version, and the change log tells of it."""
-    sys.path.insert(0, str(SOURCE / "launcher"))
+    sys.path.insert(0, str(SOURCE / ".launcher"))
     import package
 
     version = package.version_of(SOURCE)
