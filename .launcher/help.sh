@@ -37,7 +37,7 @@ Renders every model and the Cycles reference that means the same, and writes pic
   ./mesograin compare [SCENE.blend] [option ...]
 
   SCENE.blend               default: blend_files/sphere.blend
-  --models MODEL ...        models to compare: lambert, conductor, model_1 (default: all three)
+  --models MODEL ...        models to compare: lambert, conductor, model_1, model_2 (default: the first three)
   --references KIND ...     kinds of reference: diffuse, glossy, volume_index_matched, subsurface; each model is compared
                             with those that answer it (default: diffuse for lambert, glossy for conductor,
                             volume_index_matched for the others)
@@ -93,7 +93,7 @@ Renders a scene described in JSON to an EXR file; needs no Blender.
 
   SCENE.json            geometry, camera, resolution, lights and material; docs/scene-json.md describes it
   -o, --output OUT.exr  linear RGB radiance and coverage, 32-bit float, row 0 at the top
-  -m, --model MODEL     lambert, conductor or model_1 (default: the best for the material's kind)
+  -m, --model MODEL     lambert, conductor, model_1 or model_2 (default: the best for the material's kind)
   -n, --samples N       samples per pixel (default: 64)
   --seed S              of the samples' places and of the models' own (default: 0)
   --size WxH            pixels, instead of the scene's resolution
