@@ -60,13 +60,13 @@ void make_half_space_table(const std::filesystem::path& directory, unsigned thre
       key["incidence"] = cosine;
     cases.push_back({key, std::max(1.0, eta), [=] { return trace(eta, g, cosine, diffuse, threads); }});
   };
-  for (double eta : {1.0, 1.3, 1.5, 1.6, 1.1, 1.2, 1.4, 1.8, 2.0, 2.5, 3.0, 0.75, 0.5}) {
+  for (double g : {-0.5, 0.5, 0.8})
+    for (double eta : {1.0, 1.3}) add(eta, g, 1, false);
+  for (double eta : {1.0, 1.3, 1.5, 1.6, 1.1, 1.2, 1.4, 1.8, 2.0, 2.5, 0.75, 0.5, 3.0}) {
     add(eta, 0, 1, false);
     add(eta, 0, 1, true);
     for (double cosine : {0.7, 0.4, 0.1}) add(eta, 0, cosine, false);
   }
-  for (double g : {-0.5, 0.5, 0.8})
-    for (double eta : {1.0, 1.3}) add(eta, g, 1, false);
   fill_table(directory / "half_space.json", head, cases);
 }
 

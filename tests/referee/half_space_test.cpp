@@ -95,7 +95,7 @@ TEST(HalfSpace, ItsTableHoldsForFreshSeeds) {
           << albedos[a];
     }
   }
-  EXPECT_GE(compared, 50);
+  EXPECT_GE(compared, 64);
 }
 
 }  // namespace
