@@ -20,6 +20,14 @@ def corner_normals(mesh):
     return normals
 
 
+def set_pass_pixels(render_pass, pixels):
+    """Fills a render pass from (h, w, 4) float32 with row 0 at the bottom, in one copy; `rect = ...` takes seconds."""
+    try:
+        render_pass.rect.foreach_set(pixels.reshape(-1, pixels.shape[2]))
+    except TypeError:  # 4.x counts numbers where 3.x counts pixels
+        render_pass.rect.foreach_set(pixels.ravel())
+
+
 def borrowed_panels():
     """Panels of Blender that serve any engine: those of the built-in one, but for what we draw ourselves, and the slot
     list and viewport settings of materials, which Blender ties to engines by name."""

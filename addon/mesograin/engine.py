@@ -28,11 +28,6 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
         self._texture = None
         self._warnings = ()
 
-    def __del__(self):
-        session = getattr(self, "_session", None)
-        if session is not None:
-            session.stop()
-
     def update_render_passes(self, _scene, _view_layer):
         """Combined is the only pass, and Blender registers it itself."""
 
@@ -48,16 +43,17 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
         native = native_module.get()
         target = depsgraph.scene.mesograin.samples
         width, height = self.resolution_x, self.resolution_y
+        region = export.render_region(depsgraph.scene, width, height)
         self.update_stats("", "Mesograin: reading the scene")
         scene, warnings = export.scene_from_depsgraph(depsgraph)
-        view = native.View(width, height)
+        view = native.View(region.width, region.height)
         view.set_scene(scene)
-        view.set_camera(export.camera_from_scene(depsgraph, width, height, self.camera_override))
+        view.set_camera(export.camera_from_scene(depsgraph, width, height, self.camera_override, region))
         for warning in warnings:
             self.report({"WARNING"}, warning)
 
         opaque = not depsgraph.scene.render.film_transparent
-        result = self.begin_result(0, 0, width, height, layer=depsgraph.view_layer.name)
+        result = self.begin_result(0, 0, region.width, region.height, layer=depsgraph.view_layer.name)
         try:
             for samples in self._render_samples(view, target):
                 self._show(result, view, opaque)
@@ -65,12 +61,12 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
                 self.update_progress(samples / target)
             if view.samples:  # a cancelled render keeps what it has
                 self._show(result, view, opaque)
-        except native.Error:
+        except Exception:  # whatever it is: Blender must not be left with a result that never ends
             self.end_result(result, cancel=True)
             raise
         self.end_result(result)
         passes = tuple((timing["pass"], timing["milliseconds"]) for timing in view.timings())
-        status.put(status.RENDER, status.Status(view.samples, width, height, passes, warnings))
+        status.put(status.RENDER, status.Status(view.samples, region.width, region.height, passes, warnings))
 
     def _render_samples(self, view, target):
         """Renders until `target` samples or a cancel, and yields their number whenever it is time to show them."""
@@ -99,8 +95,7 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
         if opaque:
             pixels[..., 3] = 1.0  # premultiplied, so this is the picture over black
         # Blender's rows begin at the bottom.
-        flipped = np.ascontiguousarray(pixels[::-1]).reshape(-1, 4)
-        result.layers[0].passes["Combined"].rect.foreach_set(flipped)
+        compat.set_pass_pixels(result.layers[0].passes["Combined"], np.ascontiguousarray(pixels[::-1]))
 
     # Rendered viewports
 

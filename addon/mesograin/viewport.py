@@ -82,6 +82,10 @@ class Session:
     def busy(self):
         return self._task is not None
 
+    def __del__(self):
+        # Blender lets go of an engine, and so of its session, without a call that could be relied upon.
+        self.stop()
+
     def stop(self):
         """Ends the work under way and frees the view; the session cannot be used afterwards."""
         self._interrupt()
@@ -96,7 +100,7 @@ class Session:
 
     def _keep_busy(self, target):
         if self._task is None and self._view.samples < target:
-            self._task = self._worker.submit(self._render, min(self._chunk, target - self._view.samples))
+            self._task = self._worker.submit(_render, self._view, min(self._chunk, target - self._view.samples))
 
     def _interrupt(self):
         if self._task is not None:
@@ -105,11 +109,6 @@ class Session:
             self._task = None
         self._chunk = 1
         self.samples = 0
-
-    def _render(self, samples):
-        started = time.perf_counter()
-        self._view.render(samples)
-        return time.perf_counter() - started
 
     def _adapt(self, seconds):
         # A fast device does several samples between two redraws, which cost as much as many samples.
@@ -124,3 +123,10 @@ class Session:
             self._pixels = np.empty((height, width, 4), dtype=np.float32)
         self._view.read(self._pixels)
         return np.minimum(self._pixels, LARGEST_DISPLAYED, out=self._pixels)
+
+
+def _render(view, samples):
+    """Seconds that `samples` took; on the session's thread, which must not keep the session alive."""
+    started = time.perf_counter()
+    view.render(samples)
+    return time.perf_counter() - started

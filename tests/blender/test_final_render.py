@@ -52,6 +52,26 @@ def test_resolution_percentage(render, blend_files):
     assert render().shape == (50, 75, 4)
 
 
+@pytest.mark.parametrize("crop", [False, True], ids=["in_place", "cropped"])
+def test_render_border_is_that_part_of_the_picture(render, blend_files, crop):
+    bpy.ops.wm.open_mainfile(filepath=str(blend_files / "sphere.blend"))
+    settings = bpy.context.scene.render
+    settings.resolution_percentage, bpy.context.scene.mesograin.samples = 25, 2
+    whole = render()
+    settings.use_border, settings.use_crop_to_border = True, crop
+    settings.border_min_x, settings.border_max_x = 0.5, 0.9
+    settings.border_min_y, settings.border_max_y = 0.2, 0.7
+    part = render()
+    rows, columns = slice(30, 80), slice(50, 90)  # row 0 is the top
+    expected = whole[rows, columns] if crop else np.zeros_like(whole)
+    if not crop:
+        expected[rows, columns] = whole[rows, columns]
+    assert part.shape == expected.shape
+    difference = abs(part - expected)
+    # Where a sample falls right on the sphere's edge, rounding decides.
+    assert difference.mean() < 1e-4 and (difference.max(axis=-1) > 1e-3).sum() < 10
+
+
 def test_animation_follows_the_frame(render, blend_files):
     bpy.ops.wm.open_mainfile(filepath=str(blend_files / "sphere.blend"))
     scene, sphere = bpy.context.scene, bpy.data.objects["Sphere"]

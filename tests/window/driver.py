@@ -1,5 +1,6 @@
 # Runs checks inside Blender from a timer, one after the other, and leaves their results as JSON before it quits:
-#   blender --factory-startup --enable-event-simulate --python tests/window/driver.py -- FOLDER MODULE [check ...]
+#   blender --factory-startup --enable-event-simulate --python tests/window/driver.py -- FOLDER SCREEN MODULE [check ...]
+# SCREEN is the file in which Xvfb, started with -fbdir, keeps its framebuffer.
 import importlib
 import json
 import pathlib
@@ -34,11 +35,11 @@ def main():
     addon_utils.enable("mesograin", default_set=True)
     import window
 
-    folder, module, *wanted = sys.argv[sys.argv.index("--") + 1:]
+    folder, screen, module, *wanted = sys.argv[sys.argv.index("--") + 1:]
     checks = [(name, function) for name, function in vars(importlib.import_module(module)).items()
               if name.startswith("check_") and (not wanted or name in wanted)]
     folder = pathlib.Path(folder)
-    steps = run_all(window.Window(folder), checks, folder)
+    steps = run_all(window.Window(folder, pathlib.Path(screen)), checks, folder)
 
     def step():
         try:

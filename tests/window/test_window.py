@@ -13,7 +13,7 @@ import pytest
 
 HERE = pathlib.Path(__file__).resolve().parent
 EMPTY_FOLDER = tempfile.mkdtemp(prefix="mesograin-no-native-")
-SCREEN = ("xvfb-run", "--auto-servernum", "--server-args=-screen 0 1024x768x24")
+WIDTH, HEIGHT = 900, 640
 LAUNCHES = {  # what is checked, in which environment
     "viewport": ("checks_viewport", {}),
     "no_native_module": ("checks_unavailable", {"MESOGRAIN_NATIVE_DIR": EMPTY_FOLDER}),
@@ -35,12 +35,15 @@ def launched(tmp_path_factory):
 
     @functools.lru_cache(maxsize=None)
     def launch(name):
-        assert shutil.which(SCREEN[0]), "the window tests need xvfb-run, of Debian's package xvfb"
+        assert shutil.which("xvfb-run"), "the window tests need xvfb-run, of Debian's package xvfb"
         module, environment = LAUNCHES[name]
         folder = tmp_path_factory.mktemp(name)
-        command = [*SCREEN, os.environ.get("MESOGRAIN_BLENDER", "blender"), "--factory-startup",
-                   "--enable-event-simulate", "--window-geometry", "0", "0", "900", "640", "--python-exit-code", "1",
-                   "--python", str(HERE / "driver.py"), "--", str(folder), module]
+        # The window fills the screen, and no mouse pointer hides a pixel of it.
+        screen = f"-screen 0 {WIDTH}x{HEIGHT}x24 -fbdir {folder} -nocursor"
+        command = ["xvfb-run", "--auto-servernum", f"--server-args={screen}",
+                   os.environ.get("MESOGRAIN_BLENDER", "blender"), "--factory-startup", "--enable-event-simulate",
+                   "--window-geometry", "0", "0", str(WIDTH), str(HEIGHT), "--python-exit-code", "1",
+                   "--python", str(HERE / "driver.py"), "--", str(folder), str(folder / "Xvfb_screen0"), module]
         # Installed as an artist has it, so that preferences find it.
         addons = folder / "scripts" / "addons"
         addons.mkdir(parents=True)

@@ -1,6 +1,7 @@
 # A Blender window as the checks see it: open a file in it, wait, touch it, look at its pixels.
 import contextlib
 import pathlib
+import struct
 import time
 
 import bpy
@@ -15,8 +16,9 @@ RIM = 28
 class Window:
     """Waits are generators to be used by `yield from`; between their steps Blender runs its main loop."""
 
-    def __init__(self, folder):
+    def __init__(self, folder, screen):
         self.folder = folder  # of the screenshots
+        self.screen = screen  # Xvfb's framebuffer, a file
         self.native = None if native_module.problem() else native_module.get()
         self.check = ""
         self._shots = 0
@@ -175,19 +177,22 @@ class Window:
         area.tag_redraw()
         yield from self.seconds(0.3)
         self._shots += 1
-        path = self.folder / f"{self.check}_{self._shots}.png"
-        with self.override(area):
-            bpy.ops.screen.screenshot(filepath=str(path))
-        image = bpy.data.images.load(str(path))
-        try:
-            image.colorspace_settings.name = "Non-Color"
-            pixels = np.empty(image.size[0] * image.size[1] * 4, dtype=np.float32)
-            image.pixels.foreach_get(pixels)
-            pixels = pixels.reshape(image.size[1], image.size[0], 4)
-        finally:
-            bpy.data.images.remove(image)
+        shot = self._screen()
+        save_picture(shot, self.folder / f"{self.check}_{self._shots}.png")
         region = self.region(area)
-        return pixels[region.y:region.y + region.height, region.x:region.x + region.width, :3][::-1]
+        top = shot.shape[0] - region.y - region.height
+        return shot[top:top + region.height, region.x:region.x + region.width]
+
+    def _screen(self):
+        """What the virtual screen shows, (h, w, 3) in 0..1. Read from Xvfb, not by Blender's own screenshot operator,
+        which reads a front buffer that Mesa 25 leaves black."""
+        data = self.screen.read_bytes()
+        # X11/XWDFile.h: a big-endian header of 25 words, colours of 12 bytes each, then the pixels, here B, G, R, pad.
+        header = struct.unpack(">25I", data[:100])
+        header_size, width, height, bytes_per_line, colours = (header[i] for i in (0, 4, 5, 12, 19))
+        rows = np.frombuffer(data, dtype=np.uint8, offset=header_size + 12 * colours, count=height * bytes_per_line)
+        pixels = rows.reshape(height, bytes_per_line)[:, :4 * width].reshape(height, width, 4)
+        return pixels[..., 2::-1].astype(np.float32) / 255.0
 
     def expected_picture(self, area, count_sent=True):
         """What the native module alone renders for the area's matrices, through the display transform of 'Standard'."""
@@ -226,3 +231,16 @@ class Window:
         assert difference.mean() < 0.002 and difference.max() < 0.015, (
             f"mean difference {difference.mean():.4f}, largest {difference.max():.4f} at "
             f"{np.unravel_index(difference.argmax(), difference.shape)}")
+
+
+def save_picture(picture, path):
+    """Writes (h, w, 3) in 0..1 as a PNG, to be looked at."""
+    height, width, _ = picture.shape
+    image = bpy.data.images.new("Screenshot", width, height)
+    try:
+        image.colorspace_settings.name = "Non-Color"
+        image.pixels.foreach_set(np.dstack((picture[::-1], np.ones((height, width), np.float32))).ravel())
+        image.filepath_raw, image.file_format = str(path), "PNG"
+        image.save()
+    finally:
+        bpy.data.images.remove(image)
