@@ -78,5 +78,6 @@ def check_preferences_show_the_sentence(window):
         except RuntimeError as error:  # how an operator's error report reaches a script
             outcome = str(error)
     area.type = old
-    assert np.abs(unfolded - folded).mean() > 0.01, "the preferences are empty"
+    changed = (np.abs(unfolded - folded).max(axis=-1) > 0.1).sum()
+    assert changed > 3000, f"unfolding the add-on changed only {changed} pixels of the preferences"
     assert_one_sentence(outcome.removeprefix("Error: ").strip())

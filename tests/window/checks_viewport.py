@@ -245,6 +245,7 @@ def check_panels_show_the_grain(window):
     before = yield from window.picture(properties)
     bpy.data.materials["Translucent"].mesograin.model = "model_1"
     after = yield from window.picture(properties)
-    assert np.abs(after - before).mean() > 0.005, "the panel shows the same for Lambert and model 1"
+    changed = (np.abs(after - before).max(axis=-1) > 0.1).sum()
+    assert changed > 100, f"for model 1 only {changed} pixels of the panel differ from Lambert's"
     assert engine.MesograinRenderEngine.bl_idname in bpy.types.DATA_PT_lens.COMPAT_ENGINES
     yield from window.converged_picture(area)
