@@ -1,5 +1,5 @@
 # Runs checks inside Blender from a timer, one after the other, and leaves their results as JSON before it quits:
-#   blender --factory-startup --enable-event-simulate --python tests/window/driver.py -- FOLDER SCREEN MODULE [check ...]
+#   blender --factory-startup --enable-event-simulate --python driver.py -- FOLDER SCREEN MODULE [check ...]
 # SCREEN is the file in which Xvfb, started with -fbdir, keeps its framebuffer.
 import importlib
 import json
