@@ -119,39 +119,40 @@ def make_sphere():
     add_sun("Back", (-1.0, -1.0, -1.6), 10.0)
 
 
-def sand_displacement(direction):
+def sand_radius(direction):
     """Radius of the grain towards a unit vector: a body cut by planes, worn by noise, with one hollow."""
-    cuts = ((Vector((0.9, 0.2, 0.4)), 0.80), (Vector((-0.7, 0.6, 0.3)), 0.84), (Vector((-0.2, -0.9, 0.4)), 0.74),
-            (Vector((0.3, 0.7, -0.7)), 0.82), (Vector((-0.8, -0.4, -0.5)), 0.86), (Vector((0.4, -0.5, -0.8)), 0.78),
-            (Vector((0.1, 0.5, 0.9)), 0.82))
-    inverse = sum(max(direction.dot(normal.normalized()), 0.0) ** 24 / distance ** 24 for normal, distance in cuts)
-    body = (inverse + 1.05 ** -24) ** (-1.0 / 24.0)  # a smooth minimum of the planes and a sphere of radius 1.05
-    worn = (0.045 * noise.noise(2.3 * direction + Vector((3.1, 0.7, 5.2)))
-            + 0.018 * noise.noise(6.1 * direction + Vector((1.4, 9.2, 0.3)))
-            + 0.006 * noise.noise(17.0 * direction))
-    hollow = 0.20 * math.exp(-direction.angle(Vector((0.25, -0.35, 0.9))) ** 2 / (2.0 * 0.22 ** 2))
+    cuts = ((Vector((0.9, 0.2, 0.4)), 0.74), (Vector((-0.7, 0.6, 0.3)), 0.80), (Vector((-0.2, -0.9, 0.4)), 0.70),
+            (Vector((0.3, 0.7, -0.7)), 0.80), (Vector((-0.8, -0.4, -0.5)), 0.84), (Vector((0.4, -0.5, -0.8)), 0.76),
+            (Vector((0.1, 0.35, 0.95)), 0.78), (Vector((0.5, 0.9, 0.3)), 0.80), (Vector((-0.9, -0.5, 0.5)), 0.80))
+    sharpness = 20  # of the edges between the cuts
+    inverse = sum((max(direction.dot(normal.normalized()), 0.0) / distance) ** sharpness for normal, distance in cuts)
+    body = (inverse + 1.1 ** -sharpness) ** (-1.0 / sharpness)  # nearly the least of the planes and a sphere
+    worn = (0.035 * noise.noise(2.3 * direction + Vector((3.1, 0.7, 5.2)))
+            + 0.020 * noise.noise(6.1 * direction + Vector((1.4, 9.2, 0.3)))
+            + 0.006 * noise.noise(11.0 * direction))
+    hollow = 0.24 * math.exp(-direction.angle(Vector((0.05, -0.1, 1.0))) ** 2 / (2.0 * 0.24 ** 2))
     return body + worn - hollow
 
 
 def make_grain():
     """One irregular grain of sand, 2 mm across, faceted, worn and with a concavity, on a Blender unit of 1 mm."""
     empty_file()
-    mesh = sphere_mesh(1.0, 80, 40)
+    mesh = sphere_mesh(1.0, 96, 48)
     mesh.name = "Grain"
     for vertex in mesh.vertices:
         direction = vertex.co.normalized()
-        vertex.co = Vector((1.15, 0.9, 1.0)) * sand_displacement(direction) * direction
+        vertex.co = Vector((1.2, 0.95, 1.0)) * sand_radius(direction) * direction
     mesh.update()
     grain = add_object("Grain", mesh)
     grain.data.materials.append(add_grain_material(
         "Sand", model="model_1", sigma_s=(9.0, 8.2, 6.6), sigma_a=(0.09, 0.22, 0.62), g=0.0, eta=1.54, roughness=0.35,
         scale=1.0))
-    towards = Vector((0.6, 0.45, 1.0)).normalized()
+    towards = Vector((0.45, 0.3, 1.0)).normalized()
     rotation = towards.to_track_quat("Z", "Y").to_matrix().to_4x4()
-    add_camera(Matrix.Translation(4.2 * towards) @ rotation, 36.0)
-    add_sun("Key", (1.0, 1.2, 0.5), 12.0)
-    add_sun("Rim", (-1.0, 0.3, -0.8), 6.0)
-    add_sun("Fill", (-0.6, -0.2, 1.0), 2.0)
+    add_camera(Matrix.Translation(4.2 * towards) @ rotation, 34.0)
+    add_sun("Key", (1.0, 0.9, 0.15), 14.0)
+    add_sun("Rim", (-1.0, 0.2, -0.7), 6.0)
+    add_sun("Fill", (-0.7, -0.3, 0.8), 1.5)
 
 
 def main():
