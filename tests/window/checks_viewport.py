@@ -172,8 +172,8 @@ def check_resize_follows_the_region(window):
     yield from window.converged_picture(area)
     sent = window.native.sent()
     width = window.region(area).width
-    areas = yield from window.split(area)
     status.clear()
+    areas = yield from window.split(area)
     picture = yield from window.converged_picture(areas[0])
     assert picture.shape[1] < 0.7 * width
     window.assert_same(picture, window.expected_picture(areas[0], count_sent=False))
