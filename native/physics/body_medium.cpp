@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "physics/physics.h"
+#include "physics/quadrature.h"
+
 namespace mesograin::physics {
 namespace {
 
@@ -42,6 +45,20 @@ BodySurface body_surface(const scene::Material& material) {
       material.boundary == scene::Boundary::lambert_lambert || material.boundary == scene::Boundary::lambert_refracted;
   surface.diffusion = diffusion_boundary(surface.eta);
   return surface;
+}
+
+ExitLobe exit_lobe(const BodySurface& surface) {
+  const double slope = 1.5 / surface.diffusion.a;
+  double flux = 0.0;
+  // Below the critical cosine nothing comes through to a rarer outside; seen from outside that is no direction at all.
+  const double critical = surface.eta < 1.0 ? sine_of_cosine(surface.eta) : 0.0;
+  for (const QuadratureNode& node : gauss_legendre(64)) {
+    const double mu = critical + (1.0 - critical) * node.x;
+    const double mu_inside = refracted_cosine(mu, surface.eta);
+    const double transmittance = surface.eta == 1.0 ? 1.0 : fresnel_transmittance(mu, mu_inside, surface.eta);
+    flux += 2.0 * PI * (1.0 - critical) * node.weight * mu * transmittance * (1.0 + slope * mu_inside);
+  }
+  return {slope, 1.0 / flux};
 }
 
 DiffusionPart all_orders(const BodyMedium& medium, const BodySurface& surface) {

@@ -30,6 +30,16 @@ struct BodySurface {
 
 BodySurface body_surface(const scene::Material& material);
 
+/// The lobe by which diffused light leaves: transmittance(mu) (1 + slope mu') factor, whose flux is 1; mu' is the
+/// cosine inside. Below a surface that passes 1/(2A) of the fluence, P1 radiance is proportional to 1 + 3/(2A) mu'
+/// (Ishimaru 1978 eq. 9-12).
+struct ExitLobe {
+  double slope;
+  double factor;
+};
+
+ExitLobe exit_lobe(const BodySurface& surface);
+
 /// The diffusion equation's constants for one part of the light in a BodyMedium (P1: D = 1/(3 sigma_t')).
 struct DiffusionPart {
   double source;           ///< per unit of light that enters

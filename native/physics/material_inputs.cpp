@@ -3,6 +3,7 @@
 
 #include "physics/model_1_inputs.h"
 #include "physics/model_2_inputs.h"
+#include "physics/model_3_inputs.h"
 #include "scene/error.h"
 
 namespace mesograin::physics {
@@ -41,10 +42,11 @@ MaterialInputs material_inputs(const Material& material, double grain_radius) {
       return model_1_inputs(material);
     case scene::Model::model_2:
       return model_2_inputs(material, grain_radius);
-    default:
-      throw Error("model must be lambert, conductor, model_1 or model_2; got '{}', which this version cannot draw.",
-                  scene::model_names[static_cast<std::size_t>(material.model)]);
+    case scene::Model::model_3:
+      return model_3_inputs(material, grain_radius);
   }
+  throw Error("model must be one of the five that scene::Model names; got number {}.",
+              static_cast<int>(material.model));
 }
 
 }  // namespace mesograin::physics

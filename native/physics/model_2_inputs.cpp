@@ -84,8 +84,9 @@ MaterialInputs model_2_inputs(const scene::Material& material, double grain_radi
   }
   add_table("body_difference", {.single = !surface.cosine_entry && !separate, .multiple = true});
   inputs.uniforms["body.radius"] = static_cast<float>(grain_radius);
-  inputs.uniforms["body.exit_lobe"] =
-      static_cast<float>(1.0 / (3.14159265358979323846 * surface.diffusion.exit_transmittance));
+  const ExitLobe lobe = exit_lobe(surface);
+  inputs.uniforms["body.exit_slope"] = static_cast<float>(lobe.slope);
+  inputs.uniforms["body.exit_factor"] = static_cast<float>(lobe.factor);
   return inputs;
 }
 

@@ -123,6 +123,10 @@ void bind_view(py::module_& module) {
            "Reallocates the targets and nothing else.")
       .def("set_scene", &render::View::set_scene, py::arg("scene"), Release(),
            "Restarts the accumulation. Meshes and materials already on the device are not sent again.")
+      .def("set_taps", &render::View::set_taps, py::arg("taps"), Release(),
+           "Sets how many light map samples model 3 takes for one pixel and sample, over all lights (default 16), and "
+           "restarts the\n"
+           "accumulation. Raises Error unless it is in [1, 65536].")
       .def("set_camera", &render::View::set_camera, py::arg("camera"), Release(),
            "Restarts the accumulation; sends nothing.")
       .def("render", &render, py::arg("samples") = 1,

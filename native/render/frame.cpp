@@ -76,6 +76,12 @@ Frame::Draw Frame::make_draw(const scene::Instance& instance) {
   draw.centre = glm::dvec3(instance.object_to_world * glm::dvec4(0.5 * (lower + upper), 1.0));
   draw.radius = glm::length(
       glm::dvec3(glm::length(linear[0] * half.x), glm::length(linear[1] * half.y), glm::length(linear[2] * half.z)));
+  const glm::dmat3 squared = glm::transpose(linear) * linear;
+  double stretch_squared = 0.0;  // a bound, exact for rotations, scales and mirrors
+  for (int row = 0; row < 3; ++row)
+    stretch_squared =
+        std::max(stretch_squared, std::abs(squared[0][row]) + std::abs(squared[1][row]) + std::abs(squared[2][row]));
+  draw.reach = instance.mesh->reach() * std::sqrt(stretch_squared);
   const scene::Material& material = instance.material;
   // The cube root takes a mirrored or stretched grain for the one of the same volume.
   draw.material = cache_.material(
@@ -106,6 +112,11 @@ void Frame::set_scene(scene::Scene scene) {
 
 void Frame::set_camera(const scene::Camera& camera) {
   camera_ = camera;
+  samples_ = 0;
+}
+
+void Frame::set_taps(int taps) {
+  taps_ = taps;
   samples_ = 0;
 }
 
@@ -187,10 +198,12 @@ void Frame::shade(const std::vector<glm::dvec3>& to_light) {
       program.set("jitter", jitter);
       program.set("light_count", static_cast<int>(lights_.size()));
       program.set("sample_index", samples_);
+      program.set("taps", taps_);
     }
     if (draw.light_maps) draw.light_maps->bind(program);
     const glm::dmat4 object_to_grain = draw.object_to_grain();
     const glm::dmat3 linear(object_to_grain);
+    program.set("grain_reach", static_cast<float>(draw.reach));
     program.set("object_to_clip", glm::mat4(camera_.camera_to_clip * (camera_.world_to_camera * draw.object_to_world)));
     program.set("object_to_grain", glm::mat4(object_to_grain));
     program.set("normal_to_grain", glm::mat3(glm::transpose(glm::inverse(linear))));

@@ -19,6 +19,8 @@
 
 namespace mesograin::render {
 
+inline constexpr int default_taps = 16;
+
 struct PassTiming {
   std::string pass;
   double milliseconds;
@@ -32,6 +34,9 @@ class Frame {
   void resize(int width, int height);
   void set_scene(scene::Scene scene);
   void set_camera(const scene::Camera& camera);
+
+  /// Light map samples that model 3 takes for one pixel and sample, over all lights.
+  void set_taps(int taps);
 
   /// Adds one sample to the sum.
   void add_sample();
@@ -62,6 +67,7 @@ class Frame {
     glm::dmat4 object_to_world;
     glm::dvec3 centre;                      // middle of its bounds, world space
     double radius;                          // of the sphere around its bounds
+    double reach;                           // no point is farther from the centre
     double mean_free_paths_across;          // of the bounds' diameter, reduced, in the densest channel
     std::unique_ptr<LightMaps> light_maps;  // only if its material reads them
     glm::dmat4 object_to_grain() const;
@@ -93,6 +99,7 @@ class Frame {
   gl::Timer shade_timer_;
   gl::Timer accumulate_timer_;
   bool timed_ = false;
+  int taps_ = default_taps;
   int light_maps_drawn_ = 0;  // in the last sample
 };
 

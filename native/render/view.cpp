@@ -67,6 +67,12 @@ void View::set_camera(const scene::Camera& camera) {
   *samples_ = 0;
 }
 
+void View::set_taps(int taps) {
+  if (taps < 1 || taps > 65536) throw Error("taps must be in [1, 65536]; got {}.", taps);
+  gl::ContextThread::instance().run([&] { frame(id_).set_taps(taps); });
+  *samples_ = 0;
+}
+
 void View::render(int samples) { start(samples).get(); }
 
 std::future<void> View::start(int samples) {

@@ -31,6 +31,10 @@ class View {
   /// Restarts the accumulation and sends nothing.
   void set_camera(const scene::Camera& camera);
 
+  /// How many light map samples model 3 takes for one pixel and sample, over all lights (default 16). Restarts the
+  /// accumulation. Throws Error unless it is in [1, 65536].
+  void set_taps(int taps);
+
   /// Adds `samples` to the mean and returns when they are drawn.
   void render(int samples);
 

@@ -1,6 +1,7 @@
 // Checks a mesh's arrays and completes its normals.
 #include "scene/mesh.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -84,7 +85,9 @@ Mesh::Mesh(std::vector<glm::vec3> positions, std::vector<glm::vec3> normals, std
     upper_ = glm::max(upper_, position);
   }
   const glm::dvec3 half = 0.5 * (glm::dvec3(upper_) - glm::dvec3(lower_));
-  equivalent_radius_ = radius_of_mean_chord(positions_, triangles_, glm::dvec3(lower_) + half, glm::length(half));
+  const glm::dvec3 middle = glm::dvec3(lower_) + half;
+  for (const glm::vec3& position : positions_) reach_ = std::max(reach_, glm::length(glm::dvec3(position) - middle));
+  equivalent_radius_ = radius_of_mean_chord(positions_, triangles_, middle, glm::length(half));
 }
 
 }  // namespace mesograin::scene

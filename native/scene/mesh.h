@@ -26,6 +26,9 @@ class Mesh {
   const glm::vec3& lower() const { return lower_; }
   const glm::vec3& upper() const { return upper_; }
 
+  /// No position is farther from the middle of the box than this.
+  double reach() const { return reach_; }
+
   /// Radius of the sphere that has the same mean chord, 4 volume/area (Cauchy), in the mesh's own space. A mesh that
   /// encloses no volume stands for the sphere around its box.
   double equivalent_radius() const { return equivalent_radius_; }
@@ -37,6 +40,7 @@ class Mesh {
   std::vector<glm::vec2> uvs_;
   glm::vec3 lower_{0.0F};
   glm::vec3 upper_{0.0F};
+  double reach_ = 0.0;
   double equivalent_radius_ = 0.0;
 };
 

@@ -13,5 +13,7 @@ struct LightSample {
   int index;        // which light this is, for its light map
 };
 
+uniform int light_count;
+
 // Radiance that leaves the point towards the viewer because of this light; the cosine on the light's side is inside.
 vec3 evaluate_model(SurfacePoint point, LightSample light);

@@ -49,7 +49,7 @@ LightMapTexel light_map_at(int light, vec2 xy) {
   // Within half a texel the surface is its tangent plane; near the silhouette that plane runs away and is cut short.
   float texel_width = 2.0 * frame.z_axis.w / resolution;
   vec2 offset = (in_texels - texel - 0.5) * texel_width;
-  float rise = clamp(-dot(stored.yz, offset) / height, -texel_width, texel_width);
+  float rise = clamp(-dot(stored.yz, offset) / height, -4.0 * texel_width, 4.0 * texel_width);
   result.position = vec3(xy, stored.x + rise);
   result.exit_depth = stored.w;
   return result;

@@ -9,8 +9,9 @@
 #include "models/light_map.glsl"
 
 struct Body {
-  float radius;     // of the sphere with the grain's mean chord
-  float exit_lobe;  // 1/(pi times the hemispherical transmittance)
+  float radius;  // of the sphere with the grain's mean chord
+  float exit_slope;
+  float exit_factor;  // diffused light leaves as factor (1 + slope mu') times the transmittance, mu' inside
 };
 uniform Body body;
 
@@ -52,11 +53,14 @@ vec3 evaluate_model(SurfacePoint point, LightSample light) {
   vec2 coordinate = vec2(cosine_coordinate(side), radius_coordinate(radius_ratio));
 
   float mu_o = clamp(dot(point.normal, point.to_viewer), 0.0, 1.0);
-  vec3 lobe = light.irradiance * body.exit_lobe;
 #ifdef REFRACTION
   float mu_o_refracted = refracted_cosine(mu_o, material.eta);
-  lobe *= fresnel_transmittance(mu_o, mu_o_refracted, material.eta);
+  float transmittance = fresnel_transmittance(mu_o, mu_o_refracted, material.eta);
+#else
+  float mu_o_refracted = mu_o;
+  const float transmittance = 1.0;
 #endif
+  vec3 lobe = light.irradiance * (transmittance * body.exit_factor * (1.0 + body.exit_slope * mu_o_refracted));
 
   HalfSpaceLight half_space = half_space_light(point, light);
   vec3 radiance = corrected(visible * half_space.multiple, look_up(body_difference, coordinate), lobe);

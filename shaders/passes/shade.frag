@@ -10,7 +10,6 @@ struct DirectionalLight {
 
 layout(std430, binding = 0) readonly buffer Lights { DirectionalLight lights[]; };
 
-uniform int light_count;
 uniform vec4 viewer;  // xyz: the pinhole in grain space if w is 1, the direction towards the viewer if w is 0
 
 in vec3 grain_position;

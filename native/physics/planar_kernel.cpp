@@ -1,0 +1,108 @@
+// The published half-space profiles, in forms without cancellation.
+#include <cmath>
+
+#include "physics/physics.h"
+#include "physics/surface_kernel.h"
+
+namespace mesograin::physics {
+namespace {
+
+constexpr int beam_depths = 100;
+
+double beam_depth(int index, double sigma_t) { return -std::log1p(-(index + 0.5) / beam_depths) / sigma_t; }
+
+// exp(-k d_r)/d_r - exp(-k d_v)/d_v for a source above its image, without the difference of neighbours.
+double image_difference(double real_distance, double virtual_distance, double delta_squared, double decay) {
+  const double delta = delta_squared / (real_distance + virtual_distance);
+  return std::exp(-decay * real_distance) / real_distance * -expm1(-(decay * delta + log1p(delta / real_distance)));
+}
+
+double flux_term(double depth, double distance, double decay) {
+  return depth * (1.0 + decay * distance) * std::exp(-decay * distance) / (distance * distance * distance);
+}
+
+struct GrosjeanDiffusion {
+  double diffusion;
+  double decay;
+  double boundary;  // 2 z_b
+};
+
+GrosjeanDiffusion grosjean(const BodyMedium& medium, const BodySurface& surface) {
+  const double sigma_t = medium.reduced_sigma_t();
+  const double diffusion = (medium.sigma_a + sigma_t) / (3.0 * sigma_t * sigma_t);
+  return {diffusion, std::sqrt(medium.sigma_a / diffusion), 4.0 * surface.diffusion.a * diffusion};
+}
+
+// C_phi phi + C_E E_n of a dipole at depth z (d'Eon & Irving 2011 eq. 14; pbrt-v4 BeamDiffusionMS).
+double dipole_exitance(const GrosjeanDiffusion& medium, const BodySurface& surface, double depth, double distance) {
+  const double image = depth + medium.boundary;
+  const double real_distance = std::hypot(distance, depth);
+  const double virtual_distance = std::hypot(distance, image);
+  const double fluence =
+      image_difference(real_distance, virtual_distance, medium.boundary * (depth + image), medium.decay) /
+      (4.0 * PI * medium.diffusion);
+  const double flux =
+      (flux_term(depth, real_distance, medium.decay) + flux_term(image, virtual_distance, medium.decay)) / (4.0 * PI);
+  return surface.diffusion.c_phi * fluence + surface.diffusion.c_e * flux;
+}
+
+}  // namespace
+
+PlanarKernel::PlanarKernel(PlanarProfile profile, const BodyMedium& medium, const BodySurface& surface, double total)
+    : profile_(profile), medium_(medium), surface_(surface) {
+  if (total > 0.0 && medium.reduced_sigma_s() > 0.0) scale_ = total / this->total();
+}
+
+double PlanarKernel::radiant_exitance(double distance) const {
+  const double sigma_t = medium_.reduced_sigma_t();
+  const double albedo = medium_.reduced_sigma_s() / sigma_t;
+  if (profile_ == PlanarProfile::dipole) {
+    const double decay = std::sqrt(3.0 * medium_.sigma_a * sigma_t);
+    const double depth = 1.0 / sigma_t;
+    const double image = depth * (1.0 + 4.0 / 3.0 * surface_.diffusion.a);
+    return albedo / (4.0 * PI) *
+           (flux_term(depth, std::hypot(distance, depth), decay) +
+            flux_term(image, std::hypot(distance, image), decay));
+  }
+  const GrosjeanDiffusion medium = grosjean(medium_, surface_);
+  if (profile_ == PlanarProfile::better_dipole)
+    return albedo * albedo * dipole_exitance(medium, surface_, 1.0 / sigma_t, distance);
+  double sum = 0.0;
+  for (int i = 0; i < beam_depths; ++i) {
+    const double depth = beam_depth(i, sigma_t);
+    // The empirical near-source correction of Habel et al. 2013 (their section 5.1).
+    const double correction = -std::expm1(-2.0 * sigma_t * (std::hypot(distance, depth) + depth));
+    sum += correction * dipole_exitance(medium, surface_, depth, distance);
+  }
+  return albedo * albedo * sum / beam_depths;
+}
+
+std::vector<double> PlanarKernel::evaluate(const std::vector<double>& distances, double) const {
+  std::vector<double> values(distances.size(), 0.0);
+  if (medium_.reduced_sigma_s() <= 0.0) return values;
+  for (std::size_t i = 0; i < distances.size(); ++i) values[i] = scale_ * radiant_exitance(distances[i]);
+  return values;
+}
+
+double PlanarKernel::total() const {
+  if (medium_.reduced_sigma_s() <= 0.0) return 0.0;
+  const double sigma_t = medium_.reduced_sigma_t();
+  const double one_minus_albedo = medium_.sigma_a / sigma_t;
+  const DiffusionBoundary& boundary = surface_.diffusion;
+  if (profile_ == PlanarProfile::dipole) return scale_ * dipole_total(one_minus_albedo, boundary.a);
+  if (profile_ == PlanarProfile::better_dipole)
+    return scale_ * better_dipole_total(one_minus_albedo, boundary.a, boundary.c_phi, boundary.c_e);
+  // 2 pi int R r dr over r = e^u, which both ends of the profile bear.
+  constexpr int steps = 400;
+  const double lowest = std::log(1e-4 / sigma_t);
+  const double highest =
+      std::log(60.0 / std::min(sigma_t, std::max(grosjean(medium_, surface_).decay, 1e-3 * sigma_t)));
+  double sum = 0.0;
+  for (int i = 0; i < steps; ++i) {
+    const double r = std::exp(lowest + (highest - lowest) * (i + 0.5) / steps);
+    sum += 2.0 * PI * r * r * radiant_exitance(r);
+  }
+  return scale_ * sum * (highest - lowest) / steps;
+}
+
+}  // namespace mesograin::physics
