@@ -98,9 +98,7 @@ void run(const Options& options) {
              device.renderer);
 }
 
-}  // namespace
-
-int main(int argument_count, char** arguments) {
+int command(int argument_count, char** arguments) {
   Options options;
   CLI::App app("Renders a scene in JSON to OpenEXR: linear RGB radiance and coverage, float32, row 0 at the top.",
                "mesograin-render");
@@ -134,4 +132,15 @@ int main(int argument_count, char** arguments) {
   }
   gl::ContextThread::shut_down();
   return code;
+}
+
+}  // namespace
+
+int main(int argument_count, char** arguments) {
+  try {
+    return command(argument_count, arguments);
+  } catch (...) {
+    // Only saying what went wrong can still have failed, and then nothing is left to say it with.
+    return exit_failure;
+  }
 }

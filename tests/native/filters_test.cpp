@@ -54,10 +54,10 @@ TEST(Filters, NotANumberStaysSoThatItIsCounted) {
 
 TEST(Filters, OtsuPartsTwoClasses) {
   Image error{16, 16, 3, std::vector<float>(16 * 16 * 3)};
-  for (int y = 0; y < 16; ++y)
-    for (int x = 0; x < 16; ++x)
-      for (int channel = 0; channel < 3; ++channel)
-        error.pixels[static_cast<std::size_t>((y * 16 + x) * 3 + channel)] =
+  for (std::size_t y = 0; y < 16; ++y)
+    for (std::size_t x = 0; x < 16; ++x)
+      for (std::size_t channel = 0; channel < 3; ++channel)
+        error.pixels[(y * 16 + x) * 3 + channel] =
             (x >= 12 ? 5.0F : 0.1F) + 0.01F * static_cast<float>((x * 7 + y * 3) % 5);
   const Mask kept = otsu_mask(error.view(), all(16, 16), 1);
   EXPECT_EQ(count(kept), 12 * 16);
@@ -67,8 +67,8 @@ TEST(Filters, OtsuPartsTwoClasses) {
 
 TEST(Filters, TheMedianSparesALonelyPixel) {
   Image error{16, 16, 1, std::vector<float>(16 * 16, 0.1F)};
-  for (int y = 0; y < 16; ++y)
-    for (int x = 12; x < 16; ++x) error.pixels[static_cast<std::size_t>(y * 16 + x)] = 5.0F;
+  for (std::size_t y = 0; y < 16; ++y)
+    for (std::size_t x = 12; x < 16; ++x) error.pixels[y * 16 + x] = 5.0F;
   error.pixels[8 * 16 + 4] = 5.0F;
   EXPECT_EQ(otsu_mask(error.view(), all(16, 16), 4).pixels[8 * 16 + 4], 1);
   EXPECT_EQ(otsu_mask(error.view(), all(16, 16), 1).pixels[8 * 16 + 4], 0);

@@ -39,8 +39,10 @@ Image noisy(std::mt19937& random, double relative_noise) {
 Significance run(const Image& image, unsigned seed, int seeds, double relative_noise, double rate = 0.01) {
   std::mt19937 random(seed);
   std::vector<Image> images;
+  images.reserve(static_cast<std::size_t>(seeds));
   for (int i = 0; i < seeds; ++i) images.push_back(noisy(random, relative_noise));
   std::vector<ImageView> views;
+  views.reserve(images.size());
   for (const Image& reference : images) views.push_back(reference.view());
   return test_significance(image.view(), views, everywhere(), {rate, 0.002});
 }

@@ -16,6 +16,7 @@ BodySurface surface_of(double eta) { return {eta, false, diffusion_boundary(eta)
 
 std::vector<double> even_cosines(int count) {
   std::vector<double> cosines;
+  cosines.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) cosines.push_back((2.0 * i + 1.0) / count - 1.0);
   return cosines;
 }

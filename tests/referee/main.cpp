@@ -126,9 +126,7 @@ void add_tables(CLI::App& application) {
   });
 }
 
-}  // namespace
-
-int main(int argument_count, char** arguments) {
+int command(int argument_count, char** arguments) {
   CLI::App application{"A double-precision photon Monte Carlo that shares no code with the product's physics.",
                        "mesograin-referee"};
   application.require_subcommand(1);
@@ -144,4 +142,15 @@ int main(int argument_count, char** arguments) {
     return 1;
   }
   return 0;
+}
+
+}  // namespace
+
+int main(int argument_count, char** arguments) {
+  try {
+    return command(argument_count, arguments);
+  } catch (...) {
+    // Only saying what went wrong can still have failed, and then nothing is left to say it with.
+    return 1;
+  }
 }
