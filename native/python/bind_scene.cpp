@@ -105,7 +105,8 @@ void bind_material(py::module_& module) {
           "masking", [](const scene::Material& m) { return scene::masking_names[static_cast<std::size_t>(m.masking)]; })
       .def_property_readonly(
           "profile", [](const scene::Material& m) { return scene::profile_names[static_cast<std::size_t>(m.profile)]; })
-      .def("__eq__", [](const scene::Material& a, const scene::Material& b) { return a == b; });
+      .def(
+          "__eq__", [](const scene::Material& a, const scene::Material& b) { return a == b; }, py::is_operator());
 }
 
 void bind_mesh_and_instance(py::module_& module) {
@@ -169,7 +170,8 @@ void bind_light_and_camera(py::module_& module) {
           "100.")
       .def_property_readonly("world_to_camera", [](const scene::Camera& c) { return to_array(c.world_to_camera); })
       .def_property_readonly("camera_to_clip", [](const scene::Camera& c) { return to_array(c.camera_to_clip); })
-      .def("__eq__", [](const scene::Camera& a, const scene::Camera& b) { return a == b; });
+      .def(
+          "__eq__", [](const scene::Camera& a, const scene::Camera& b) { return a == b; }, py::is_operator());
 }
 
 }  // namespace

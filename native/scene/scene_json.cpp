@@ -31,7 +31,7 @@ using Json = nlohmann::json;
 constexpr int largest_side = 16384;
 
 /// The best model for translucent grains.
-constexpr Model translucent_model = Model::model_1;
+constexpr Model translucent_model = Model::model_2;
 
 /// What tells how a reference was made, and nothing about the scene.
 constexpr std::array<std::string_view, 28> provenance_keys{"about",

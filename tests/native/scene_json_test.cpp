@@ -44,7 +44,7 @@ TEST(SceneJson, EveryKeyArrives) {
   const Instance& sphere = file.scene.instances[0];
   EXPECT_EQ(sphere.object_to_world[3], glm::dvec4(1.0, 2.0, 3.0, 1.0));
   EXPECT_EQ(sphere.object_to_world[1][1], 2.4);
-  EXPECT_EQ(sphere.material.model, Model::model_1);
+  EXPECT_EQ(sphere.material.model, Model::model_2);
   EXPECT_EQ(sphere.material.sigma_s, glm::dvec3(0.9, 0.8, 0.7));
   EXPECT_EQ(sphere.material.sigma_a, glm::dvec3(0.1));
   EXPECT_EQ(sphere.material.eta, 1.5);
@@ -192,12 +192,12 @@ TEST(SceneJson, WhatIsNotJsonIsNamedWithItsLine) {
 
 TEST(SceneJson, AModelThatDoesNotAnswerTheKindIsRefused) {
   expect_error([] { parse(sphere_scene(), {.model = Model::lambert}); },
-               "material.kind is \"smooth_mc\", which model_1 or model_2 or model_3 answers; got the model lambert");
+               "material.kind is \"smooth_mc\", which model_2 or model_1 or model_3 answers; got the model lambert");
 }
 
 TEST(SceneJson, AMaterialTellsAllItsParameters) {
   const Json json = Json::parse(to_json(parse(sphere_scene()).scene.instances[0].material));
-  EXPECT_EQ(json["model"], "model_1");
+  EXPECT_EQ(json["model"], "model_2");
   EXPECT_EQ(json["boundary"], "dielectric");
   EXPECT_EQ(json["sigma_s"], (Json{0.9, 0.8, 0.7}));
   EXPECT_EQ(json.size(), 11U);
