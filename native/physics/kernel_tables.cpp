@@ -69,6 +69,7 @@ KernelTables kernel_tables(const std::array<const SurfaceKernel*, 3>& kernels, d
   tables.inverse = {share_count, rows, {}};
 
   std::vector<double> distances;
+  distances.reserve(static_cast<std::size_t>(distance_count));
   for (int j = 0; j < distance_count; ++j) distances.push_back(resolution * std::expm1(j * tables.step));
 
   for (int i = 0; i < rows; ++i) {

@@ -136,6 +136,7 @@ std::vector<double> SphereKernel::evaluate_within(const std::vector<double>& dis
 
   const BodyMedium smaller{medium_.sigma_a * shrink, medium_.sigma_s * shrink, medium_.g};
   std::vector<double> in_smaller;
+  in_smaller.reserve(distances.size());
   for (double distance : distances) in_smaller.push_back(std::min(2.0, distance / shrink));
   const std::vector<double> curved = series_kernel(smaller, surface_, in_smaller, mu);
   std::vector<double> values;
