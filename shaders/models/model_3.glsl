@@ -139,7 +139,8 @@ vec3 multiple_scattering(int light, vec3 position, vec3 normal, float near_lobe,
   vec3 sum = vec3(0.0);
   for (int i = 0; i < count; ++i) {
     vec2 random = low_discrepancy(first + uint(i), offset);
-    float depth = depth_here - log1p(-random.x * within);
+    // The driver's log errs near 1, where it only moves a sample by a thousandth of its small distance.
+    float depth = depth_here - log(1.0 - random.x * within);
     vec2 drawn = at_nodes(kernel_inverse, vec2(sqrt(min(depth / sampling.largest_depth, 1.0)), row_here)).xy;
     float ring = sqrt(max(drawn.x * drawn.x - height * height, 0.0));
     float azimuth = 2.0 * PI * random.y;
@@ -180,16 +181,18 @@ vec3 single_scattering(int light, vec3 position, vec3 normal, vec3 to_viewer, fl
   float mu_i = normal.z;
   vec3 rate = mu_i > 0.0 ? body.sigma_t * (1.0 + mu_o_refracted / max(refracted_cosine(mu_i, body.eta), 0.05)) : vec3(0.0);
 
+  // What each channel's exponential leaves of the way, over the way itself.
+  vec3 thickness = rate * longest;
+  vec3 mean_way = longest * vec3(mean_attenuation(thickness.r), mean_attenuation(thickness.g), mean_attenuation(thickness.b));
+
   vec3 sum = vec3(0.0);
   for (int i = 0; i < count; ++i) {
     vec2 random = low_discrepancy(first + uint(i), offset);
     // One channel's distribution at a time, the mean of all three as the density.
-    float chosen = random.y < 1.0 / 3.0 ? rate.r : random.y < 2.0 / 3.0 ? rate.g : rate.b;
-    float kept = -expm1(-chosen * longest);
-    float t = chosen * longest < 1e-3 ? random.x * longest : -log1p(-random.x * kept) / chosen;
-    vec3 densities;
-    for (int channel = 0; channel < 3; ++channel)
-      densities[channel] = exp(-rate[channel] * t) / (longest * mean_attenuation(rate[channel] * longest));
+    vec2 chosen = random.y < 1.0 / 3.0 ? vec2(rate.r, mean_way.r) : random.y < 2.0 / 3.0 ? vec2(rate.g, mean_way.g) : vec2(rate.b, mean_way.b);
+    float kept = chosen.x * chosen.y;
+    float t = kept < 1e-2 ? random.x * longest : -log(1.0 - random.x * kept) / chosen.x;
+    vec3 densities = exp(-rate * t) / mean_way;
     vec3 point = position + t * inwards;
     LightMapTexel entry = light_map_at(light, point.xy * body.radius);
     float above = entry.position.z / body.radius - point.z;
