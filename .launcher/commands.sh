@@ -127,12 +127,16 @@ run_build() {
 run_bench() {
   take_blender_option "$@"
   eval "set -- $remaining"
-  [ "${1:-frame}" = frame ] || fail "$exit_usage" "There is no benchmark '$1'; there is frame."
+  benchmark=${1:-frame}
+  case $benchmark in
+    frame | accuracy) ;;
+    *) fail "$exit_usage" "There is no benchmark '$benchmark'; there are frame and accuracy." ;;
+  esac
   [ $# -eq 0 ] || shift
   ensure_blender
   ensure_lists report
   ensure_product product
-  exec "$python" "$source_folder/tests/bench/frame.py" "$build" "$@"
+  exec "$python" "$source_folder/tests/bench/$benchmark.py" "$build" "$@"
 }
 
 run_package() {

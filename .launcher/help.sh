@@ -136,10 +136,16 @@ help_bench() {
 Measures. Times are given as ratios within one run, so that they mean the same on another machine.
 
   ./mesograin bench [frame] [--frames N] [--json FILE]
+  ./mesograin bench accuracy [--models M ...] [--taps N ...] [--out FOLDER]
 
   frame         what each model costs relative to lambert: shade pass alone, 400x400, sphere, two lights
   --frames N    the median is over so many frames (default: 100)
   --json FILE   also writes the result there
+
+  accuracy      how far each model's sphere is from photon Monte Carlo: ten materials, three indices, five radii; about ten minutes
+  --models M    only these (default: model_1 model_2 model_3)
+  --taps N      model 3's samples per pixel (default: 16 64)
+  --out FOLDER  where accuracy.json and accuracy.csv go (default: accuracy)
 TEXT
 }
 

@@ -2,9 +2,10 @@
 
     accuracy.py BUILD_FOLDER [--models M ...] [--taps N ...] [--out FOLDER]
 
-Exitance is what is compared: radiance is rendered from directions all around the sphere and summed over them, so no exit lobe is assumed.
-relative_l1 is sum|model - truth|/sum truth over bins of cos(normal, light), total is sum model/sum truth, dark_ratio the same for cosines below
--1/2, noise_floor the truth's own standard error as a relative_l1. Truth: scattering of every order from one up (tests/data/referee).
+Exitance is what is compared: radiance is rendered from directions all around the sphere and summed over them, so no
+exit lobe is assumed. relative_l1 is sum|model - truth|/sum truth over bins of cos(normal, light), total is
+sum model/sum truth, dark_ratio the same for cosines below -1/2, noise_floor the truth's own standard error as a
+relative_l1. Truth: scattering of every order from one up (tests/data/referee).
 Writes accuracy.json and accuracy.csv and prints the means.
 """
 import argparse
@@ -51,8 +52,9 @@ class Cameras:
             rotation = numpy.eye(4)
             rotation[:3, :3] = [[1.0, 0.0, 0.0], [0.0, sine, -node], [0.0, node, sine]]
             cosine = sine * y + node * z  # of normal and light
-            # The mean over all directions is half the sum over the nodes; pixels count their area times 4 pi of directions.
-            self.views.append((native.Camera(rotation, clip), inside, cosine, 0.5 * weight * 4.0 * numpy.pi * (2.0 / SIZE) ** 2))
+            # The mean over all directions is half the sum over the nodes; a pixel counts its area, 4 pi times.
+            share = 0.5 * weight * 4.0 * numpy.pi * (2.0 / SIZE) ** 2
+            self.views.append((native.Camera(rotation, clip), inside, cosine, share))
 
     def exitance(self, view, samples, bins):
         """(bins, 3) flux per area, per unit irradiance."""
@@ -94,17 +96,19 @@ def run(native, models, taps):
             for model in models:
                 for count in (taps if model == "model_3" else (0,)):
                     # sigma_t is the radius in mean free paths: every channel has its own albedo at the same radius.
-                    parameters = {"sigma_s": tuple(albedo * case["radius"]), "sigma_a": tuple((1.0 - albedo) * case["radius"]),
+                    parameters = {"sigma_s": tuple(albedo * case["radius"]),
+                                  "sigma_a": tuple((1.0 - albedo) * case["radius"]),
                                   "eta": case["eta"], "model": model,
                                   "boundary": "index_matched" if case["eta"] == 1.0 else "dielectric"}
-                    view.set_scene(native.Scene(instances=[native.Instance(mesh, native.Material(**parameters), numpy.eye(4))],
-                                                lights=[light]))
+                    instance = native.Instance(mesh, native.Material(**parameters), numpy.eye(4))
+                    view.set_scene(native.Scene(instances=[instance], lights=[light]))
                     if count:
                         view.set_taps(count)
                     exitance = cameras.exitance(view, 1 if count else 4, bins)
                     milliseconds = {entry["pass"]: entry["milliseconds"] for entry in view.timings()}["shade"]
-                    rows.append({"material": material["name"], "eta": case["eta"], "radius": case["radius"], "model": model,
-                                 "taps": count, **compare(exitance, truth, noise, cosines), "shade_ms": milliseconds})
+                    rows.append({"material": material["name"], "eta": case["eta"], "radius": case["radius"],
+                                 "model": model, "taps": count, "shade_ms": milliseconds,
+                                 **compare(exitance, truth, noise, cosines)})
         print(f"{number + 1} of {len(cases)} spheres", file=sys.stderr, flush=True)
     return rows
 
