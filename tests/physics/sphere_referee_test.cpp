@@ -12,6 +12,7 @@ namespace {
 
 std::vector<double> bin_cosines(int bins) {
   std::vector<double> cosines;
+  cosines.reserve(static_cast<std::size_t>(bins));
   for (int i = 0; i < bins; ++i) cosines.push_back((2.0 * i + 1.0) / bins - 1.0);
   return cosines;
 }
@@ -62,8 +63,7 @@ TEST(SphereExitance, IsThatOfThePhotonsThatWereTraced) {
       ++dark_sides;
     }
     EXPECT_LT(mean, 0.05) << eta << ' ' << radius;
-    RecordProperty(("mean_l1_eta" + std::to_string(eta) + "_radius" + std::to_string(radius)).c_str(),
-                   std::to_string(mean));
+    RecordProperty("mean_l1_eta" + std::to_string(eta) + "_radius" + std::to_string(radius), std::to_string(mean));
   }
   EXPECT_GT(dark_sides, 100);
 }

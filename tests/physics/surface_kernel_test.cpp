@@ -16,6 +16,7 @@ BodySurface surface_of(double eta) { return {eta, false, diffusion_boundary(eta)
 
 std::vector<double> geometric(double first, double last, int count) {
   std::vector<double> values;
+  values.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) values.push_back(first * std::pow(last / first, i / (count - 1.0)));
   return values;
 }
