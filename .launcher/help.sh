@@ -37,7 +37,7 @@ Renders every model and the Cycles reference that means the same, and writes pic
   ./mesograin compare [SCENE.blend] [option ...]
 
   SCENE.blend               default: blend_files/sphere.blend
-  --models MODEL ...        models to compare: lambert, conductor, model_1, model_2 (default: the first three)
+  --models MODEL ...        models to compare: lambert, conductor, model_1, model_2, model_3 (default: all)
   --references KIND ...     kinds of reference: diffuse, glossy, volume_index_matched, subsurface; each model is compared
                             with those that answer it (default: diffuse for lambert, glossy for conductor,
                             volume_index_matched for the others)

@@ -95,6 +95,17 @@ def flatten(_):
     bpy.data.objects["Sphere"].data.polygons[0].use_smooth = False
 
 
+def sharpen(_):
+    bpy.data.objects["Sphere"].data.edges[0].use_edge_sharp = True
+
+
+def bend_normals(_):
+    mesh = bpy.data.objects["Sphere"].data
+    if hasattr(mesh, "use_auto_smooth"):
+        mesh.use_auto_smooth = True
+    mesh.normals_split_custom_set_from_vertices([(0.0, 0.6, 0.8)] * len(mesh.vertices))
+
+
 def turn_sun(_):
     bpy.data.objects["Sun"].rotation_euler.x += 1e-3
 
@@ -128,7 +139,22 @@ def densify(_):
 
 
 @pytest.mark.parametrize(
-    "change", [move_camera, move_vertex, flatten, turn_sun, brighten, colour, widen, zoom, squeeze, scatter, densify]
+    "change",
+    [
+        move_camera,
+        move_vertex,
+        flatten,
+        sharpen,
+        bend_normals,
+        turn_sun,
+        brighten,
+        colour,
+        widen,
+        zoom,
+        squeeze,
+        scatter,
+        densify,
+    ],
 )
 def test_not_found_after_a_change(counted, tmp_path, change):
     material = make_sphere(FRONT, segments=16, rings=8)
@@ -142,6 +168,23 @@ def test_not_found_after_a_change(counted, tmp_path, change):
     change(material)
     assert not render().cached
     assert len(counted) == 2
+
+
+def test_bent_normals_are_found_again(counted, tmp_path):
+    make_sphere(FRONT)
+    bend_normals(None)
+    for _ in range(6):
+        reference.render(depsgraph(), "diffuse", (8, 8), samples=2, seeds=(1,), cache=Cache(tmp_path))
+    assert len(counted) == 1
+
+
+def test_one_reference_serves_every_model_that_it_answers(counted, tmp_path):
+    """Cycles sees no model; and a fine mesh, whose normals Blender sums in threads, is still the same mesh."""
+    material = make_sphere(FRONT, segments=256, rings=128)
+    for model in ("model_1", "model_2", "model_3", "model_1", "model_2", "model_3"):
+        material.mesograin.model = model
+        reference.render(depsgraph(), "volume_index_matched", (8, 8), samples=2, cache=Cache(tmp_path))
+    assert sorted(counted) == [0, 1, 2]
 
 
 def test_not_found_with_other_settings(counted, tmp_path):

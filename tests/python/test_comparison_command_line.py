@@ -12,7 +12,7 @@ progress = room("comparison.progress")
 
 def test_defaults():
     chosen = arguments.parse([])
-    assert list(chosen.models) == ["lambert", "conductor", "model_1", "model_2"]
+    assert list(chosen.models) == ["lambert", "conductor", "model_1", "model_2", "model_3"]
     assert (chosen.references, chosen.size, chosen.settings, chosen.out.name) == (None, None, {}, "comparison")
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 MODELS = ("lambert", "conductor", "model_1", "model_2", "model_3")
 REFERENCES = ("diffuse", "glossy", "volume_index_matched", "subsurface")
-DEFAULT_MODELS = ("lambert", "conductor", "model_1", "model_2")
+DEFAULT_MODELS = ("lambert", "conductor", "model_1", "model_2", "model_3")
 SETTABLE = {
     "reflectance": 3,
     "sigma_a": 3,

@@ -9,7 +9,7 @@ import numpy
 
 from .stage import CAMERA_PROPERTIES
 
-FORMAT = 1
+FORMAT = 2
 """Raised whenever a stored reference may no longer be used."""
 
 
@@ -44,7 +44,11 @@ def describe(scene, recipes, settings):
 
 
 def _mesh(mesh):
-    """Digest of all of a mesh that Cycles sees."""
+    """Digest of all of a mesh that Cycles sees.
+
+    Of the normals it holds what they are computed from: Blender sums them in threads, so that their last digit
+    changes from one time to the next.
+    """
     digest = hashlib.sha256()
 
     def add(collection, attribute, width, dtype):
@@ -55,13 +59,26 @@ def _mesh(mesh):
 
     add(mesh.vertices, "co", 3, numpy.float32)
     add(mesh.loops, "vertex_index", 1, numpy.int32)
+    add(mesh.loops, "edge_index", 1, numpy.int32)
     add(mesh.polygons, "loop_start", 1, numpy.int32)
     add(mesh.polygons, "loop_total", 1, numpy.int32)
     add(mesh.polygons, "material_index", 1, numpy.int32)
     add(mesh.polygons, "use_smooth", 1, bool)
+    add(mesh.edges, "use_edge_sharp", 1, bool)
+    if hasattr(mesh, "use_auto_smooth"):
+        digest.update(f"auto smooth:{mesh.use_auto_smooth}:{mesh.auto_smooth_angle}".encode())
+    if mesh.has_custom_normals:
+        digest.update(f"custom normals:{_custom_normals(mesh)}".encode())
+    return digest.hexdigest()
+
+
+def _custom_normals(mesh):
+    """Three sums that change with any normal by more than their last digit does."""
+    normals = numpy.empty((len(mesh.loops), 3), numpy.float32)
     if hasattr(mesh, "corner_normals"):
-        add(mesh.corner_normals, "vector", 3, numpy.float32)
+        mesh.corner_normals.foreach_get("vector", normals.ravel())
     else:
         mesh.calc_normals_split()
-        add(mesh.loops, "normal", 3, numpy.float32)
-    return digest.hexdigest()
+        mesh.loops.foreach_get("normal", normals.ravel())
+    weights = numpy.cos(numpy.arange(len(normals), dtype=numpy.float64))
+    return [round(float(total), 3) for total in weights @ normals.astype(numpy.float64)]
