@@ -11,7 +11,7 @@ import sys
 import tempfile
 import zipfile
 
-SUFFIXES = {".py", ".so", ".toml", ".json", ".html", ".css", ".js", ".svg", ".png", ".glsl"}
+SUFFIXES = {".py", ".so", ".toml", ".json", ".html", ".j2", ".css", ".js", ".svg", ".png", ".glsl"}
 
 
 def version_of(source):

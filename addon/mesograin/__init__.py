@@ -14,7 +14,18 @@ __version__ = ".".join(str(number) for number in bl_info["version"])
 # In the order of their imports: each room knows only those before it.
 ROOMS = ("compat", "native_module", "properties", "presets", "status", "meshes", "export", "viewport", "engine",
          "panels", "preferences")
+# What scripts use, from the room `scripting`.
+SCRIPTED = ("compare", "Comparison", "ComparisonError")
 _rooms = []
+
+
+def __getattr__(name):
+    # Not at import, as below.
+    if name not in SCRIPTED:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    import importlib
+
+    return getattr(importlib.import_module(f"{__package__}.scripting"), name)
 
 
 def _load_rooms():

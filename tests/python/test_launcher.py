@@ -107,7 +107,8 @@ def test_the_package_holds_what_blender_needs(tmp_path):
     archive = tmp_path / "folder" / "mesograin.zip"
     subprocess.run([sys.executable, str(SOURCE / ".launcher/package.py"), str(SOURCE), str(archive)], check=True)
     names = zipfile.ZipFile(archive).namelist()
-    assert {"mesograin/__init__.py", "mesograin/blender_manifest.toml", "mesograin/LICENSE"} <= set(names)
+    tracked = subprocess.run(["git", "ls-files", "."], cwd=SOURCE / "addon", capture_output=True, text=True, check=True)
+    assert {"mesograin/__init__.py", "mesograin/LICENSE", *tracked.stdout.split()} <= set(names)
     assert any(name.startswith("mesograin/mesograin_native.") and name.endswith(".so") for name in names)
     assert not [name for name in names if "__pycache__" in name or not name.startswith("mesograin/")]
     assert [path.name for path in archive.parent.iterdir()] == ["mesograin.zip"]

@@ -1,10 +1,7 @@
 # The comparison as a command: blender -b --factory-startup --python THIS -- [SCENE.blend] [OPTION ...]
 """Puts the add-on into a Blender without window, compares, writes the report; the exit code says how it went."""
 
-import os
 import shlex
-import shutil
-import subprocess
 import sys
 from pathlib import Path
 
@@ -127,17 +124,15 @@ def _print_table(results):
 
 
 def _write_report(folder):
-    """Has the system's Python write report.html; whether it did. The add-on itself needs no more than numpy."""
-    python = os.environ.get("MESOGRAIN_PYTHON") or shutil.which("python3", path="/usr/bin:/usr/local/bin") or "python3"
-    builder = [python, str(ADDON / "report" / "build.py"), str(folder)]
-    environment = {name: value for name, value in os.environ.items() if name not in ("PYTHONHOME", "PYTHONPATH")}
+    """Whether report.html was written; if not, the reason stands on standard error."""
+    from mesograin.comparison import report_page
+
     try:
-        done = subprocess.run(builder, env=environment, capture_output=True, text=True)
-    except OSError as error:
-        sys.stderr.write(f"compare: no report: {python} cannot be run ({error.strerror}); set MESOGRAIN_PYTHON.\n")
+        report_page.write(folder)
+    except report_page.ReportError as error:
+        sys.stderr.write(f"compare: no report: {error}\n")
         return False
-    sys.stderr.write(done.stderr)
-    return done.returncode == 0
+    return True
 
 
 if __name__ == "__main__":

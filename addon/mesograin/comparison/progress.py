@@ -1,15 +1,28 @@
-# One line that says what is under way and how long the rest will take.
-"""See `Progress`."""
+# What is under way and how long the rest will take, as one line or as calls.
+"""See `Progress` and `Calls`."""
 
 import sys
 import threading
 import time
+from dataclasses import dataclass
 
 
 def duration(seconds):
     """'41 s', '3 min 05 s'."""
     seconds = max(0, round(seconds))
     return f"{seconds} s" if seconds < 60 else f"{seconds // 60} min {seconds % 60:02d} s"
+
+
+@dataclass(frozen=True)
+class Step:
+    """The step `number` of `count` is under way. fraction: of this step, 0 to 1. seconds_left: the guess for all
+    steps that are not done."""
+
+    number: int
+    count: int
+    what: str
+    fraction: float
+    seconds_left: float
 
 
 class Progress:
@@ -100,9 +113,11 @@ class Progress:
             return
         self._shown = now
         what = self._steps[self._at][0]
+        self._draw(Step(self._at + 1, len(self._steps), what, self._fraction, self.seconds_left()))
+
+    def _draw(self, step):
         line = (
-            f"[{self._at + 1}/{len(self._steps)}] {what} {self._fraction:4.0%}, about"
-            f" {duration(self.seconds_left())} left"
+            f"[{step.number}/{step.count}] {step.what} {step.fraction:4.0%}, about {duration(step.seconds_left)} left"
         )
         if self._in_place:
             self._stream.write(f"\r\033[K{line}")
@@ -114,3 +129,23 @@ class Progress:
         if self._in_place:
             self._stream.write("\r\033[K")
             self._stream.flush()
+
+
+class Calls(Progress):
+    """Tells a program instead of a person: calls `on_step(Step)` at most every `interval` seconds, and
+    `on_sentence(str)`; from any thread."""
+
+    def __init__(self, on_step, on_sentence, interval=0.2):
+        super().__init__()
+        self._interval = interval
+        self._on_step = on_step
+        self._on_sentence = on_sentence
+
+    def say(self, sentence):
+        self._on_sentence(sentence)
+
+    def close(self):
+        """There is no line to be left empty."""
+
+    def _draw(self, step):
+        self._on_step(step)

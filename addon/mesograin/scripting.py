@@ -1,0 +1,219 @@
+# The comparison as one Python function, for scripts and for Blender's console: mesograin.compare(...).
+"""See `compare`."""
+
+import dataclasses
+from pathlib import Path
+
+import bpy
+
+from . import native_module
+from .comparison import arguments, progress, report_page, results, run, verdict
+from .cycles import kinds
+from .cycles.cache import Cache
+
+PICTURES = ("model", "reference", "error")
+
+
+class ComparisonError(Exception):
+    """Nothing could be compared; one sentence that says what was needed, what came, what to do."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Case:
+    """One model against one kind of reference.
+
+    name: 'MODEL.REFERENCE'. error: the sentence of a case that failed, else ''. folder: of its comparison.
+    entry: the case in results.json with every number (docs/comparing.md), of which the properties below are the usual.
+    """
+
+    name: str
+    model: str
+    reference: str
+    error: str
+    folder: Path
+    entry: dict
+
+    @property
+    def relative_l1(self):
+        """sum |i - r| / sum r over the mask, a fraction without unit; None where the reference is black or it failed"""
+        return self.entry.get("metrics", {}).get("relative_l1")
+
+    @property
+    def noise_floor(self):
+        """What a perfect picture would score in `relative_l1` against this reference, for its noise."""
+        return self.entry.get("noise_floor", {}).get("relative_l1")
+
+    @property
+    def frame_ms(self):
+        """Milliseconds of one frame of ours; None if the case failed."""
+        return self.entry.get("frame_ms")
+
+    @property
+    def reference_seconds(self):
+        """Seconds that Cycles took when it rendered the reference; None if the case failed."""
+        return self.entry.get("reference_seconds")
+
+    @property
+    def verdict(self):
+        """A few words, such as '2.31% off'."""
+        return verdict.verdict(self.entry)
+
+    def path(self, picture):
+        """The EXR file of 'model', 'reference' or 'error'. Raises ComparisonError if the case failed."""
+        if picture not in PICTURES:
+            raise ComparisonError(f"A case has the pictures {', '.join(PICTURES)}; '{picture}' came.")
+        if self.error:
+            raise ComparisonError(f"The case {self.name} has no pictures, because it failed: {self.error}")
+        return self.folder / self.entry["files"][picture]
+
+    def image(self, picture):
+        """The picture as float32, linear, row 0 at the top. 'model' and 'reference': (h, w, 4) radiance, premultiplied,
+        alpha is coverage; 'error': (h, w, 3) model less reference. Raises ComparisonError if it cannot be read."""
+        native = native_module.get()
+        path = self.path(picture)
+        try:
+            return native.read_exr(path)[0]
+        except native.Error as error:
+            raise ComparisonError(str(error)) from error
+
+
+@dataclasses.dataclass(frozen=True)
+class Comparison:
+    """cases: in the order asked for. folder: of results.json, results.csv and the pictures. report: report.html, or
+    None without one. results: what results.json holds. warnings: sentences about what the scene has and we ignore."""
+
+    cases: tuple
+    folder: Path
+    report: Path
+    results: dict
+    warnings: tuple
+
+    @property
+    def failed(self):
+        """The cases that failed."""
+        return tuple(case for case in self.cases if case.error)
+
+
+def compare(models=arguments.DEFAULT_MODELS, references=None, out="//comparison", size=None, samples=64,
+            reference_samples=None, settings=None, frames=9, cache=None, cache_limit=None, report=True,
+            on_progress=None):
+    """Renders the current scene with every model and with the Cycles materials that mean the same, and measures.
+
+    models: of 'lambert', 'conductor', 'model_1', 'model_2', 'model_3'; every material is rendered with each.
+    references: of 'diffuse', 'glossy', 'volume_index_matched', 'subsurface'; None for each model's usual one.
+    out: folder for all files, made if needed; '//' is the folder of the .blend file.
+    size: (width, height) in pixels, None for the scene's. samples: of each pixel, on our side.
+    reference_samples: Cycles samples of each pixel for each of two seeds, None for 64 (surfaces) or 128 (volumes).
+    settings: {parameter: value} for every material on both sides: reflectance, sigma_a, sigma_s (1/mm; one number or
+    three), g, eta, roughness (GGX alpha), scale, profile. frames: how many are timed for `frame_ms`.
+    cache: folder of rendered references, None for the usual one. cache_limit: bytes that it may take.
+    report: whether to write report.html. on_progress: called with a `progress.Step` (what, number, count, fraction,
+    seconds_left), a few times a second, from any thread.
+
+    Returns a `Comparison`. A case that fails is in it with its sentence, and the others go on. The scene, its materials
+    and the undo history stay as they are. Raises ComparisonError if nothing can be compared.
+    """
+    warnings = []
+    line = progress.Calls(on_progress or (lambda step: None), warnings.append)
+    try:
+        native = native_module.get()
+        request = run.Request(
+            models=_names("models", models, arguments.MODELS),
+            references=None if references is None else _names("references", references, tuple(kinds.KINDS)),
+            out=_folder(out),
+            size=_size(size),
+            samples=_count("samples", samples),
+            reference_samples=reference_samples and _count("reference_samples", reference_samples),
+            settings=_settings(settings or {}),
+            frames=_count("frames", frames),
+            cache=Cache(cache, cache_limit),
+            command=_call(models=models, references=references, out=str(out), size=size, samples=samples,
+                          reference_samples=reference_samples, settings=settings))
+        if not run.cases(request.models, request.references):
+            raise ComparisonError(f"None of the references {', '.join(request.references)} answers "
+                                  f"{', '.join(request.models)}: choose others, or None for each model's usual one.")
+        _need_cycles()
+        found = run.compare(request, line)
+    except (native_module.Unavailable, results.OutputError, ValueError) as error:
+        raise ComparisonError(str(error)) from error
+    except native.Error as error:
+        raise ComparisonError(str(error)) from error
+    page = _write_report(request.out, warnings) if report else None
+    cases = tuple(Case(entry["name"], entry["model"], entry["reference"], entry.get("error", ""), request.out, entry)
+                  for entry in found["cases"])
+    return Comparison(cases, request.out, page, found, tuple(warnings))
+
+
+def _write_report(folder, warnings):
+    try:
+        return report_page.write(folder)
+    except report_page.ReportError as error:
+        warnings.append(f"There is no report: {error}")
+        return None
+
+
+def _need_cycles():
+    import addon_utils
+
+    if not hasattr(bpy.types.Scene, "cycles") and addon_utils.enable("cycles") is None:
+        raise ComparisonError("Cycles is needed for the references, but this Blender has none: enable its add-on.")
+
+
+def _names(what, names, allowed):
+    names = (names,) if isinstance(names, str) else tuple(names)
+    unknown = [name for name in names if name not in allowed]
+    if unknown or not names:
+        came = repr(unknown[0]) if unknown else "none"
+        raise ComparisonError(f"{what} takes names of {', '.join(allowed)}; {came} came.")
+    return names
+
+
+def _folder(out):
+    out = str(out)
+    if out.startswith("//") and not bpy.data.filepath:
+        raise ComparisonError(f"The file is not saved, so there is no folder '{out}' beside it: save it, or pass out.")
+    return Path(bpy.path.abspath(out)).absolute()
+
+
+def _size(size):
+    if size is None:
+        return None
+    try:
+        width, height = size
+        fits = all(int(side) == side and 8 <= side <= 16384 for side in (width, height))
+    except (TypeError, ValueError):
+        fits = False
+    if not fits:
+        raise ComparisonError(f"size takes (width, height) with 8 to 16384 pixels a side; {size!r} came.")
+    return int(width), int(height)
+
+
+def _count(what, number):
+    if isinstance(number, bool) or not isinstance(number, int) or not 1 <= number <= 1 << 20:
+        raise ComparisonError(f"{what} takes a whole number from 1 to {1 << 20}; {number!r} came.")
+    return number
+
+
+def _settings(settings):
+    return {name: _setting(name, value) for name, value in dict(settings).items()}
+
+
+def _setting(name, value):
+    if name not in arguments.SETTABLE:
+        raise ComparisonError(f"settings takes {', '.join(arguments.SETTABLE)}; {name!r} came.")
+    count = arguments.SETTABLE[name]
+    if count == 0:
+        return str(value)
+    try:
+        numbers = (float(value),) * count if not hasattr(value, "__len__") else tuple(float(part) for part in value)
+    except (TypeError, ValueError):
+        numbers = ()
+    if len(numbers) != count:
+        raise ComparisonError(f"{name} takes {'one number or three' if count == 3 else 'one number'}; {value!r} came.")
+    return numbers if count == 3 else numbers[0]
+
+
+def _call(**arguments_given):
+    """The line that repeats a comparison, for provenance."""
+    given = ", ".join(f"{name}={value!r}" for name, value in arguments_given.items() if value is not None)
+    return f"mesograin.compare({given})"
