@@ -69,8 +69,8 @@ def write_case(folder, name, model, reference, **changes):
     }
 
 
-@pytest.fixture
-def folder(tmp_path):
+def write_folder(tmp_path):
+    """A folder with the results of three cases, one of them failed."""
     reference = disc()
     cases = [
         write_case(tmp_path, "lambert.diffuse", 1.003 * reference, reference),
@@ -81,6 +81,7 @@ def folder(tmp_path):
             "reference_title": "Cycles volume",
             "status": "failed",
             "material": {},
+            "reference": "volume",
             "error": "Out of <memory>.",
         },
     ]
@@ -107,29 +108,52 @@ def folder(tmp_path):
     return tmp_path
 
 
+@pytest.fixture(scope="module")
+def built(tmp_path_factory):
+    """The folder after its report was made."""
+    folder = write_folder(tmp_path_factory.mktemp("report"))
+    done = build(folder)
+    assert (done.returncode, done.stderr) == (0, "")
+    return folder
+
+
 def build(folder):
     environment = {"PATH": "/usr/bin:/bin", "MESOGRAIN_NATIVE_DIR": str(native.__file__).rsplit("/", 1)[0]}
     return subprocess.run([sys.executable, str(BUILDER), str(folder)], env=environment, capture_output=True, text=True)
 
 
-def test_page_needs_nothing_else(folder):
-    done = build(folder)
-    assert (done.returncode, done.stderr) == (0, "")
-    page = (folder / "report.html").read_text()
+def test_page_needs_nothing_else(built):
+    page = (built / "report.html").read_text()
     sources = re.findall(r'(?:src|href)="([^"]*)"', page)
-    assert sources and all(
-        re.match(r"data:image/png;base64,|#[\w-]+$|[\w.]+/\w+\.(exr|png)$", source) for source in sources
-    )
+    known = re.compile(r"data:image/png;base64,|#[\w-]+$|[\w.]+/[\w.]+\.(exr|png|svg)$|results\.(json|csv)$")
+    assert sources and [source[:80] for source in sources if not known.match(source)] == []
     assert not re.search(r"@import|url\((?!#)|<link", page)
     for source in sources:
-        if source.endswith((".exr", ".png")):
-            assert (folder / source).is_file()
-    assert not list(folder.glob("*.part"))
+        if source.endswith((".exr", ".png", ".svg")):
+            assert (built / source).is_file()
+    assert not list(built.glob("*.part")) and not list((built / "plots").glob(".*"))
 
 
-def test_page_says_what_happened(folder):
-    build(folder)
-    page = (folder / "report.html").read_text()
+def test_plots_are_files_too(built):
+    for name in ("overview", "cost", "lambert.diffuse.profile", "model_1.volume.histogram"):
+        svg = (built / "plots" / f"{name}.svg").read_text()
+        assert svg.rstrip().endswith("</svg>") and "var(--" not in svg
+        assert (built / "plots" / f"{name}.png").read_bytes()[:4] == b"\x89PNG"
+    assert "radiance, W m⁻² sr⁻¹" in (built / "plots/lambert.diffuse.profile.svg").read_text()
+    page = (built / "report.html").read_text()
+    assert "#010203" not in page, "a plot in the page has the page's colours"
+
+
+def test_every_number_has_its_definition_one_click_away(built):
+    page = (built / "report.html").read_text()
+    asked = set(re.findall(r'popovertarget="([^"]+)"', page))
+    assert "define-metrics.relative_l1" in asked and "define-noise_floor.relative_l1" in asked
+    for name in asked:
+        assert re.search(rf'popover id="{re.escape(name)}"><h3>[^<]+</h3><p>', page), name
+
+
+def test_page_says_what_happened(built):
+    page = (built / "report.html").read_text()
     text = html.unescape(re.sub(r"<[^>]*>", " ", page))
     assert "./mesograin compare disc.blend --set 'g=0.1'" in text
     assert "Out of <memory>." in text and "Cycles <cannot> do this." in text and "Sand <b>" in text
@@ -137,15 +161,16 @@ def test_page_says_what_happened(folder):
     assert page.count('<section class="case"') == 2
 
 
-def test_live_pictures_are_the_exr_files(folder):
-    build(folder)
-    page = (folder / "report.html").read_text()
+def test_live_pictures_are_the_exr_files(built):
+    page = (built / "report.html").read_text()
     live = [json.loads(text) for text in re.findall(r'class="live">(.*?)</script>', page)]
     assert len(live) == 2 and live[1]["stops"] == -1.5
-    expected = native.read_exr(folder / "model_1.volume" / "model.exr")[0][..., :3]
-    np.testing.assert_array_equal(unpack(live[1]["model"], 48, 48), expected.astype(np.float16))
-    mask = unpack(live[1]["mask"], 48, 48)[..., 0]
+    expected = native.read_exr(built / "model_1.volume" / "model.exr")[0][..., :3]
+    texts = dict(re.findall(r'<script type="text/plain" id="(\w+)">(.*?)</script>', page))
+    np.testing.assert_array_equal(unpack(texts[live[1]["model"]], 48, 48), expected.astype(np.float16))
+    mask = unpack(texts[live[1]["mask"]], 48, 48)[..., 0]
     np.testing.assert_array_equal(mask, native.default_mask(disc()[..., 3]))
+    assert live[0]["reference"] == live[1]["reference"] and len(texts) == 4, "shared pictures are there once"
 
 
 def unpack(text, width, height):
@@ -160,13 +185,34 @@ def test_payload_keeps_extremes():
     np.testing.assert_array_equal(unpack(payload.pack(pixels), 1, 1), [[[65504.0, -65504.0, np.nan, np.float16(1e-7)]]])
 
 
+def grey(*values):
+    """(1, n, 3), the same in every channel."""
+    return np.repeat(np.array([values], float)[..., None], 3, axis=-1)
+
+
+def test_errors_of_opposite_sign_do_not_cancel_in_the_false_colours():
+    image, reference = np.array([[[1.5, 1.0, 0.5]]]), np.ones((1, 1, 3))
+    np.testing.assert_array_equal(
+        colours.false_colour(colours.relative_error(image, reference)), colours.false_colour(grey(1.0 / 1.01 / 3.0))
+    )
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
+def test_what_is_not_finite_has_a_colour_that_no_error_has(value):
+    image = np.full((1, 1, 3), value)
+    for paint, table in ((colours.false_colour, colours.SEQUENTIAL), (colours.signed_colour, colours.DIVERGING)):
+        shown = paint(colours.relative_error(image, np.ones((1, 1, 3))))[0, 0]
+        np.testing.assert_array_equal(shown, colours.NOT_FINITE)
+        assert np.abs(table - shown).sum(axis=-1).min() > 0.3
+
+
 def test_false_colours_are_fixed_and_logarithmic():
-    ends = colours.false_colour(np.array([[0.0, 1e-3, 1.0, 50.0, -1.0]]))[0]
+    ends = colours.false_colour(grey(0.0, 1e-3, 1.0, 50.0, -1.0))[0]
     np.testing.assert_array_equal(ends[0], colours.SEQUENTIAL[0])
     np.testing.assert_array_equal(ends[1], colours.SEQUENTIAL[0])
     for bright in ends[2:]:
         np.testing.assert_array_equal(bright, colours.SEQUENTIAL[-1])
-    middle = colours.false_colour(np.array([[10.0**-1.5]]))[0, 0]
+    middle = colours.false_colour(grey(10.0**-1.5))[0, 0]
     np.testing.assert_allclose(middle, colours.SEQUENTIAL[128], atol=0.02)
     luminance = colours.SEQUENTIAL @ [0.2126, 0.7152, 0.0722]
     assert (np.diff(luminance) > -1e-3).all()
@@ -192,7 +238,8 @@ def test_exposure_brings_the_highlights_to_white():
         (lambda folder: (folder / "lambert.diffuse" / "model_png.png").unlink(), "model_png.png cannot be read"),
     ],
 )
-def test_bad_results_get_one_sentence(folder, damage, sentence):
+def test_bad_results_get_one_sentence(tmp_path, damage, sentence):
+    folder = write_folder(tmp_path)
     damage(folder)
     done = build(folder)
     assert done.returncode == 1

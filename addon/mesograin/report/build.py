@@ -32,7 +32,7 @@ def main(words):
     out = chosen.out or chosen.folder / "report.html"
     try:
         results, cases = reading.read(chosen.folder)
-        html = page_builder.build(results, cases)
+        html = page_builder.build(results, cases, out.parent)
         partial = out.with_name(out.name + ".part")
         try:
             partial.write_text(html, encoding="utf-8")

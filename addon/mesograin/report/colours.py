@@ -37,6 +37,10 @@ _DIVERGING = (
 )
 
 
+NOT_FINITE = (0.0, 1.0, 0.6)
+"""The false colour of a pixel that holds a NaN or an Inf; no error has it."""
+
+
 def table(stops, size=256):
     """(size, 3) float table in [0, 1] through evenly spaced stops."""
     stops = numpy.asarray(stops, dtype=float) / 255.0
@@ -68,23 +72,29 @@ def exposure_for(reference, mask=None):
 
 
 def relative_error(image, reference, epsilon=0.01):
-    """Signed (i - r) / (r + epsilon), the mean of the channels: (h, w)."""
-    difference = image[..., :3].astype(numpy.float64) - reference[..., :3]
-    return (difference / (numpy.maximum(reference[..., :3], 0.0) + epsilon)).mean(axis=-1)
+    """Signed (i - r) / (r + epsilon) of each channel: (h, w, 3) float64."""
+    with numpy.errstate(invalid="ignore"):
+        difference = image[..., :3].astype(numpy.float64) - reference[..., :3]
+        return difference / (numpy.maximum(reference[..., :3], 0.0) + epsilon)
 
 
 def false_colour(relative):
-    """Colours of |relative error|, logarithmic over ERROR_RANGE: (h, w) to (h, w, 3)."""
+    """Colours of the channels' mean |relative error|, logarithmic over ERROR_RANGE: (h, w, 3) to (h, w, 3). The size
+    is taken before the mean, so that too red and too little blue do not cancel. NaN and Inf get NOT_FINITE."""
     low, high = numpy.log10(ERROR_RANGE)
-    size = numpy.abs(numpy.nan_to_num(relative, nan=ERROR_RANGE[1]))
-    at = (numpy.log10(numpy.maximum(size, 1e-30)) - low) / (high - low)
-    return _look_up(SEQUENTIAL, at)
+    size = numpy.abs(relative).mean(axis=-1)
+    return _look_up(SEQUENTIAL, (numpy.log10(numpy.maximum(size, 1e-30)) - low) / (high - low))
 
 
 def signed_colour(relative):
-    """Colours of a signed relative error, linear over +-SIGNED_RANGE: (h, w) to (h, w, 3)."""
-    return _look_up(DIVERGING, 0.5 + 0.5 * numpy.nan_to_num(relative) / SIGNED_RANGE)
+    """Colours of the channels' mean signed relative error, linear over +-SIGNED_RANGE: (h, w, 3) to (h, w, 3). NaN and
+    Inf get NOT_FINITE."""
+    with numpy.errstate(invalid="ignore"):
+        return _look_up(DIVERGING, 0.5 + 0.5 * relative.mean(axis=-1) / SIGNED_RANGE)
 
 
 def _look_up(colours, at):
-    return colours[numpy.clip(numpy.rint(at * (len(colours) - 1)), 0, len(colours) - 1).astype(int)]
+    finite = numpy.isfinite(at)
+    index = numpy.rint(numpy.where(finite, at, 0.0) * (len(colours) - 1))
+    found = colours[numpy.clip(index, 0, len(colours) - 1).astype(int)]
+    return numpy.where(finite[..., None], found, NOT_FINITE)

@@ -1,6 +1,7 @@
 # Puts results, pictures, plots, style and script into one HTML file that needs nothing else.
 """See `build`."""
 
+import hashlib
 import json
 from pathlib import Path
 
@@ -9,8 +10,12 @@ import numpy
 from markupsafe import Markup
 
 from . import colours, payload, plots
+from .wording import form, parameters, verdict
 
 PAGE = Path(__file__).resolve().parent / "page"
+PLOTS = "plots"
+"""The folder beside the page that holds its plots as files."""
+
 LIVE_BUDGET = 48 * 2**20
 """Characters of packed pictures in one page; cases beyond it are shown as still pictures."""
 
@@ -28,8 +33,35 @@ LEADING = (
 )
 
 
-def build(results, cases):
-    """The page's text. cases: [reading.CasePictures], in the order of results["cases"]."""
+def build(results, cases, folder):
+    """The page's text; its plots are also written into FOLDER/plots, as SVG and PNG. Raises OSError.
+
+    cases: [reading.CasePictures], in the order of results["cases"]."""
+    pictures = _Pictures(LIVE_BUDGET)
+    views = [_view(of, results["definitions"], pictures, Path(folder) / PLOTS) for of in cases]
+    done = [of for of in cases if of.case["status"] == "done"]
+    rows = [(of.case, of.model, of.reference, of.mask) for of in done]
+    return render(
+        "report.html.j2",
+        results=results,
+        cases=views,
+        leading=[
+            {"key": key, "title": title, "form": how, "definition": _definition(results["definitions"], key)}
+            for key, title, how in LEADING
+        ],
+        cost=_plot(plots.cost([of.case for of in done]), Path(folder) / PLOTS, "cost"),
+        overview=_files(plots.overview(rows), Path(folder) / PLOTS, "overview"),
+        pictures=pictures.texts,
+        script=Markup((PAGE / "report.js").read_text(encoding="utf-8")),
+        colour_tables=Markup(_colour_tables()),
+        sequential=_gradient(colours.SEQUENTIAL),
+        diverging=_gradient(colours.DIVERGING),
+        not_finite="rgb({:.0f} {:.0f} {:.0f})".format(*(255.0 * part for part in colours.NOT_FINITE)),
+    )
+
+
+def render(template, **values):
+    """The text of a page: a template of the folder `page`, in the house's style."""
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(PAGE),
         autoescape=True,
@@ -38,58 +70,71 @@ def build(results, cases):
         undefined=jinja2.StrictUndefined,
     )
     environment.filters["form"] = form
-    views, spent = [], 0
-    for pictures in cases:
-        view = _view(pictures, results["definitions"], LIVE_BUDGET - spent)
-        spent += view["size"]
-        views.append(view)
-    done = [pictures.case for pictures in cases if pictures.case["status"] == "done"]
-    return environment.get_template("report.html.j2").render(
-        results=results,
-        cases=views,
-        leading=[
-            {"key": key, "title": title, "form": how, "definition": _definition(results["definitions"], key)}
-            for key, title, how in LEADING
-        ],
-        trade=Markup(plots.trade(done)) if done else "",
-        style=Markup((PAGE / "report.css").read_text(encoding="utf-8")),
-        script=Markup((PAGE / "report.js").read_text(encoding="utf-8")),
-        colour_tables=Markup(_colour_tables()),
-        sequential=_gradient(colours.SEQUENTIAL),
-        diverging=_gradient(colours.DIVERGING),
-        error_range=colours.ERROR_RANGE,
-        signed_range=colours.SIGNED_RANGE,
-    )
-
-
-def _view(pictures, definitions, budget):
-    """What the template needs of one case."""
-    case = pictures.case
-    view = {
-        "case": case,
-        "done": case["status"] == "done",
-        "size": 0,
-        "live": None,
-        "numbers": [],
-        "others": [],
-        "parameters": _parameters(case["material"]),
+    styles = {
+        "style": Markup((PAGE / "report.css").read_text(encoding="utf-8")),
+        "common_script": Markup((PAGE / "common.js").read_text(encoding="utf-8")),
     }
+    return environment.get_template(template).render(**styles, **values)
+
+
+def _plot(draw, folder, name):
+    """A plot in the page and beside it: {"svg": Markup, "files": [path from the page]}; None if there is nothing."""
+    svg = plots.page(draw)
+    if not svg:
+        return None
+    return {"svg": Markup(svg), "files": _files(draw, folder, name)}
+
+
+def _files(draw, folder, name):
+    """Saves a plot; returns its files as the page links them."""
+    return [f"{folder.name}/{file}" for file in plots.save(draw, folder, name)]
+
+
+class _Pictures:
+    """Linear pictures packed into the page, each once however many cases show it, up to a budget of characters."""
+
+    def __init__(self, budget):
+        self.texts = {}
+        self._left = budget
+
+    def add(self, pixels):
+        """The picture's name in the page; None if the budget is spent."""
+        text = payload.pack(pixels)
+        name = "p" + hashlib.sha256(text.encode()).hexdigest()[:12]
+        if name not in self.texts:
+            if len(text) > self._left:
+                return None
+            self._left -= len(text)
+            self.texts[name] = text
+        return name
+
+
+def _view(of, definitions, pictures, folder):
+    """What the template needs of one case. of: reading.CasePictures."""
+    case = of.case
+    view = {"case": case, "done": case["status"] == "done", "parameters": parameters(case["material"])}
     if not view["done"]:
         return view
-    view["png"] = pictures.png
-    packed = {
-        "model": payload.pack(pictures.model[..., :3]),
-        "reference": payload.pack(pictures.reference[..., :3]),
-        "mask": payload.pack(pictures.mask[..., None]),
+    view["png"] = of.png
+    height, width = of.model.shape[:2]
+    live = {
+        "model": pictures.add(of.model[..., :3]),
+        "reference": pictures.add(of.reference[..., :3]),
+        "mask": pictures.add(of.mask[..., None]),
     }
-    size = sum(len(text) for text in packed.values())
-    if size <= budget:
-        height, width = pictures.model.shape[:2]
-        view["live"] = Markup(json.dumps({"width": width, "height": height, "stops": case["exposure_stops"], **packed}))
-        view["size"] = size
-    relative = colours.relative_error(pictures.model, pictures.reference)
-    view["profile"] = Markup(plots.profile(pictures.model, pictures.reference))
-    view["histogram"] = Markup(plots.histogram(relative, pictures.mask))
+    size = {"width": width, "height": height, "stops": case["exposure_stops"]}
+    view["live"] = None if None in live.values() else Markup(json.dumps({**size, **live}))
+    relative = colours.relative_error(of.model, of.reference)
+    view["plots"] = [
+        (title, plot)
+        for title, plot in (
+            ("Radiance along the steepest line", _plot(plots.profile(of.model, of.reference), folder,
+                                                       f"{case['name']}.profile")),
+            ("Distribution of the relative error", _plot(plots.histogram(relative, of.mask), folder,
+                                                         f"{case['name']}.histogram")),
+        )
+        if plot
+    ]
     view["numbers"] = [
         {
             "title": title,
@@ -108,7 +153,7 @@ def _view(pictures, definitions, budget):
         }
         for name, value in case["metrics"].items()
     ]
-    view["verdict"] = _verdict(case)
+    view["verdict"] = verdict(case)
     return view
 
 
@@ -126,61 +171,6 @@ def _definition(definitions, key):
     return definitions.get(name) or definitions.get(key, "")
 
 
-def _parameters(material):
-    """[(material name, [(parameter, text)])]."""
-    return [
-        (name, [(parameter, _text(value)) for parameter, value in values.items()]) for name, values in material.items()
-    ]
-
-
-def _text(value):
-    if isinstance(value, list):
-        parts = [f"{number:.4g}" for number in value]
-        return parts[0] if len(set(parts)) == 1 else ", ".join(parts)
-    return f"{value:.4g}" if isinstance(value, float) else str(value)
-
-
-def _verdict(case):
-    """One sentence on how the model fares, as far as the reference's noise lets us see."""
-    metrics, floors = case["metrics"], case["noise_floor"]
-    error, floor = metrics["relative_l1"], floors["relative_l1"]
-    if error is None:
-        return "The reference is black: there is nothing to be relative to."
-    if floor is None:
-        return f"{form(error, 'percent')} from the reference, whose noise is not known."
-    noise = form(floor, "percent")
-    if error > 1.1 * floor:
-        return f"{form(metrics['relative_l1_corrected'], 'percent')} off, the reference's noise of {noise} taken out."
-    blocks, block_floor = metrics["relative_l1_blocks"], floors["relative_l1_blocks"]
-    if blocks <= 1.25 * block_floor:
-        return f"Within the reference's own noise: {noise} in a pixel, {form(block_floor, 'percent')} in 8×8 blocks."
-    off = form(metrics["relative_l1_blocks_corrected"], "percent")
-    return f"Within the reference's noise of {noise} in a pixel; {off} off in 8×8 blocks, where the noise is low."
-
-
-def form(value, how):
-    """A number as a reader wants it: three significant digits."""
-    if value is None:
-        return "–"
-    if isinstance(value, list):
-        return ", ".join(str(part) for part in value)
-    if how == "percent":
-        return f"{_digits(100.0 * value)} %"
-    if how == "ratio":
-        return f"{value:.4f}"
-    return _digits(value)
-
-
-def _digits(value):
-    if value == 0.0:
-        return "0"
-    size = abs(value)
-    if size < 1e-3 or size >= 1e5:
-        return f"{value:.2e}"
-    places = max(0, 2 - int(numpy.floor(numpy.log10(size))))
-    return f"{value:.{places}f}"
-
-
 def _colour_tables():
     def octets(table):
         return numpy.rint(255.0 * table).astype(int).ravel().tolist()
@@ -191,6 +181,7 @@ def _colour_tables():
             "diverging": octets(colours.DIVERGING),
             "errorRange": colours.ERROR_RANGE,
             "signedRange": colours.SIGNED_RANGE,
+            "notFinite": octets(numpy.array(colours.NOT_FINITE)),
         },
         separators=(",", ":"),
     )

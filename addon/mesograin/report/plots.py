@@ -1,115 +1,232 @@
-# The plots of the report as SVG text that takes its colours and its type from the page.
-"""Each function returns SVG; colours are the page's custom properties, so that a plot suits light and dark alike."""
+# The plots: figures that the page colours itself, and the same ones as SVG and PNG files for papers and slides.
+"""`page` turns a plot into SVG whose colours are the page's custom properties, so that it suits light and dark alike;
+`save` writes it as files on white. A plot is a function of a Palette that returns a matplotlib figure."""
 
 import io
+import os
 import re
+from dataclasses import astuple, dataclass
 
 import matplotlib
 import numpy
-from matplotlib.backends.backend_svg import FigureCanvasSVG
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
+from . import colours
+from .wording import form
+
+
+@dataclass(frozen=True)
+class Palette:
+    """Colours by what they are for."""
+
+    ink: str
+    quiet: str
+    grid: str
+    ours: str
+    theirs: str
+
+
+PAPER = Palette("#1b1c1e", "#55585d", "#dcddda", "#c2410c", "#57707f")
 # Stand-ins that the page's own colours replace.
-INK, QUIET, GRID, OURS, THEIRS = "#010203", "#010204", "#010205", "#010206", "#010207"
-_PROPERTIES = {INK: "--ink", QUIET: "--quiet", GRID: "--line", OURS: "--ours", THEIRS: "--theirs"}
-
-_STYLE = {
-    "svg.fonttype": "none",
-    "font.family": "sans-serif",
-    "font.size": 9,
-    "axes.edgecolor": GRID,
-    "axes.labelcolor": QUIET,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.linewidth": 0.8,
-    "grid.color": GRID,
-    "grid.linewidth": 0.6,
-    "text.color": INK,
-    "xtick.color": QUIET,
-    "ytick.color": QUIET,
-    "xtick.major.size": 0,
-    "ytick.major.size": 0,
-    "xtick.minor.size": 0,
-    "ytick.minor.size": 0,
-    "svg.hashsalt": "mesograin",
-}
+_PAGE = Palette("#010203", "#010204", "#010205", "#010206", "#010207")
+_PROPERTIES = ("--ink", "--quiet", "--line", "--ours", "--theirs")
+_BARE = {"Date": None, "Creator": None, "Format": None, "Type": None}
 
 
-def trade(cases):
-    """Error against milliseconds of a frame; the bar reaches down to what the reference's noise alone would score."""
-    with matplotlib.rc_context(_STYLE):
+def page(draw):
+    """SVG text of a plot, its colours and its type taken from the page around it; "" if there is nothing to draw."""
+    figure = _drawn(draw, _PAGE)
+    if figure is None:
+        return ""
+    svg = _svg(figure)
+    for stand_in, name in zip(astuple(_PAGE), _PROPERTIES):
+        svg = svg.replace(stand_in, f"var({name})")
+    # Type and size are the page's.
+    svg = re.sub(r"font: ([\d.]+)px [^;\"]*", r"font: \1px var(--sans)", svg)
+    return re.sub(r'<svg ([^>]*?)width="[\d.]+pt" height="[\d.]+pt"', r"<svg \1", svg[svg.index("<svg"):], count=1)
+
+
+def save(draw, folder, name):
+    """Writes NAME.svg and NAME.png into a folder, each whole or not at all; returns [file name], none if there is
+    nothing to draw. Raises OSError."""
+    figure = _drawn(draw, PAPER)
+    if figure is None:
+        return []
+    folder.mkdir(parents=True, exist_ok=True)
+    written = []
+    for ending, options in (("svg", {"metadata": {"Date": None}}), ("png", {"dpi": 200})):
+        path = folder / f"{name}.{ending}"
+        partial = path.with_name(f".{os.getpid()}.{path.name}")
+        try:
+            with matplotlib.rc_context(_style(PAPER)):
+                figure.savefig(partial, format=ending, facecolor="white", **options)
+            partial.replace(path)
+        finally:
+            partial.unlink(missing_ok=True)
+        written.append(path.name)
+    return written
+
+
+def _drawn(draw, palette):
+    with matplotlib.rc_context(_style(palette)):
+        return draw(palette)
+
+
+def _style(palette):
+    return {
+        "svg.fonttype": "none",
+        "svg.hashsalt": "mesograin",
+        "font.family": "sans-serif",
+        "font.size": 9,
+        "axes.edgecolor": palette.grid,
+        "axes.labelcolor": palette.quiet,
+        "axes.spines.top": False,
+        "axes.spines.right": False,
+        "axes.linewidth": 0.8,
+        "grid.color": palette.grid,
+        "grid.linewidth": 0.6,
+        "text.color": palette.ink,
+        "xtick.color": palette.quiet,
+        "ytick.color": palette.quiet,
+        "xtick.major.size": 0,
+        "ytick.major.size": 0,
+        "xtick.minor.size": 0,
+        "ytick.minor.size": 0,
+    }
+
+
+def cost(cases):
+    """A plot of error against milliseconds of a frame, a dot a case; the bar under it reaches down to what the
+    reference's noise alone would score."""
+
+    def draw(palette):
         figure, axes = _figure(9.0, 2.9)
         axes.set_xscale("log")
         axes.set_yscale("log")
-        for case in cases:
-            error, floor = case["metrics"]["relative_l1"], case["noise_floor"]["relative_l1"]
-            if not error:
-                continue
+        shown = [case for case in cases if case["metrics"]["relative_l1"]]
+        for number, case in enumerate(sorted(shown, key=lambda case: case["frame_ms"])):
+            at, error, floor = case["frame_ms"], case["metrics"]["relative_l1"], case["noise_floor"]["relative_l1"]
             if floor:
-                axes.plot([case["frame_ms"]] * 2, [min(floor, error), error], color=OURS, linewidth=1.0, alpha=0.45)
-                axes.plot([case["frame_ms"]], [floor], marker="_", color=OURS, markersize=8, alpha=0.7)
-            axes.plot([case["frame_ms"]], [error], marker="o", color=OURS, markersize=6)
-            axes.annotate(
-                case["name"], (case["frame_ms"], error), (8, 0), textcoords="offset points", va="center", fontsize=8.5
-            )
-        axes.set_xlabel("milliseconds a frame")
+                axes.plot([at] * 2, [min(floor, error), error], color=palette.ours, linewidth=1.0, alpha=0.45)
+                axes.plot([at], [floor], marker="_", color=palette.ours, markersize=8, alpha=0.7)
+            axes.plot([at], [error], marker="o", color=palette.ours, markersize=6)
+            # Above and below by turns: models of one kind are often as far off as each other.
+            label = case["name"] if len({other["reference"] for other in shown}) > 1 else case["model"]
+            side = 1 if number % 2 == 0 else -1
+            axes.annotate(label, (at, error), (0, 8 * side), textcoords="offset points", ha="center",
+                          va="bottom" if side > 0 else "top", fontsize=8.5)
+        axes.set_xlabel("time of a frame, ms")
         axes.set_ylabel("relative L1")
-        _log_axis(axes.xaxis, [case["frame_ms"] for case in cases], 1.6, lambda value, _: f"{value:g}")
-        shares = [
-            value
-            for case in cases
-            for value in (case["metrics"]["relative_l1"], case["noise_floor"]["relative_l1"])
-            if value
-        ]
-        _log_axis(axes.yaxis, shares, 2.0, lambda value, _: f"{100 * value:g} %", steps=(1, 3))
+        log_axis(axes.xaxis, [case["frame_ms"] for case in shown], 1.8, lambda value, _: f"{value:g}")
+        shares = [value for case in shown for value in (case["metrics"]["relative_l1"],
+                                                        case["noise_floor"]["relative_l1"]) if value]
+        log_axis(axes.yaxis, shares, 2.5, percent, steps=(1, 3))
         axes.grid(True, which="major")
-        return _svg(figure)
+        return figure if shown else None
+
+    return draw
 
 
 def profile(model, reference):
-    """Radiance along the line across the picture on which the reference changes most, averaged over a band of 5
-    pixels."""
-    line = _steepest_line(reference)
-    if line is None:
-        return ""
-    theirs, ours = (_sample_band(pixels, line) for pixels in (reference, model))
-    along = numpy.linspace(0.0, 1.0, len(theirs))
-    with matplotlib.rc_context(_STYLE):
-        figure, axes = _figure(4.0, 2.1)
-        axes.plot(along, theirs, color=THEIRS, linewidth=3.0, alpha=0.55, solid_capstyle="round", label="reference")
-        axes.plot(along, ours, color=OURS, linewidth=1.3, label="model")
-        axes.set_xlabel("across the picture, from dark to bright")
-        axes.set_ylabel("radiance")
-        axes.set_xlim(0.0, 1.0)
-        axes.set_ylim(bottom=0.0)
-        axes.set_xticks([])
+    """A plot of radiance along the line across the picture on which the reference changes most, averaged over a band of
+    5 pixels; the reference's band of one standard error comes from the scatter of those 5."""
+
+    def draw(palette):
+        line = _steepest_line(reference)
+        if line is None:
+            return None
+        theirs, ours = (_sample_band(pixels, line) for pixels in (reference, model))
+        middle, spread = theirs.mean(axis=0), theirs.std(axis=0, ddof=1) / numpy.sqrt(len(theirs))
+        along = numpy.linspace(0.0, numpy.hypot(*(line[1] - line[0])), middle.size)
+        figure, axes = _figure(4.4, 2.3)
+        axes.fill_between(along, middle - spread, middle + spread, color=palette.theirs, alpha=0.3, linewidth=0)
+        axes.plot(along, middle, color=palette.theirs, linewidth=2.6, alpha=0.6, solid_capstyle="round",
+                  label="reference ± standard error")
+        axes.plot(along, ours.mean(axis=0), color=palette.ours, linewidth=1.2, label="model")
+        axes.set_xlabel("distance from the dark end, pixels")
+        axes.set_ylabel("radiance, W m⁻² sr⁻¹")
+        axes.set_xlim(along[0], along[-1])
+        axes.set_ylim(bottom=min([0.0, *ours[numpy.isfinite(ours)]]))
         axes.grid(True, axis="y")
-        axes.legend(frameon=False, fontsize=8.5, loc="upper left")
-        return _svg(figure)
+        axes.legend(frameon=False, fontsize=8, loc="upper left")
+        return figure
+
+    return draw
 
 
 def histogram(relative, mask):
-    """How the signed relative error is distributed over the masked pixels."""
-    values = 100.0 * relative[mask]
-    values = values[numpy.isfinite(values)]
-    if not values.size:
-        return ""
-    reach = max(1.5 * float(numpy.percentile(numpy.abs(values), 95.0)), 0.05)
-    with matplotlib.rc_context(_STYLE):
-        figure, axes = _figure(4.0, 2.1)
-        axes.hist(
-            numpy.clip(values, -reach, reach), bins=61, range=(-reach, reach), color=OURS, alpha=0.75, linewidth=0
-        )
-        axes.axvline(0.0, color=QUIET, linewidth=0.8)
-        axes.set_xlabel("(model − reference) / (reference + 0.01), per cent")
-        axes.set_ylabel("pixels")
+    """A plot of how the signed relative error is distributed over the samples of the masked pixels; the outermost bars
+    hold all that is beyond."""
+
+    def draw(palette):
+        values = 100.0 * relative[mask]
+        values = values[numpy.isfinite(values)]
+        if not values.size:
+            return None
+        reach = max(1.5 * float(numpy.percentile(numpy.abs(values), 95.0)), 0.05)
+        figure, axes = _figure(4.4, 2.3)
+        axes.hist(numpy.clip(values, -reach, reach), bins=61, range=(-reach, reach), color=palette.ours, alpha=0.75,
+                  histtype="stepfilled", linewidth=0, weights=numpy.full(values.size, 100.0 / values.size))
+        axes.axvline(0.0, color=palette.quiet, linewidth=0.8)
+        axes.axvline(numpy.median(values), color=palette.ink, linewidth=0.8, linestyle=(0, (4, 3)),
+                     label=f"median {numpy.median(values):+.2g} %")
+        axes.set_xlabel("(model − reference) / (reference + 0.01), %")
+        axes.set_ylabel("samples, %")
         axes.set_xlim(-reach, reach)
         axes.grid(True, axis="y")
-        return _svg(figure)
+        axes.legend(frameon=False, fontsize=8, loc="upper left", handlelength=1.6)
+        return figure
+
+    return draw
 
 
-def _log_axis(axis, values, margin, write, steps=(1, 2, 3, 5, 7)):
+def overview(pictures):
+    """A plot of model, reference and false-coloured relative error in a row for each case, with the colour bar: the
+    figure for a paper. pictures: [(case, model, reference, mask)], at most a page of them is drawn."""
+
+    def draw(palette):
+        rows = pictures[:12]
+        if not rows:
+            return None
+        height, width = rows[0][1].shape[:2]
+        side = 2.0
+        figure = Figure(figsize=(3 * side + 1.7, len(rows) * side * height / width + 0.75), layout="constrained")
+        FigureCanvasAgg(figure)
+        grid = figure.subplots(len(rows), 3, squeeze=False)
+        for axes, (case, model, reference, mask) in zip(grid, rows):
+            stops = case["exposure_stops"]
+            relative = colours.relative_error(model, reference)
+            for place, picture in zip(axes, (colours.expose(model, stops), colours.expose(reference, stops),
+                                             mask[..., None] * colours.false_colour(relative))):
+                place.imshow(picture, interpolation="nearest")
+                place.set_xticks([])
+                place.set_yticks([])
+                place.spines[:].set_visible(False)
+            axes[0].set_ylabel(f"{case['model']}\n{form(case['metrics']['relative_l1'], 'percent')}",
+                               color=palette.ink, rotation=0, ha="right", va="center")
+        for place, title in zip(grid[0], ("model", "reference", "relative error")):
+            place.set_title(title, fontsize=9, color=palette.ink)
+        shades = matplotlib.cm.ScalarMappable(matplotlib.colors.LogNorm(*colours.ERROR_RANGE),
+                                              ListedColormap(colours.SEQUENTIAL))
+        bar = figure.colorbar(shades, ax=grid, location="bottom", shrink=0.66, aspect=50, pad=0.015)
+        bar.set_label("|model − reference| / (reference + 0.01), mean of the channels")
+        bar.outline.set_visible(False)
+        bar.ax.xaxis.set_major_formatter(FuncFormatter(percent))
+        bar.ax.xaxis.set_minor_locator(NullLocator())
+        return figure
+
+    return draw
+
+
+def percent(value, _):
+    """A share as an axis shows it."""
+    return f"{100 * value:g} %"
+
+
+def log_axis(axis, values, margin, write, steps=(1, 2, 3, 5, 7)):
     """Limits a logarithmic axis to the values and a margin, with ticks at `steps` of each decade."""
     if not values:
         return
@@ -125,24 +242,17 @@ def _log_axis(axis, values, margin, write, steps=(1, 2, 3, 5, 7)):
 
 def _figure(width, height):
     figure = Figure(figsize=(width, height), layout="constrained")
-    FigureCanvasSVG(figure)
-    figure.patch.set_alpha(0.0)
+    FigureCanvasAgg(figure)
     axes = figure.add_subplot()
-    axes.patch.set_alpha(0.0)
     axes.set_axisbelow(True)
     return figure, axes
 
 
 def _svg(figure):
     text = io.StringIO()
-    figure.savefig(text, format="svg", metadata={"Date": None, "Creator": None, "Format": None, "Type": None})
-    svg = text.getvalue()
-    svg = svg[svg.index("<svg"):]
-    for stand_in, name in _PROPERTIES.items():
-        svg = svg.replace(stand_in, f"var({name})")
-    # Type and size are the page's.
-    svg = re.sub(r"font: ([\d.]+)px [^;\"]*", r"font: \1px var(--sans)", svg)
-    return re.sub(r'<svg ([^>]*?)width="[\d.]+pt" height="[\d.]+pt"', r"<svg \1", svg, count=1)
+    with matplotlib.rc_context(_style(_PAGE)):
+        figure.savefig(text, format="svg", metadata=_BARE, transparent=True)
+    return text.getvalue()
 
 
 def _steepest_line(reference):
@@ -164,7 +274,7 @@ def _steepest_line(reference):
 
 
 def _sample_band(pixels, line, half_width=2):
-    """Mean of the channels along a line of pixel positions and its neighbours, nearest pixel."""
+    """Mean of the channels along a line of pixel positions and along its neighbours, nearest pixel: (lines, places)."""
     start, end = line
     count = max(int(numpy.hypot(*(end - start))), 2)
     at = start + numpy.linspace(0.0, 1.0, count)[:, None] * (end - start)
@@ -174,4 +284,4 @@ def _sample_band(pixels, line, half_width=2):
     for offset in range(-half_width, half_width + 1):
         x, y = numpy.rint(at + offset * aside).astype(int).T
         bands.append(pixels[numpy.clip(y, 0, height - 1), numpy.clip(x, 0, width - 1), :3].mean(axis=-1))
-    return numpy.nanmean(bands, axis=0)
+    return numpy.array(bands)

@@ -1,4 +1,4 @@
-// The page's behaviour: a viewer on the real, linear pictures, a table that sorts, light and dark.
+// The report's viewer: it shows the real, linear pictures that the page carries.
 "use strict";
 (() => {
   const tables = JSON.parse(document.getElementById("colour-tables").textContent);
@@ -19,8 +19,8 @@
     encoded[i] = Math.round(255 * (linear <= 0.0031308 ? 12.92 * linear : 1.055 * linear ** (1 / 2.4) - 0.055));
   }
 
-  async function unpack(text, count) {
-    const packed = Uint8Array.from(atob(text), (character) => character.charCodeAt(0));
+  async function unpack(name, count) {
+    const packed = Uint8Array.from(atob(document.getElementById(name).textContent), (character) => character.charCodeAt(0));
     const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate"));
     const octets = new Uint8Array(await new Response(stream).arrayBuffer());
     const values = new Float32Array(count);
@@ -40,25 +40,26 @@
     return image;
   }
 
+  // The channels' mean of the relative error, of its size and with its sign.
   function relativeError(model, reference, count) {
-    const relative = new Float32Array(count);
+    const size = new Float32Array(count), signed = new Float32Array(count);
     for (let i = 0; i < count; ++i) {
-      let sum = 0;
       for (let c = 0; c < 3; ++c) {
-        const r = reference[c * count + i];
-        sum += (model[c * count + i] - r) / (Math.max(r, 0) + EPSILON);
+        const r = reference[c * count + i], error = (model[c * count + i] - r) / (Math.max(r, 0) + EPSILON);
+        size[i] += Math.abs(error) / 3;
+        signed[i] += error / 3;
       }
-      relative[i] = sum / 3;
     }
-    return relative;
+    return { size, signed };
   }
 
   function colour(relative, mask, count, table, place) {
     const image = new Uint8ClampedArray(4 * count);
     for (let i = 0; i < count; ++i) {
       if (mask[i] > 0) {
-        const at = 3 * Math.max(0, Math.min(255, Math.round(255 * place(relative[i]))));
-        image[4 * i] = table[at]; image[4 * i + 1] = table[at + 1]; image[4 * i + 2] = table[at + 2];
+        const at = place(relative[i]), finite = Number.isFinite(at);
+        const from = finite ? 3 * Math.max(0, Math.min(255, Math.round(255 * at))) : 0, found = finite ? table : tables.notFinite;
+        for (let c = 0; c < 3; ++c) image[4 * i + c] = found[from + c];
       }
       image[4 * i + 3] = 255;
     }
@@ -66,7 +67,7 @@
   }
 
   const [low, high] = tables.errorRange.map(Math.log10);
-  const logarithmic = (value) => (Math.log10(Math.max(Math.abs(value), 1e-30)) - low) / (high - low);
+  const logarithmic = (value) => (Math.log10(Math.max(value, 1e-30)) - low) / (high - low);
   const signed = (value) => 0.5 + 0.5 * value / tables.signedRange;
   const number = (value) => (value === 0 ? "0" : Math.abs(value) < 0.001 || Math.abs(value) >= 1e4 ? value.toExponential(2) : value.toPrecision(4));
 
@@ -82,15 +83,15 @@
     }
 
     async start() {
-      const { live, count } = this;
+      const { live, count, root } = this;
       [this.model, this.reference, this.mask] = await Promise.all(
         [unpack(live.model, 3 * count), unpack(live.reference, 3 * count), unpack(live.mask, count)]);
       this.relative = relativeError(this.model, this.reference, count);
       this.shown = {
-        error: this.image(colour(this.relative, this.mask, count, tables.sequential, logarithmic)),
-        signed: this.image(colour(this.relative, this.mask, count, tables.diverging, signed)),
+        error: this.image(colour(this.relative.size, this.mask, count, tables.sequential, logarithmic)),
+        signed: this.image(colour(this.relative.signed, this.mask, count, tables.diverging, signed)),
       };
-      this.setExposure(live.stops);
+      this.setExposure(Number(root.querySelector(".exposure input").value));
       this.root.querySelector(".still").hidden = true;
       this.canvas.hidden = false;
       this.listen();
@@ -142,7 +143,7 @@
       const i = y * width + x;
       const rgb = (pixels) => [0, 1, 2].map((c) => number(pixels[c * this.count + i]).padStart(9)).join(" ");
       this.root.querySelector(".readout").textContent =
-        `x ${x}, y ${y}\nmodel     ${rgb(this.model)}\nreference ${rgb(this.reference)}\nerror     ${(100 * this.relative[i]).toFixed(2).padStart(9)} %`;
+        `x ${x}, y ${y}\nmodel     ${rgb(this.model)}\nreference ${rgb(this.reference)}\nerror     ${(100 * this.relative.signed[i]).toFixed(2).padStart(9)} %${this.mask[i] > 0 ? "" : "  not compared"}`;
     }
 
     listen() {
@@ -167,9 +168,23 @@
       });
       for (const button of root.querySelectorAll(".modes button")) button.addEventListener("click", () => this.setMode(button.dataset.mode));
       const exposure = root.querySelector(".exposure input");
-      exposure.addEventListener("input", () => this.setExposure(Number(exposure.value)));
-      exposure.addEventListener("dblclick", () => { exposure.value = this.live.stops; this.setExposure(this.live.stops); });
+      exposure.addEventListener("input", () => this.choose(Number(exposure.value)));
+      exposure.addEventListener("dblclick", () => { exposure.value = this.live.stops; this.choose(this.live.stops); });
     }
+
+    // The exposure of this case, or of all of them.
+    choose(stops) {
+      if (!this.root.querySelector(".linked").checked) return this.setExposure(stops);
+      for (const slider of document.querySelectorAll(".exposure input[type=range]")) slider.value = stops;
+      for (const viewer of viewers) viewer.setExposure(stops);
+    }
+  }
+
+  const viewers = [];
+  for (const box of document.querySelectorAll(".linked")) {
+    box.addEventListener("change", () => {
+      for (const other of document.querySelectorAll(".linked")) other.checked = box.checked;
+    });
   }
 
   // Pictures are unpacked when they come near: a page may hold many.
@@ -178,36 +193,11 @@
       if (!entry.isIntersecting) continue;
       waiting.unobserve(entry.target);
       const viewer = new Viewer(entry.target, JSON.parse(entry.target.querySelector(".live").textContent));
-      viewer.start().catch(() => entry.target.querySelector(".tools").remove());
+      viewer.start().then(() => viewers.push(viewer), () => entry.target.querySelector(".tools").remove());
     }
   }, { rootMargin: "1200px" });
   for (const root of document.querySelectorAll(".viewer")) {
     if (root.querySelector(".live") && "DecompressionStream" in window) waiting.observe(root);
     else root.querySelector(".tools").remove();
   }
-
-  for (const table of document.querySelectorAll("table.sortable")) {
-    const headers = [...table.tHead.rows[0].cells];
-    headers.forEach((header, column) => header.querySelector("button").addEventListener("click", () => {
-      const ascending = header.getAttribute("aria-sort") !== "ascending";
-      headers.forEach((other) => other.removeAttribute("aria-sort"));
-      header.setAttribute("aria-sort", ascending ? "ascending" : "descending");
-      const value = (row) => { const cell = row.cells[column]; return !cell || cell.dataset.value === "" ? null : cell.dataset.value === undefined ? cell.textContent : Number(cell.dataset.value); };
-      const rows = [...table.tBodies[0].rows].sort((one, other) => {
-        const a = value(one), b = value(other);
-        if (a === null || b === null) return (a === null) - (b === null);
-        return (ascending ? 1 : -1) * (typeof a === "number" && typeof b === "number" ? a - b : String(a).localeCompare(String(b)));
-      });
-      table.tBodies[0].append(...rows);
-    }));
-  }
-
-  document.querySelector(".theme").addEventListener("click", () => {
-    const dark = document.documentElement.dataset.theme ? document.documentElement.dataset.theme === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
-    document.documentElement.dataset.theme = dark ? "light" : "dark";
-  });
-  document.querySelector(".copy").addEventListener("click", (event) => {
-    navigator.clipboard?.writeText(document.querySelector(".command code").textContent);
-    event.target.textContent = "copied";
-  });
 })();

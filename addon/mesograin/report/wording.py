@@ -1,0 +1,59 @@
+# How numbers, parameters and results are put into words on the page.
+"""See `form`, `parameters` and `verdict`."""
+
+import math
+
+
+def parameters(material):
+    """[(material name, [(parameter, text)])]."""
+    return [
+        (name, [(parameter, _text(value)) for parameter, value in values.items()]) for name, values in material.items()
+    ]
+
+
+def _text(value):
+    if isinstance(value, list):
+        parts = [f"{number:.4g}" for number in value]
+        return parts[0] if len(set(parts)) == 1 else ", ".join(parts)
+    return f"{value:.4g}" if isinstance(value, float) else str(value)
+
+
+def verdict(case):
+    """One sentence on how the model fares, as far as the reference's noise lets us see."""
+    metrics, floors = case["metrics"], case["noise_floor"]
+    error, floor = metrics["relative_l1"], floors["relative_l1"]
+    if error is None:
+        return "The reference is black: there is nothing to be relative to."
+    if floor is None:
+        return f"{form(error, 'percent')} from the reference, whose noise is not known."
+    noise = form(floor, "percent")
+    if error > 1.1 * floor:
+        return f"{form(metrics['relative_l1_corrected'], 'percent')} off, the reference's noise of {noise} taken out."
+    blocks, block_floor = metrics["relative_l1_blocks"], floors["relative_l1_blocks"]
+    if blocks <= 1.25 * block_floor:
+        return f"Within the reference's own noise: {noise} in a pixel, {form(block_floor, 'percent')} in 8×8 blocks."
+    off = form(metrics["relative_l1_blocks_corrected"], "percent")
+    return f"Within the reference's noise of {noise} in a pixel; {off} off in 8×8 blocks, where the noise is low."
+
+
+def form(value, how):
+    """A number as a reader wants it: three significant digits."""
+    if value is None:
+        return "–"
+    if isinstance(value, list):
+        return ", ".join(str(part) for part in value)
+    if how == "percent":
+        return f"{_digits(100.0 * value)} %"
+    if how == "ratio":
+        return f"{value:.4f}"
+    return _digits(value)
+
+
+def _digits(value):
+    if value == 0.0:
+        return "0"
+    size = abs(value)
+    if size < 1e-3 or size >= 1e5:
+        return f"{value:.2e}"
+    places = max(0, 2 - int(math.floor(math.log10(size))))
+    return f"{value:.{places}f}"
