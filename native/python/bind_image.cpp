@@ -15,6 +15,7 @@
 
 #include "image/exr.h"
 #include "image/filters.h"
+#include "image/margin.h"
 #include "image/metrics.h"
 #include "image/significance.h"
 #include "python/bindings.h"
@@ -228,6 +229,18 @@ void bind_image(py::module_& module) {
   module.def("default_mask", &default_mask, py::arg("coverage"), py::arg("erode") = 2,
              "(h, w) bool: where coverage, of shape (h, w), is 1 (within 1e-4), less a rim of `erode` pixels. Raises "
              "Error for another shape or a negative `erode`.");
+  module.def(
+      "extend_margin",
+      [](const Pixels& texture, int margin) {
+        return to_array(image::extend_margin(to_view(texture, "texture"), margin));
+      },
+      py::arg("texture"), py::arg("margin"),
+      "(h, w, 4) float32: a baked texture whose charts reach `margin` texels farther, so that filtering does not mix "
+      "them "
+      "with what lies between. Texels covered in part become full; then each empty texel next to covered ones takes "
+      "their mean, `margin` times over (Blender's margin of type EXTEND). 0 changes nothing. Raises Error unless "
+      "texture "
+      "is (h, w, 4), premultiplied by its coverage, and margin in [0, 32767].");
   module.def("crop_mask", &crop_mask, py::arg("mask"), py::arg("crop"),
              "(h, w) bool: mask inside crop = (left, top, right, bottom) in pixels, row 0 at the top, right and bottom "
              "not included. Raises Error if the crop does not lie in the mask.");

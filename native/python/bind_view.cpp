@@ -4,6 +4,9 @@
 
 #include <chrono>
 #include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "gl/context_thread.h"
 #include "python/bindings.h"
@@ -87,6 +90,25 @@ py::list timings(render::View& view) {
   return result;
 }
 
+void set_bake(render::View& view, std::vector<std::size_t> instances, const std::string& view_from) {
+  const render::Bake bake{std::move(instances), render::parse_view_from(view_from)};
+  const py::gil_scoped_release release;
+  view.set_bake(bake);
+}
+
+py::dict uv_use(render::View& view) {
+  render::UvUse use;
+  {
+    const py::gil_scoped_release release;
+    use = view.uv_use();
+  }
+  py::dict result;
+  result["texels"] = use.texels;
+  result["overlapping"] = use.overlapping;
+  result["triangles_outside"] = use.triangles_outside;
+  return result;
+}
+
 py::dict sent() {
   const render::Sent counts = [] {
     const py::gil_scoped_release release;
@@ -115,9 +137,10 @@ void bind_view(py::module_& module) {
              "Frees the device; views made before can no longer be used. Done by itself when Python ends.");
 
   using Release = py::call_guard<py::gil_scoped_release>;
-  py::class_<render::View>(module, "View",
-                           "An image of a scene through a camera that gets better with every sample (box pixel filter, "
-                           "one pixel wide). Many views share one device and what was sent to it.")
+  py::class_<render::View>(
+      module, "View",
+      "An image of a scene, through a camera or unwrapped, that gets better with every sample (box pixel filter, "
+      "one pixel wide). Many views share one device and what was sent to it.")
       .def(py::init<int, int, std::uint32_t>(), py::arg("width"), py::arg("height"), py::arg("seed") = 0, Release())
       .def("resize", &render::View::resize, py::arg("width"), py::arg("height"), Release(),
            "Reallocates the targets and nothing else.")
@@ -129,6 +152,16 @@ void bind_view(py::module_& module) {
            "accumulation. Raises Error unless it is in [1, 65536].")
       .def("set_camera", &render::View::set_camera, py::arg("camera"), Release(),
            "Restarts the accumulation; sends nothing.")
+      .def("set_bake", &set_bake, py::arg("instances"), py::arg("view_from") = "above_surface",
+           "Instead of what the camera sees, until the next set_scene(): the texture of the scene's instances of these "
+           "numbers, which share one unwrapping, at their UVs; u to the right, v up. Each texel is the mean over its "
+           "area. view_from: 'above_surface' looks along the normal; 'active_camera' from set_camera()'s, but never "
+           "from below a rise of 0.2. Restarts the accumulation. Raises Error for instances that the scene does not "
+           "have or that have no UVs.")
+      .def("uv_use", &uv_use,
+           "How the unwrapping being baked uses the texture: {'texels': whose middle is covered, 'overlapping': more "
+           "than once, by the first of which the texel is baked, 'triangles_outside': that reach out of [0, 1]^2, "
+           "where they are cut off}. Raises Error if nothing is being baked.")
       .def("render", &render, py::arg("samples") = 1,
            "Adds samples to the mean. Ctrl-C or cancel() ends it after the sample under way.")
       .def("cancel", &render::View::cancel, "Ends a render() under way in another thread after its current sample.")
@@ -137,7 +170,8 @@ void bind_view(py::module_& module) {
       .def_property_readonly("height", &render::View::height)
       .def(
           "read", &read, py::arg("out") = py::none(),
-          "The mean: (height, width, 4) float32, linear RGB premultiplied by coverage, and coverage; row 0 at the top. "
+          "The mean: (height, width, 4) float32, linear RGB premultiplied by coverage, and coverage; row 0 at the top, "
+          "which in a bake is v = 1. "
           "`out`, if given, is filled and returned.")
       .def("timings", &timings, "[{'pass', 'milliseconds'}, ...] of the last sample, in the order the passes ran.");
 }

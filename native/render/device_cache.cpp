@@ -9,8 +9,11 @@
 
 namespace mesograin::render {
 
-DeviceMaterial::DeviceMaterial(physics::MaterialInputs inputs, const gl::Program& program)
-    : program_(program), uniforms_(std::move(inputs.uniforms)), light_maps_(inputs.light_maps) {
+DeviceMaterial::DeviceMaterial(scene::Model model, physics::MaterialInputs inputs)
+    : model_(model),
+      defines_(std::move(inputs.defines)),
+      uniforms_(std::move(inputs.uniforms)),
+      light_maps_(inputs.light_maps) {
   for (const auto& [name, table] : inputs.tables) {
     gl::Texture texture(GL_RGBA32F, table.width, table.height);
     texture.upload(GL_RGBA, GL_FLOAT, table.texels.data());
@@ -19,11 +22,11 @@ DeviceMaterial::DeviceMaterial(physics::MaterialInputs inputs, const gl::Program
   }
 }
 
-void DeviceMaterial::bind() const {
-  program_.use();
+void DeviceMaterial::bind(const gl::Program& program) const {
+  program.use();
   for (const auto& [name, value] : uniforms_)
-    std::visit([&, &uniform = name](const auto& number) { program_.set(uniform, number); }, value);
-  for (const auto& [name, table] : tables_) program_.set(name, table);
+    std::visit([&, &uniform = name](const auto& number) { program.set(uniform, number); }, value);
+  for (const auto& [name, table] : tables_) program.set(name, table);
 }
 
 std::shared_ptr<gl::VertexArray> DeviceCache::mesh(const scene::MeshPointer& mesh) {
@@ -45,10 +48,9 @@ std::shared_ptr<DeviceMaterial> DeviceCache::material(const scene::Material& mat
   for (const MaterialEntry& entry : materials_)
     if (entry.source == material && entry.grain_radius == radius) return entry.device;
   physics::MaterialInputs inputs = physics::material_inputs(material, radius);
-  const gl::Program& shading = program(material.model, inputs.defines);
   ++sent_.materials;
   for (const auto& [name, table] : inputs.tables) sent_.bytes += table.texels.size() * sizeof(glm::vec4);
-  auto device = std::make_shared<DeviceMaterial>(std::move(inputs), shading);
+  auto device = std::make_shared<DeviceMaterial>(material.model, std::move(inputs));
   materials_.push_back({material, radius, device});
   return device;
 }
@@ -63,10 +65,16 @@ const gl::Program& DeviceCache::light_map_program() {
                  gl::ShaderSource({"passes/light_map.frag"}, {}));
 }
 
-const gl::Program& DeviceCache::program(scene::Model model, const std::vector<std::string>& defines) {
-  const std::string model_name(scene::model_names[static_cast<std::size_t>(model)]);
-  return program(fmt::format("{} {}", model_name, fmt::join(defines, " ")), gl::ShaderSource({"passes/shade.vert"}, {}),
-                 gl::ShaderSource({"passes/shade.frag", "models/" + model_name + ".glsl"}, defines));
+const gl::Program& DeviceCache::count_program() {
+  return program("count", gl::ShaderSource({"passes/bake.vert"}, {}), gl::ShaderSource({"passes/count.frag"}, {}));
+}
+
+const gl::Program& DeviceCache::shading(const DeviceMaterial& material, Shading shading) {
+  const std::string model(scene::model_names[static_cast<std::size_t>(material.model())]);
+  const std::string pass = shading == Shading::unwrapped ? "bake" : "shade";
+  return program(fmt::format("{} {} {}", pass, model, fmt::join(material.defines(), " ")),
+                 gl::ShaderSource({"passes/" + pass + ".vert"}, {}),
+                 gl::ShaderSource({"passes/" + pass + ".frag", "models/" + model + ".glsl"}, material.defines()));
 }
 
 const gl::Program& DeviceCache::program(const std::string& name, const gl::ShaderSource& vertex,

@@ -15,21 +15,26 @@
 
 namespace mesograin::render {
 
-/// A material ready to draw with: its program, and the uniforms and tables that the program reads.
+/// How a surface gets onto its target: as the camera sees it, or unwrapped at its UVs.
+enum class Shading { seen, unwrapped };
+
+/// A material ready to draw with: what its programs are made of, and the uniforms and tables that they read.
 class DeviceMaterial {
  public:
-  DeviceMaterial(physics::MaterialInputs inputs, const gl::Program& program);
+  DeviceMaterial(scene::Model model, physics::MaterialInputs inputs);
 
-  const gl::Program& program() const { return program_; }
+  scene::Model model() const { return model_; }
+  const std::vector<std::string>& defines() const { return defines_; }
 
   /// Whether its model reads light maps.
   bool light_maps() const { return light_maps_; }
 
-  /// Sets every uniform and binds every table on the program.
-  void bind() const;
+  /// Sets every uniform and binds every table on one of its programs.
+  void bind(const gl::Program& program) const;
 
  private:
-  const gl::Program& program_;
+  scene::Model model_;
+  std::vector<std::string> defines_;
   std::map<std::string, physics::UniformValue> uniforms_;
   std::map<std::string, gl::Texture> tables_;
   bool light_maps_;
@@ -51,8 +56,14 @@ class DeviceCache {
   /// `grain_radius` as in physics::material_inputs; materials are shared by grains within half a percent.
   std::shared_ptr<DeviceMaterial> material(const scene::Material& material, double grain_radius);
 
+  /// The program that shades with a material; compiled on first use.
+  const gl::Program& shading(const DeviceMaterial& material, Shading shading);
+
   /// The program that draws a light map; compiled when the first material needs one.
   const gl::Program& light_map_program();
+
+  /// The program that counts how many triangles cover each texel of an unwrapped mesh.
+  const gl::Program& count_program();
 
   /// Frees what no view holds any more.
   void prune();
@@ -70,7 +81,6 @@ class DeviceCache {
     std::shared_ptr<DeviceMaterial> device;
   };
 
-  const gl::Program& program(scene::Model model, const std::vector<std::string>& defines);
   const gl::Program& program(const std::string& name, const gl::ShaderSource& vertex, const gl::ShaderSource& fragment);
 
   std::map<const scene::Mesh*, MeshEntry> meshes_;

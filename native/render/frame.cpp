@@ -3,12 +3,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/gtc/type_ptr.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
+#include <glm/vector_relational.hpp>
 #include <utility>
 
 #include "render/sequence.h"
+#include "scene/error.h"
 
 namespace mesograin::render {
 namespace {
@@ -65,12 +69,14 @@ glm::dmat4 Frame::Draw::object_to_grain() const {
   return matrix;
 }
 
-Frame::Draw Frame::make_draw(const scene::Instance& instance) {
+Frame::Draw Frame::make_draw(const scene::Instance& instance, std::size_t index) {
   const glm::dvec3 lower(instance.mesh->lower());
   const glm::dvec3 upper(instance.mesh->upper());
   const glm::dmat3 linear(instance.object_to_world);
   const glm::dvec3 half = 0.5 * (upper - lower);
   Draw draw;
+  draw.instance = index;
+  draw.source = instance.mesh;
   draw.mesh = cache_.mesh(instance.mesh);
   draw.object_to_world = instance.object_to_world;
   draw.centre = glm::dvec3(instance.object_to_world * glm::dvec4(0.5 * (lower + upper), 1.0));
@@ -86,6 +92,7 @@ Frame::Draw Frame::make_draw(const scene::Instance& instance) {
   // The cube root takes a mirrored or stretched grain for the one of the same volume.
   draw.material = cache_.material(
       material, std::max(instance.mesh->equivalent_radius() * std::cbrt(std::abs(glm::determinant(linear))), 1e-30));
+  draw.program = &cache_.shading(*draw.material, Shading::seen);
   const glm::dvec3 reduced = material.scale * (material.sigma_a + (1.0 - material.g) * material.sigma_s);
   draw.mean_free_paths_across = 2.0 * draw.radius * std::max({reduced.r, reduced.g, reduced.b});
   if (draw.material->light_maps()) draw.light_maps = take_light_maps(instance.mesh, draw.object_to_grain());
@@ -100,12 +107,13 @@ std::unique_ptr<LightMaps> Frame::take_light_maps(const scene::MeshPointer& mesh
 
 void Frame::set_scene(scene::Scene scene) {
   std::vector<Draw> draws;
-  for (const scene::Instance& instance : scene.instances) draws.push_back(make_draw(instance));
+  for (const scene::Instance& instance : scene.instances) draws.push_back(make_draw(instance, draws.size()));
   // Neighbours that share a material need it bound once.
   std::stable_sort(draws.begin(), draws.end(),
                    [](const Draw& a, const Draw& b) { return a.material.get() < b.material.get(); });
   draws_ = std::move(draws);
   lights_ = std::move(scene.lights);
+  bake_.reset();
   samples_ = 0;
   cache_.prune();
 }
@@ -113,6 +121,52 @@ void Frame::set_scene(scene::Scene scene) {
 void Frame::set_camera(const scene::Camera& camera) {
   camera_ = camera;
   samples_ = 0;
+}
+
+void Frame::set_bake(const Bake& bake) {
+  if (bake.instances.empty()) throw Error("A bake needs at least one instance; got none.");
+  std::vector<const gl::Program*> programs(draws_.size(), nullptr);
+  for (const std::size_t instance : bake.instances) {
+    const auto draw =
+        std::find_if(draws_.begin(), draws_.end(), [&](const Draw& each) { return each.instance == instance; });
+    if (draw == draws_.end())
+      throw Error("A bake's instances must be among the scene's {}, counted from 0; got {}.", draws_.size(), instance);
+    if (draw->source->uvs().empty())
+      throw Error("Baking needs UVs, and the mesh of instance {} has none: unwrap it first.", instance);
+    programs[static_cast<std::size_t>(draw - draws_.begin())] = &cache_.shading(*draw->material, Shading::unwrapped);
+  }
+  for (std::size_t i = 0; i < draws_.size(); ++i) draws_[i].program = programs[i];
+  bake_ = bake.view_from;
+  samples_ = 0;
+}
+
+UvUse Frame::uv_use() {
+  if (!bake_) throw Error("The use of UVs is known of a bake only: call set_bake first.");
+  // The sample's texture is free between samples.
+  targets_->shade.bind();
+  targets_->shade.clear();
+  glDisable(GL_DEPTH_TEST);
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_ONE, GL_ONE);
+  const gl::Program& program = cache_.count_program();
+  program.use();
+  program.set("jitter", glm::vec2(0.0F));
+  UvUse use;
+  const auto outside = [](const glm::vec2& uv) { return glm::any(glm::notEqual(uv, glm::clamp(uv, 0.0F, 1.0F))); };
+  for (const Draw& draw : draws_) {
+    if (draw.program == nullptr) continue;
+    draw.mesh->draw();
+    const std::vector<glm::vec2>& uvs = draw.source->uvs();
+    for (const glm::uvec3& triangle : draw.source->triangles())
+      if (outside(uvs[triangle.x]) || outside(uvs[triangle.y]) || outside(uvs[triangle.z])) ++use.triangles_outside;
+  }
+  std::vector<glm::vec4> counts(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
+  targets_->shade.read(glm::value_ptr(counts.front()));
+  for (const glm::vec4& count : counts) {
+    if (count.x > 0.0F) ++use.texels;
+    if (count.x > 1.0F) ++use.overlapping;
+  }
+  return use;
 }
 
 void Frame::set_taps(int taps) {
@@ -150,10 +204,11 @@ std::vector<glm::dvec3> Frame::sample_light_directions() const {
 }
 
 double Frame::pixels_across(const Draw& draw) const {
+  const double largest = std::max(width_, height_);
+  if (bake_) return largest;
   const glm::dvec4 centre = camera_.world_to_camera * glm::dvec4(draw.centre, 1.0);
   // w of a point at the centre's depth; a grain that the camera is inside of counts as filling the picture.
   const double w = camera_.camera_to_clip[2][3] * centre.z + camera_.camera_to_clip[3][3];
-  const double largest = std::max(width_, height_);
   if (w <= 0.0) return largest;
   const double half_image = draw.radius / w;
   return std::min(largest, std::max(half_image * std::abs(camera_.camera_to_clip[0][0]) * width_,
@@ -163,7 +218,7 @@ double Frame::pixels_across(const Draw& draw) const {
 void Frame::update_light_maps(const std::vector<glm::dvec3>& to_light) {
   light_maps_drawn_ = 0;
   for (const Draw& draw : draws_) {
-    if (!draw.light_maps) continue;
+    if (!draw.light_maps || draw.program == nullptr) continue;
     const int resolution = light_map_resolution(pixels_across(draw), draw.mean_free_paths_across);
     light_maps_drawn_ += draw.light_maps->update(*draw.mesh, cache_.light_map_program(), to_light, resolution);
   }
@@ -191,14 +246,16 @@ void Frame::shade(const std::vector<glm::dvec3>& to_light) {
 
   const DeviceMaterial* bound = nullptr;
   for (const Draw& draw : draws_) {
-    const gl::Program& program = draw.material->program();
+    if (draw.program == nullptr) continue;
+    const gl::Program& program = *draw.program;
     if (draw.material.get() != bound) {
       bound = draw.material.get();
-      bound->bind();
+      bound->bind(program);
       program.set("jitter", jitter);
       program.set("light_count", static_cast<int>(lights_.size()));
       program.set("sample_index", samples_);
       program.set("taps", taps_);
+      program.set("from_camera", static_cast<int>(bake_ == ViewFrom::active_camera));
     }
     if (draw.light_maps) draw.light_maps->bind(program);
     const glm::dmat4 object_to_grain = draw.object_to_grain();

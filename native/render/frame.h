@@ -1,9 +1,10 @@
-// One view's graph of passes on the device: light maps where a material needs them, shade one jittered sample, add it
-// to the sum, resolve the mean on demand.
+// One view's graph of passes on the device: light maps where a material needs them, shade one jittered sample, as the
+// camera sees it or unwrapped, add it to the sum, resolve the mean on demand.
 #pragma once
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "gl/texture.h"
 #include "gl/timer.h"
 #include "gl/vertex_array.h"
+#include "render/bake.h"
 #include "render/device_cache.h"
 #include "render/light_maps.h"
 #include "scene/camera.h"
@@ -34,6 +36,13 @@ class Frame {
   void resize(int width, int height);
   void set_scene(scene::Scene scene);
   void set_camera(const scene::Camera& camera);
+
+  /// From here to the next scene the picture is a texture: the instances unwrapped. Throws Error for instances that do
+  /// not exist or have no UVs.
+  void set_bake(const Bake& bake);
+
+  /// Of the instances baked; throws Error if nothing is.
+  UvUse uv_use();
 
   /// Light map samples that model 3 takes for one pixel and sample, over all lights.
   void set_taps(int taps);
@@ -62,8 +71,11 @@ class Frame {
     gl::Framebuffer accumulate;
   };
   struct Draw {
+    std::size_t instance;  // which of the scene's
+    scene::MeshPointer source;
     std::shared_ptr<gl::VertexArray> mesh;
     std::shared_ptr<DeviceMaterial> material;
+    const gl::Program* program;  // null: not drawn
     glm::dmat4 object_to_world;
     glm::dvec3 centre;                      // middle of its bounds, world space
     double radius;                          // of the sphere around its bounds
@@ -73,7 +85,7 @@ class Frame {
     glm::dmat4 object_to_grain() const;
   };
 
-  Draw make_draw(const scene::Instance& instance);
+  Draw make_draw(const scene::Instance& instance, std::size_t index);
 
   /// Those of the scene before, if they serve, so that a change elsewhere costs no light map.
   std::unique_ptr<LightMaps> take_light_maps(const scene::MeshPointer& mesh, const glm::dmat4& object_to_grain);
@@ -89,6 +101,7 @@ class Frame {
   std::uint32_t seed_;
   int samples_ = 0;
   scene::Camera camera_;
+  std::optional<ViewFrom> bake_;
   std::vector<scene::DirectionalLight> lights_;
   std::vector<Draw> draws_;
   std::unique_ptr<Targets> targets_;

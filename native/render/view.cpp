@@ -67,6 +67,15 @@ void View::set_camera(const scene::Camera& camera) {
   *samples_ = 0;
 }
 
+void View::set_bake(const Bake& bake) {
+  gl::ContextThread::instance().run([&] { frame(id_).set_bake(bake); });
+  *samples_ = 0;
+}
+
+UvUse View::uv_use() {
+  return gl::ContextThread::instance().run([&] { return frame(id_).uv_use(); });
+}
+
 void View::set_taps(int taps) {
   if (taps < 1 || taps > 65536) throw Error("taps must be in [1, 65536]; got {}.", taps);
   gl::ContextThread::instance().run([&] { frame(id_).set_taps(taps); });

@@ -1,4 +1,5 @@
-// The renderer as other threads see it: an image of a scene through a camera that gets better with every sample.
+// The renderer as other threads see it: an image of a scene, through a camera or unwrapped, that gets better with every
+// sample.
 #pragma once
 
 #include <atomic>
@@ -31,6 +32,14 @@ class View {
   /// Restarts the accumulation and sends nothing.
   void set_camera(const scene::Camera& camera);
 
+  /// Instead of what the camera sees, until the next set_scene(): the texture of some instances, unwrapped at their UVs
+  /// with v upwards, the scene's other instances left out. Restarts the accumulation. Throws Error for instances that
+  /// the scene does not have or that have no UVs.
+  void set_bake(const Bake& bake);
+
+  /// How the unwrapping being baked uses the texture. Throws Error if nothing is being baked.
+  UvUse uv_use();
+
   /// How many light map samples model 3 takes for one pixel and sample, over all lights (default 16). Restarts the
   /// accumulation. Throws Error unless it is in [1, 65536].
   void set_taps(int taps);
@@ -50,7 +59,8 @@ class View {
   int width() const { return width_; }
   int height() const { return height_; }
 
-  /// Fills (height, width, 4) floats: linear RGB premultiplied by coverage, and coverage; first row at the top.
+  /// Fills (height, width, 4) floats: linear RGB premultiplied by coverage, and coverage; first row at the top, which
+  /// in a bake is v = 1.
   void read(float* pixels);
 
   /// Milliseconds of each pass of the last sample, in the order they ran; empty before the first.

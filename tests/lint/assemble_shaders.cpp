@@ -77,15 +77,17 @@ void write_shading(Writer& writer) {
       continue;  // a choice that this model refuses
     }
     const std::string name = fmt::format("{}+{}", model, fmt::join(defines, "+"));
-    if (written.insert(name).second)
-      writer.write(name, ShaderSource({"passes/shade.vert"}, {}),
-                   ShaderSource({"passes/shade.frag", "models/" + model + ".glsl"}, defines));
+    if (!written.insert(name).second) continue;
+    for (const std::string pass : {"shade", "bake"})
+      writer.write(pass + "+" + name, ShaderSource({"passes/" + pass + ".vert"}, {}),
+                   ShaderSource({"passes/" + pass + ".frag", "models/" + model + ".glsl"}, defines));
   }
 }
 
 void write_passes(Writer& writer) {
   for (const std::string pass : {"accumulate", "resolve"})
     writer.write(pass, ShaderSource({"passes/full_screen.vert"}, {}), ShaderSource({"passes/" + pass + ".frag"}, {}));
+  writer.write("count", ShaderSource({"passes/bake.vert"}, {}), ShaderSource({"passes/count.frag"}, {}));
   writer.write("light_map", ShaderSource({"passes/light_map.vert"}, {}), ShaderSource({"passes/light_map.frag"}, {}));
 }
 

@@ -1,0 +1,30 @@
+// A texel of an unwrapped grain, seen from straight above or from the camera.
+
+#include "passes/lit_point.glsl"
+
+in vec3 grain_position;
+in vec3 grain_normal;
+
+uniform int from_camera;
+
+out vec4 radiance;
+
+// A texture has texels that the camera does not see; they are lit as if it looked at them from low above. This is what
+// Cycles' bake does, so that both sides mean the same: never below a rise of 0.2, and straight from above where the
+// surface faces away.
+vec3 bent_to_viewer(vec3 position, vec3 normal) {
+  const float least_rise = 0.2;
+  vec3 direction = direction_to_viewer(position);
+  float cosine = dot(direction, normal);
+  if (cosine > least_rise) return direction;
+  direction = normalize(direction + (least_rise - cosine) * normal);
+  return cosine > 0.0 ? direction : normalize(mix(direction, normal, -cosine));
+}
+
+void main() {
+  SurfacePoint point;
+  point.position = grain_position;
+  point.normal = normalize(grain_normal);
+  point.to_viewer = from_camera != 0 ? bent_to_viewer(point.position, point.normal) : point.normal;
+  radiance = vec4(lit_point(point), 1.0);
+}
