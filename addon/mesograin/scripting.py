@@ -96,7 +96,7 @@ class Comparison:
 
 def compare(models=arguments.DEFAULT_MODELS, references=None, out="//comparison", size=None, samples=64,
             reference_samples=None, settings=None, frames=9, cache=None, cache_limit=None, report=True,
-            on_progress=None):
+            on_progress=None, command=None):
     """Renders the current scene with every model and with the Cycles materials that mean the same, and measures.
 
     models: of 'lambert', 'conductor', 'model_1', 'model_2', 'model_3'; every material is rendered with each.
@@ -108,7 +108,8 @@ def compare(models=arguments.DEFAULT_MODELS, references=None, out="//comparison"
     three), g, eta, roughness (GGX alpha), scale, profile. frames: how many are timed for `frame_ms`.
     cache: folder of rendered references, None for the usual one. cache_limit: bytes that it may take.
     report: whether to write report.html. on_progress: called with a `progress.Step` (what, number, count, fraction,
-    seconds_left), a few times a second, from any thread.
+    seconds_left), a few times a second, from any thread. command: the line that repeats this comparison, for
+    provenance; None for this call.
 
     Returns a `Comparison`. A case that fails is in it with its sentence, and the others go on. The scene, its materials
     and the undo history stay as they are. Raises ComparisonError if nothing can be compared.
@@ -127,8 +128,8 @@ def compare(models=arguments.DEFAULT_MODELS, references=None, out="//comparison"
             settings=_settings(settings or {}),
             frames=_count("frames", frames),
             cache=Cache(cache, cache_limit),
-            command=_call(models=models, references=references, out=str(out), size=size, samples=samples,
-                          reference_samples=reference_samples, settings=settings))
+            command=command or call(models=models, references=references, out=str(out), size=size, samples=samples,
+                                    reference_samples=reference_samples, settings=settings))
         if not run.cases(request.models, request.references):
             raise ComparisonError(f"None of the references {', '.join(request.references)} answers "
                                   f"{', '.join(request.models)}: choose others, or None for each model's usual one.")
@@ -213,7 +214,6 @@ def _setting(name, value):
     return numbers if count == 3 else numbers[0]
 
 
-def _call(**arguments_given):
-    """The line that repeats a comparison, for provenance."""
-    given = ", ".join(f"{name}={value!r}" for name, value in arguments_given.items() if value is not None)
-    return f"mesograin.compare({given})"
+def call(**given):
+    """The line of Python that compares with these arguments, for provenance."""
+    return f"mesograin.compare({', '.join(f'{name}={value!r}' for name, value in given.items() if value is not None)})"

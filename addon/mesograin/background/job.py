@@ -1,0 +1,146 @@
+# A process in the background that compares: watched, cancelled at once, its files published whole or not at all.
+"""See `Job`. Knows nothing of Blender, so that it can be tested with any process."""
+
+import collections
+import contextlib
+import os
+import shutil
+import signal
+import subprocess
+import tempfile
+import threading
+from pathlib import Path
+
+from ..comparison.progress import Step
+from . import protocol
+
+RUNNING, DONE, FAILED, CANCELLED = "running", "done", "failed", "cancelled"
+PATIENCE_SECONDS = 2.0
+"""What a cancelled process is given to end by itself, before it is killed."""
+
+
+class Job:
+    """command: of a process that prints protocol events and writes its files to `staging`.
+
+    folder: its temporary files, made by the caller; gone when the job ends. out: where its files go when it is done;
+    other files there stay. Everything is read from any thread. Raises OSError if `out` cannot be written.
+    """
+
+    def __init__(self, folder, out):
+        self.folder = Path(folder)
+        self.out = Path(out)
+        self.state = RUNNING
+        self.step = None
+        self.sentences = []
+        self.error = ""
+        self.changes = 0
+        """Goes up whenever there is something new to show."""
+        self._made_out = not self.out.exists()
+        self.out.mkdir(parents=True, exist_ok=True)
+        # On the same file system, so that a finished file is renamed and never copied.
+        self.staging = Path(tempfile.mkdtemp(prefix=".unfinished-", dir=self.out))
+        self._lines = collections.deque(maxlen=40)
+        self._process = None
+        self._finished = False
+        self._lock = threading.Lock()
+        self._thread = None
+
+    def start(self, command, environment=None):
+        """Runs the command in a process group of its own; it may end itself when its standard input ends, which is
+        when this process does."""
+        environment = {**(os.environ if environment is None else environment), "TMPDIR": str(self.folder)}
+        try:
+            self._process = subprocess.Popen(command, env=environment, stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+                                             stderr=subprocess.STDOUT, start_new_session=True)
+        except OSError as error:
+            self._clean()
+            self._end(FAILED, f"{command[0]} cannot be run ({error.strerror}).")
+            return
+        self._thread = threading.Thread(target=self._watch, name="mesograin-job", daemon=True)
+        self._thread.start()
+
+    def cancel(self):
+        """Ends the job; its state says so at once, its process and files are gone within PATIENCE_SECONDS."""
+        with self._lock:
+            if self.state != RUNNING:
+                return
+            self.state = CANCELLED
+            self.changes += 1
+        if self._process is not None:
+            threading.Thread(target=self._kill, name="mesograin-cancel", daemon=True).start()
+
+    def wait(self, timeout=None):
+        """Until the process and what it left are gone; whether they are."""
+        if self._thread is not None:
+            self._thread.join(timeout)
+            return not self._thread.is_alive()
+        return True
+
+    def _kill(self):
+        for number, patience in ((signal.SIGTERM, PATIENCE_SECONDS), (signal.SIGKILL, None)):
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(self._process.pid, number)
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                self._process.wait(patience)
+        # Whatever it had started goes with it, also if it ended in time itself.
+
+    def _watch(self):
+        for line in self._process.stdout:
+            event = protocol.decode(line)
+            if event is not None:
+                self._take(event)
+            elif line.strip():
+                self._lines.append(line.decode("utf-8", "replace").strip())
+        code = self._process.wait()
+        self._process.stdin.close()
+        self._process.stdout.close()
+        if self.state == RUNNING and self._finished and code == 0:
+            try:
+                self._publish()
+            except OSError as error:
+                self._clean()
+                self._end(FAILED, f"The results cannot be put into {self.out} ({error.strerror}): choose another.")
+                return
+            self._clean()
+            self._end(DONE)
+            return
+        self._clean()
+        self._end(FAILED, self.error or self._why(code))
+
+    def _take(self, event):
+        with self._lock:
+            if event["event"] == "step":
+                self.step = Step(**{name: value for name, value in event.items() if name != "event"})
+            elif event["event"] == "sentence":
+                self.sentences.append(event["text"])
+            elif event["event"] == "failed":
+                self.error = event["text"]
+            elif event["event"] == "done":
+                self._finished = True
+            self.changes += 1
+
+    def _end(self, state, error=""):
+        with self._lock:
+            if self.state == RUNNING:
+                self.state, self.error = state, error
+            self.changes += 1
+
+    def _why(self, code):
+        how = f"was ended by signal {-code}" if code < 0 else f"ended with exit code {code}"
+        last = f"; it last said: {self._lines[-1]}" if self._lines else ""
+        return f"The background Blender {how}{last}."
+
+    def _publish(self):
+        for path in sorted(self.staging.rglob("*")):
+            target = self.out / path.relative_to(self.staging)
+            if path.is_dir():
+                target.mkdir(exist_ok=True)
+            else:
+                os.replace(path, target)
+
+    def _clean(self):
+        shutil.rmtree(self.folder, ignore_errors=True)
+        shutil.rmtree(self.staging, ignore_errors=True)
+        if self._made_out:
+            with contextlib.suppress(OSError):
+                self.out.rmdir()  # stays if there is anything in it
