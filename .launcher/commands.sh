@@ -22,7 +22,11 @@ take_blender_option() {
   done
 }
 
-run_compare() {
+# in_background_blender COMMAND ROOM ARGUMENT...: a command of the add-on that takes a scene, by default the sphere.
+in_background_blender() {
+  name=$1
+  room=$2
+  shift 2
   take_blender_option "$@"
   eval "set -- $remaining"
   scene=
@@ -30,7 +34,7 @@ run_compare() {
   while [ $# -gt 0 ]; do
     case $1 in
       *.blend)
-        [ -z "$scene" ] || fail "$exit_usage" "compare takes one scene; it was given '$scene' and '$1'."
+        [ -z "$scene" ] || fail "$exit_usage" "$name takes one scene; it was given '$scene' and '$1'."
         scene=$1
         ;;
       *) arguments="$arguments$(quote "$1")" ;;
@@ -40,7 +44,7 @@ run_compare() {
   eval "set -- $arguments"
   case ${1:--} in
     -*) ;;
-    *) fail "$exit_usage" "compare takes a .blend file; '$1' is none." ;;
+    *) fail "$exit_usage" "$name takes a .blend file; '$1' is none." ;;
   esac
   scene=${scene:-$source_folder/blend_files/sphere.blend}
   [ -f "$scene" ] || fail "$exit_usage" "There is no scene '$scene'."
@@ -48,9 +52,17 @@ run_compare() {
   ensure_lists report
   ensure_product product
   mkdir -p "$logs"
-  exec /usr/bin/python3 "$source_folder/.launcher/run_blender.py" "$logs/compare.log" "$blender" --background \
-    --factory-startup --python-exit-code 1 --python "$source_folder/addon/mesograin/comparison/command.py" -- \
+  exec /usr/bin/python3 "$source_folder/.launcher/run_blender.py" "$logs/$name.log" "$blender" --background \
+    --factory-startup --python-exit-code 1 --python "$source_folder/addon/mesograin/$room/command.py" -- \
     "$scene" "$@"
+}
+
+run_compare() {
+  in_background_blender compare comparison "$@"
+}
+
+run_trade() {
+  in_background_blender trade trade "$@"
 }
 
 run_sweep() {

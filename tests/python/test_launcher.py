@@ -9,7 +9,7 @@ import zipfile
 import pytest
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
-COMMANDS = ("compare", "sweep", "render", "test", "bench", "build", "package", "install")
+COMMANDS = ("compare", "trade", "sweep", "render", "test", "bench", "build", "package", "install")
 
 
 def launcher(*arguments, folder=SOURCE, **environment):
@@ -34,6 +34,12 @@ def test_help_of_compare_names_the_options_there_are():
     command = [sys.executable, str(SOURCE / "addon/mesograin/comparison/arguments.py")]
     from_argparse = subprocess.run(command, check=True, capture_output=True, text=True).stdout
     assert options_in(launcher("compare", "--help").stdout) == options_in(from_argparse) | {"--blender"}
+
+
+def test_help_of_trade_names_the_options_there_are():
+    command = [sys.executable, "-m", "mesograin.trade.arguments"]
+    from_argparse = subprocess.run(command, check=True, capture_output=True, text=True, cwd=SOURCE / "addon").stdout
+    assert options_in(launcher("trade", "--help").stdout) == options_in(from_argparse) | {"--blender"}
 
 
 def test_help_of_render_names_the_options_there_are():

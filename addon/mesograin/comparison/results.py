@@ -72,10 +72,11 @@ class Output:
 
     def write_results(self, results):
         """results.json and results.csv."""
-        self._write_text("results.json", json.dumps(results, indent=1, allow_nan=False) + "\n")
-        self._write_text("results.csv", _csv(results["cases"]))
+        self.write_text("results.json", json.dumps(results, indent=1, allow_nan=False) + "\n")
+        self.write_text("results.csv", _csv(results["cases"]))
 
-    def _write_text(self, name, text):
+    def write_text(self, name, text):
+        """A text file under the folder."""
         path = self.folder / name
         partial = path.with_name(path.name + ".part")
         try:

@@ -1,5 +1,5 @@
-# Writes report.html beside a results.json: python3 build.py FOLDER [--out FILE]. Needs jinja2, matplotlib, numpy and
-# the native module.
+# Writes report.html beside a results.json or a trade.json: python3 build.py FOLDER [--out FILE]. Needs jinja2,
+# matplotlib, numpy and the native module.
 """The command; one sentence and exit code 1 for whatever is missing."""
 
 import argparse
@@ -14,8 +14,10 @@ sys.path.insert(0, str(ROOM.parent))
 
 def main(words):
     """Returns the exit code."""
-    parser = argparse.ArgumentParser(description="Writes a self-contained report.html from a folder with results.json.")
-    parser.add_argument("folder", type=Path, help="folder with results.json and its pictures")
+    parser = argparse.ArgumentParser(
+        description="Writes a self-contained report.html from a folder with results.json or trade.json."
+    )
+    parser.add_argument("folder", type=Path, help="folder with results.json or trade.json and its pictures")
     parser.add_argument("--out", type=Path, default=None, help="file to write (default: FOLDER/report.html)")
     chosen = parser.parse_args(words)
     try:
@@ -27,12 +29,14 @@ def main(words):
             f"{error.name} is needed by {sys.executable}: install python3-jinja2, python3-matplotlib and python3-numpy."
         )
 
-    from report import page_builder, reading
+    from report import page_builder, reading, trade_page
 
     out = chosen.out or chosen.folder / "report.html"
     try:
-        results, cases = reading.read(chosen.folder)
-        html = page_builder.build(results, cases, out.parent)
+        if (chosen.folder / reading.TRADE).exists():
+            html = trade_page.build(*reading.read_trade(chosen.folder), out.parent)
+        else:
+            html = page_builder.build(*reading.read(chosen.folder), out.parent)
         partial = out.with_name(out.name + ".part")
         try:
             partial.write_text(html, encoding="utf-8")

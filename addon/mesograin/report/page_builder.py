@@ -49,7 +49,7 @@ def build(results, cases, folder):
             {"key": key, "title": title, "form": how, "definition": _definition(results["definitions"], key)}
             for key, title, how in LEADING
         ],
-        cost=_plot(plots.cost([of.case for of in done]), Path(folder) / PLOTS, "cost"),
+        cost=plot(plots.cost([of.case for of in done]), Path(folder) / PLOTS, "cost"),
         overview=_files(plots.overview(rows), Path(folder) / PLOTS, "overview"),
         pictures=pictures.texts,
         script=Markup((PAGE / "report.js").read_text(encoding="utf-8")),
@@ -77,8 +77,8 @@ def render(template, **values):
     return environment.get_template(template).render(**styles, **values)
 
 
-def _plot(draw, folder, name):
-    """A plot in the page and beside it: {"svg": Markup, "files": [path from the page]}; None if there is nothing."""
+def plot(draw, folder, name):
+    """A plot in the page and in the folder of plots: {"svg": Markup, "files": [path from the page]}; or None."""
     svg = plots.page(draw)
     if not svg:
         return None
@@ -126,20 +126,24 @@ def _view(of, definitions, pictures, folder):
     view["live"] = None if None in live.values() else Markup(json.dumps({**size, **live}))
     relative = colours.relative_error(of.model, of.reference)
     view["plots"] = [
-        (title, plot)
-        for title, plot in (
-            ("Radiance along the steepest line", _plot(plots.profile(of.model, of.reference), folder,
-                                                       f"{case['name']}.profile")),
-            ("Distribution of the relative error", _plot(plots.histogram(relative, of.mask), folder,
-                                                         f"{case['name']}.histogram")),
+        (title, made)
+        for title, made in (
+            (
+                "Radiance along the steepest line",
+                plot(plots.profile(of.model, of.reference), folder, f"{case['name']}.profile"),
+            ),
+            (
+                "Distribution of the relative error",
+                plot(plots.histogram(relative, of.mask), folder, f"{case['name']}.histogram"),
+            ),
         )
-        if plot
+        if made
     ]
     view["numbers"] = [
         {
             "title": title,
-            "text": form(_get(case, key), how),
-            "value": _get(case, key),
+            "text": form(look_up(case, key), how),
+            "value": look_up(case, key),
             "definition": _definition(definitions, key),
         }
         for key, title, how in LEADING
@@ -157,7 +161,8 @@ def _view(of, definitions, pictures, folder):
     return view
 
 
-def _get(case, key):
+def look_up(case, key):
+    """A value by its dotted path; None if there is none."""
     value = case
     for part in key.split("."):
         value = value.get(part) if isinstance(value, dict) else None

@@ -2,12 +2,13 @@
 """`page` turns a plot into SVG whose colours are the page's custom properties, so that it suits light and dark alike;
 `save` writes it as files on white. A plot is a function of a Palette that returns a matplotlib figure."""
 
+import base64
 import io
 import os
 import re
 from dataclasses import astuple, dataclass
 
-import matplotlib
+import matplotlib.image
 import numpy
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import ListedColormap
@@ -27,12 +28,14 @@ class Palette:
     grid: str
     ours: str
     theirs: str
+    second: str
+    third: str
 
 
-PAPER = Palette("#1b1c1e", "#55585d", "#dcddda", "#c2410c", "#57707f")
+PAPER = Palette("#1b1c1e", "#55585d", "#dcddda", "#c2410c", "#57707f", "#7c4dbd", "#0f8a72")
 # Stand-ins that the page's own colours replace.
-_PAGE = Palette("#010203", "#010204", "#010205", "#010206", "#010207")
-_PROPERTIES = ("--ink", "--quiet", "--line", "--ours", "--theirs")
+_PAGE = Palette("#010203", "#010204", "#010205", "#010206", "#010207", "#010208", "#010209")
+_PROPERTIES = ("--ink", "--quiet", "--line", "--ours", "--theirs", "--second", "--third")
 _BARE = {"Date": None, "Creator": None, "Format": None, "Type": None}
 
 
@@ -103,7 +106,7 @@ def cost(cases):
     reference's noise alone would score."""
 
     def draw(palette):
-        figure, axes = _figure(9.0, 2.9)
+        figure, axes = new_figure(9.0, 2.9)
         axes.set_xscale("log")
         axes.set_yscale("log")
         shown = [case for case in cases if case["metrics"]["relative_l1"]]
@@ -141,7 +144,7 @@ def profile(model, reference):
         theirs, ours = (_sample_band(pixels, line) for pixels in (reference, model))
         middle, spread = theirs.mean(axis=0), theirs.std(axis=0, ddof=1) / numpy.sqrt(len(theirs))
         along = numpy.linspace(0.0, numpy.hypot(*(line[1] - line[0])), middle.size)
-        figure, axes = _figure(4.4, 2.3)
+        figure, axes = new_figure(4.4, 2.3)
         axes.fill_between(along, middle - spread, middle + spread, color=palette.theirs, alpha=0.3, linewidth=0)
         axes.plot(along, middle, color=palette.theirs, linewidth=2.6, alpha=0.6, solid_capstyle="round",
                   label="reference ± standard error")
@@ -167,7 +170,7 @@ def histogram(relative, mask):
         if not values.size:
             return None
         reach = max(1.5 * float(numpy.percentile(numpy.abs(values), 95.0)), 0.05)
-        figure, axes = _figure(4.4, 2.3)
+        figure, axes = new_figure(4.4, 2.3)
         axes.hist(numpy.clip(values, -reach, reach), bins=61, range=(-reach, reach), color=palette.ours, alpha=0.75,
                   histtype="stepfilled", linewidth=0, weights=numpy.full(values.size, 100.0 / values.size))
         axes.axvline(0.0, color=palette.quiet, linewidth=0.8)
@@ -221,6 +224,13 @@ def overview(pictures):
     return draw
 
 
+def png(colours):
+    """Data URI of (h, w, 3) sRGB-encoded values in [0, 1]."""
+    octets = io.BytesIO()
+    matplotlib.image.imsave(octets, numpy.ascontiguousarray(colours), format="png")
+    return "data:image/png;base64," + base64.b64encode(octets.getvalue()).decode("ascii")
+
+
 def percent(value, _):
     """A share as an axis shows it."""
     return f"{100 * value:g} %"
@@ -240,7 +250,8 @@ def log_axis(axis, values, margin, write, steps=(1, 2, 3, 5, 7)):
     (axis.axes.set_xlim if axis.axis_name == "x" else axis.axes.set_ylim)(low, high)
 
 
-def _figure(width, height):
+def new_figure(width, height):
+    """(figure, axes) of a size in inches."""
     figure = Figure(figsize=(width, height), layout="constrained")
     FigureCanvasAgg(figure)
     axes = figure.add_subplot()

@@ -1,5 +1,5 @@
-# Reads results.json and the EXR files it names.
-"""See `read`."""
+# Reads results.json or trade.json and the EXR files it names.
+"""See `read` and `read_trade`."""
 
 import base64
 import importlib.machinery
@@ -30,24 +30,44 @@ class CasePictures:
     png: dict = None
 
 
+RESULTS, TRADE = "results.json", "trade.json"
+
+
 def read(folder):
-    """(results, [CasePictures]) of a folder. Raises UnreadableError with a sentence."""
+    """(results, [CasePictures]) of a comparison's folder. Raises UnreadableError with a sentence."""
     folder = Path(folder)
-    path = folder / "results.json"
+    results = _load(folder / RESULTS, "mesograin-results", "a comparison")
+    native = _native()
+    return results, [_pictures(native, folder, case) for case in results["cases"]]
+
+
+def read_trade(folder):
+    """(results, {point's name, or "reference": (h, w, 4) linear pixels}) of a trade curve's folder. Raises
+    UnreadableError with a sentence."""
+    folder = Path(folder)
+    results = _load(folder / TRADE, "mesograin-trade", "a trade curve")
+    native = _native()
+    wanted = {"reference": "pictures/reference.exr", **{point["name"]: point["picture"] for point in results["points"]}}
+    try:
+        return results, {name: native.read_exr(folder / path)[0] for name, path in wanted.items()}
+    except native.Error as error:
+        raise UnreadableError(str(error)) from error
+
+
+def _load(path, form, what):
     try:
         results = json.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise UnreadableError(f"{path} cannot be read ({error.strerror}).") from error
     except ValueError as error:
         raise UnreadableError(f"{path} is not JSON ({error}).") from error
-    if not isinstance(results, dict) or results.get("format") != "mesograin-results":
-        raise UnreadableError(f"{path} holds no results of a comparison.")
+    if not isinstance(results, dict) or results.get("format") != form:
+        raise UnreadableError(f"{path} holds no results of {what}.")
     if results.get("format_version") != 1:
         raise UnreadableError(
             f"{path} has format version {results.get('format_version')}; this report reads version 1."
         )
-    native = _native()
-    return results, [_pictures(native, folder, case) for case in results["cases"]]
+    return results
 
 
 def _pictures(native, folder, case):

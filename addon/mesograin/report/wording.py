@@ -57,3 +57,24 @@ def _digits(value):
         return f"{value:.2e}"
     places = max(0, 2 - int(math.floor(math.log10(size))))
     return f"{value:.{places}f}"
+
+
+def times(ratio):
+    """'1.7×', '53×', '3400×', '17 000×': two significant digits."""
+    if ratio < 9.95:
+        return f"{ratio:.1f}×"
+    rounded = round(ratio, 1 - math.floor(math.log10(ratio)))
+    return (f"{rounded:,.0f}".replace(",", "\u202f") if rounded >= 10000 else f"{rounded:.0f}") + "×"
+
+
+def duration(milliseconds):
+    """'12 ms', '4.1 s', '41 s', '3 min 05 s'."""
+    if milliseconds < 999.5:
+        return f"{milliseconds:.2g} ms" if milliseconds < 9.95 else f"{milliseconds:.0f} ms"
+    seconds = milliseconds / 1000.0
+    if seconds < 9.95:
+        return f"{seconds:.1f} s"
+    seconds = round(seconds)
+    if seconds < 60:
+        return f"{seconds} s"
+    return f"{seconds // 60} min {seconds % 60:02d} s" if seconds < 36000 else f"{seconds / 3600.0:.0f} h"

@@ -3,7 +3,7 @@
 (() => {
   for (const table of document.querySelectorAll("table.sortable")) {
     const headers = [...table.tHead.rows[0].cells];
-    headers.forEach((header, column) => header.querySelector(".sort").addEventListener("click", () => {
+    headers.forEach((header, column) => header.querySelector(".sort")?.addEventListener("click", () => {
       const ascending = header.getAttribute("aria-sort") !== "ascending";
       headers.forEach((other) => other.removeAttribute("aria-sort"));
       header.setAttribute("aria-sort", ascending ? "ascending" : "descending");

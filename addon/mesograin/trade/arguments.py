@@ -1,0 +1,130 @@
+# The command line of `trade`, readable without Blender.
+"""See `parse`."""
+
+from pathlib import Path
+
+from ..comparison.arguments import SETTABLE, Parser, _bytes, _positive, _setting, _size
+from ..cycles.kinds import KINDS
+
+
+def build():
+    """The parser, for --help without Blender."""
+    parser = Parser(
+        prog="mesograin trade",
+        usage="mesograin trade [SCENE.blend] [options]",
+        description=(
+            "Measures error against time: every model at several sample counts, and Cycles itself at rising samples,"
+            " all against one converged Cycles render; draws the Pareto front."
+        ),
+        epilog=(
+            "Exit codes: 0 measured, 1 something failed (the rest is written), 2 bad arguments or scene, 3 the output "
+            "folder cannot be written, 130 interrupted. The same command goes on where it was stopped."
+        ),
+    )
+    parser.add_argument("scene", nargs="?", type=Path, default=None, metavar="SCENE.blend", help="the scene to measure")
+    parser.add_argument(
+        "--reference",
+        choices=tuple(KINDS),
+        default="volume_index_matched",
+        metavar="KIND",
+        help=f"what Cycles renders, of {', '.join(KINDS)} (default: volume_index_matched)",
+    )
+    parser.add_argument(
+        "--models",
+        nargs="+",
+        default=None,
+        metavar="MODEL",
+        help="models to measure (default: all that answer the reference)",
+    )
+    parser.add_argument(
+        "--samples",
+        nargs="+",
+        type=_positive,
+        default=(1, 4, 16, 64),
+        metavar="N",
+        help="samples a pixel on our side (default: 1 4 16 64)",
+    )
+    parser.add_argument(
+        "--taps",
+        nargs="+",
+        type=_positive,
+        default=(4, 16, 64),
+        metavar="N",
+        help="samples of the lit surface that model 3 takes for each of those (default: 4 16 64)",
+    )
+    parser.add_argument(
+        "--reference-samples",
+        type=_positive,
+        default=512,
+        metavar="N",
+        help="samples a pixel of each of the two seeds of the converged render (default: 512)",
+    )
+    parser.add_argument(
+        "--cycles-samples",
+        nargs="+",
+        type=_positive,
+        default=None,
+        metavar="N",
+        help="samples a pixel of the Cycles renders to measure (default: 1 2 4 ... to a quarter of the converged one)",
+    )
+    parser.add_argument(
+        "--out", type=Path, default=Path("trade"), metavar="DIR", help="folder for what is written (default: trade)"
+    )
+    parser.add_argument(
+        "--size", type=_size, default=(128, 128), metavar="WxH", help="picture size in pixels (default: 128x128)"
+    )
+    parser.add_argument(
+        "--frames", type=_positive, default=25, metavar="N", help="frames whose median is the time of one (default: 25)"
+    )
+    parser.add_argument(
+        "--set",
+        action="append",
+        type=_setting,
+        default=[],
+        dest="settings",
+        metavar="NAME=VALUE",
+        help=(
+            f"a material parameter for every material, on both sides: {', '.join(SETTABLE)}; RGB as one number or three"
+            " with commas; may be repeated"
+        ),
+    )
+    parser.add_argument("--cache", type=Path, default=None, metavar="DIR", help="folder of rendered references")
+    parser.add_argument(
+        "--cache-limit", type=_bytes, default=None, metavar="SIZE", help="bytes that it may take"
+    )
+    return parser
+
+
+def parse(words):
+    """argparse.Namespace of the command line after `--`. Raises SystemExit(2) after one sentence on standard error."""
+    parser = build()
+    chosen = parser.parse_args(words)
+    chosen.settings = dict(chosen.settings)
+    answered = KINDS[chosen.reference].models
+    chosen.models = tuple(dict.fromkeys(chosen.models or answered))
+    for model in chosen.models:
+        if model not in answered:
+            parser.error(f"'{model}' is not answered by {chosen.reference}; allowed are {', '.join(answered)}")
+    for name in ("samples", "taps"):
+        setattr(chosen, name, tuple(sorted(set(getattr(chosen, name)))))
+    chosen.cycles_samples = tuple(sorted(set(chosen.cycles_samples or rising(chosen.reference_samples))))
+    if chosen.cycles_samples[-1] > chosen.reference_samples:
+        parser.error(
+            f"--cycles-samples must not exceed the converged render's {chosen.reference_samples} samples;"
+            f" got {chosen.cycles_samples[-1]}"
+        )
+    if chosen.scene and not chosen.scene.is_file():
+        parser.error(f"there is no scene '{chosen.scene}'")
+    return chosen
+
+
+def rising(converged):
+    """1, 2, 4, ... up to a quarter of the converged render's samples: beyond, the reference's own noise drowns them."""
+    counts = [1]
+    while 2 * counts[-1] <= converged // 4:
+        counts.append(2 * counts[-1])
+    return tuple(counts)
+
+
+if __name__ == "__main__":
+    build().print_help()

@@ -1,0 +1,276 @@
+# Measures the points of a trade curve, each kept as soon as it is known, so that a stopped run goes on from there.
+"""See `measure`."""
+
+import csv
+import datetime
+import hashlib
+import io
+import json
+import os
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import bpy
+
+from .. import native_module
+from ..comparison import definitions, origin
+from ..comparison.results import Output
+from ..cycles import kinds, nodes, reference
+from ..cycles.cache import Cache
+from . import curve
+from .progressive import Progressive
+
+FORMAT, FORMAT_VERSION = "mesograin-trade", 1
+RESULTS = "trade.json"
+SEED = 11
+"""Of the Cycles renders that are measured; the converged one has others, so that their noise is independent."""
+
+METRICS = ("relative_l1", "bias", "rse_mean")
+"""What a point keeps of docs/metrics.md beside its error."""
+
+DEFINITIONS = {
+    "error": (
+        "relative_l1 with the converged render's noise taken off: sqrt(max(0, v^2 - floor^2)), v = sum |i - r| / sum r;"
+        " 0 is perfect, no unit"
+    ),
+    "resolved": f"whether the error is above {curve.RESOLVED:g} of the noise floor; if not, it is at most what stands",
+    "milliseconds": (
+        "ours: samples times frame_ms; Cycles: wall-clock time of one render on all cores of the CPU, with the"
+        " preparation of its scene"
+    ),
+    "frame_ms": (
+        "milliseconds of all passes of a frame, one sample a pixel, on the device named; the median of frames_timed"
+        " frames after a first one that prepared the device"
+    ),
+    "noise_floor": "relative_l1 that a perfect picture would score, because the converged render is noisy itself",
+    "front": "no other point is both faster and nearer to the converged render",
+}
+
+
+@dataclass(frozen=True)
+class Request:
+    """What to measure. reference: a name in `kinds.KINDS`; models: some of those that it answers. samples: a pixel, on
+    our side; taps: of model 3. reference_samples: a pixel and seed, of the converged render; cycles_samples: of those
+    that are measured against it. settings: {material parameter: value}, coefficients in 1/mm. command: the line that
+    repeats it."""
+
+    out: Path
+    reference: str
+    models: tuple
+    samples: tuple
+    taps: tuple
+    reference_samples: int
+    cycles_samples: tuple
+    size: tuple
+    frames: int = 25
+    settings: dict = field(default_factory=dict)
+    cache: Cache = field(default_factory=Cache)
+    command: str = ""
+
+
+def measure(request, progress):
+    """Measures a Request in Blender's current scene and writes trade.json, trade.csv and EXR files into its folder;
+    returns what trade.json holds. Points that the folder has already, measured alike, are not measured again.
+
+    progress: a `comparison.progress.Progress`. Raises OutputError if the folder cannot be written, ReferenceError or
+    StageError if Cycles cannot render, native.Error or Unavailable if nothing can be drawn.
+    """
+    native = native_module.get()
+    output = Output(request.out)
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    overrides = _per_unit(request.settings, bpy.context.scene.mesograin.millimetres_per_unit)
+    ours = Progressive(depsgraph, request.size, overrides)
+    for warning in ours.warnings:
+        progress.say(warning)
+    progress.plan(_steps(request))
+
+    def cycles(samples, seeds):
+        progress.begin()
+        rendered = reference.render(
+            depsgraph,
+            request.reference,
+            request.size,
+            samples=samples,
+            seeds=seeds,
+            cache=request.cache,
+            overrides=overrides,
+            on_progress=progress.update,
+        )
+        progress.end(learn=not rendered.cached)
+        return rendered
+
+    truth = cycles(request.reference_samples, reference.SEEDS)
+    chosen = kinds.our_side(request.reference, nodes.features())
+    kind = kinds.KINDS[request.reference]
+    results = {
+        "format": FORMAT,
+        "format_version": FORMAT_VERSION,
+        "complete": False,
+        "created": datetime.datetime.now(datetime.timezone.utc).isoformat(timespec="seconds"),
+        "command": request.command,
+        "scene": origin.scene_name(),
+        "size": list(request.size),
+        "versions": origin.versions(),
+        "device": native.device_info(),
+        "cpu": origin.processor(),
+        "settings": {
+            "pixel_filter": "box, one pixel, on both sides",
+            "colour_space": "linear, scene-referred",
+            "frames_timed": request.frames,
+        },
+        "definitions": {**DEFINITIONS, **{name: definitions.METRICS[name] for name in METRICS}},
+        "material": ours.parameters(chosen),
+        "reference": {
+            "kind": kind.name,
+            "title": kind.title,
+            "samples": request.reference_samples,
+            "seeds": list(reference.SEEDS),
+            "bounces": kind.bounces,
+            "seconds": round(truth.seconds, 3),
+            "notes": list(truth.notes),
+        },
+        "points": [],
+    }
+    book = _Book(results, output, truth, _fingerprint(request, results, truth))
+
+    provenance = {
+        "made_by": f"Mesograin {native.__version__}",
+        "scene": origin.scene_name(),
+        "created_by": request.command,
+    }
+    book.picture("reference", truth.mean, provenance)
+    for model in request.models:
+        for taps in request.taps if model == "model_3" else (None,):
+            _measure_model(request, ours, {"model": model, **chosen}, taps, book, progress, provenance)
+    for samples in request.cycles_samples:
+        name = f"cycles.samples{samples}"
+        if book.has(name):
+            progress.begin()
+            progress.end(learn=False)
+            continue
+        rendered = cycles(samples, (SEED,))
+        book.picture(name, rendered.images[0], {**provenance, "cycles": rendered.provenance[0]})
+        book.add(name, rendered.images[0], side="cycles", model="Cycles", taps=None, samples=samples,
+                 milliseconds=1000.0 * rendered.seconds)
+    book.finish()
+    return results
+
+
+def _measure_model(request, ours, chosen, taps, book, progress, provenance):
+    """The points of one model (and number of taps) at every number of samples: one picture that is refined."""
+    progress.begin()
+    model = chosen["model"]
+    setting = f"{model}.taps{taps}" if taps else model
+    names = {f"{setting}.samples{count}": count for count in request.samples}
+    missing = {name: count for name, count in names.items() if not book.has(name)}
+    if not missing:
+        progress.end(learn=False)
+        return
+    ours.begin(chosen, taps)
+    images = {}
+    for name, count in missing.items():
+        images[name] = ours.refine(count)
+        book.picture(name, images[name], {**provenance, "model": model, "samples": count, "taps": taps})
+        progress.update(count / (request.samples[-1] + request.frames))
+    frame_ms, passes = ours.time_frames(request.frames)
+    for name, count in missing.items():
+        book.add(name, images[name], side="mesograin", model=model, taps=taps, samples=count,
+                 milliseconds=count * frame_ms, frame_ms=frame_ms, frames_timed=request.frames, passes_ms=passes)
+    progress.end()
+
+
+class _Book:
+    """The points so far, on disk after each; those of an earlier run that was determined by the same are taken over."""
+
+    def __init__(self, results, output, truth, fingerprint):
+        self._results, self._output, self._truth = results, output, truth
+        results["fingerprint"] = fingerprint
+        self._known = {}
+        try:
+            earlier = json.loads((output.folder / RESULTS).read_text(encoding="utf-8"))
+            if earlier.get("fingerprint") == fingerprint:
+                self._known = {point["name"]: point for point in earlier["points"]}
+        except (OSError, ValueError, KeyError, AttributeError):
+            pass  # nothing there, or nothing of ours
+
+    def has(self, name):
+        """Whether a point was measured before; if so, it is taken over."""
+        if name not in self._known:
+            return False
+        if self._known[name] not in self._results["points"]:
+            self._results["points"].append(self._known[name])
+            self._write()
+        return True
+
+    def picture(self, name, pixels, provenance):
+        self._output.write_exr(f"pictures/{name}.exr", pixels, provenance)
+
+    def add(self, name, image, **point):
+        metrics = native_module.get().compare(image, *self._truth.images)
+        floor, mask = metrics["noise_floor"], metrics["mask"]
+        kept = {name: metrics[name] for name in METRICS}
+        self._results["reference"]["noise_floor"] = floor["relative_l1"]
+        self._results["reference"]["mask"] = mask
+        self._results["points"].append(
+            {"name": name, **point, **curve.place(metrics, floor), "metrics": kept, "picture": f"pictures/{name}.exr"}
+        )
+        self._write()
+
+    def finish(self):
+        self._results["complete"] = True
+        self._write()
+
+    def _write(self):
+        points = self._results["points"]
+        order = curve.front(points)
+        self._results["front"] = [points[at]["name"] for at in order]
+        self._results["summary"] = curve.summary(points)
+        self._output.write_text(RESULTS, json.dumps(self._results, indent=1, allow_nan=False) + "\n")
+        self._output.write_text("trade.csv", _csv(points, set(self._results["front"])))
+
+
+def _fingerprint(request, results, truth):
+    """Of all that determines a point's numbers: the converged render's own keys hold the scene and its materials."""
+    described = [
+        FORMAT_VERSION,
+        [shot["key"] for shot in truth.provenance],
+        results["material"],
+        results["versions"],
+        results["device"]["renderer"],
+        results["cpu"],
+        request.frames,
+    ]
+    return hashlib.sha256(json.dumps(described, sort_keys=True).encode()).hexdigest()
+
+
+def _csv(points, on_front):
+    columns = ("name", "side", "model", "taps", "samples", "milliseconds", "frame_ms", "error", "resolved")
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow([*columns, *METRICS, "front"])
+    for point in points:
+        writer.writerow([*(point.get(name) for name in columns), *(point["metrics"][name] for name in METRICS),
+                         point["name"] in on_front])
+    return text.getvalue()
+
+
+def _steps(request):
+    """The converged render, ours, then Cycles' samples: (what, kind, guessed seconds) each."""
+    kind = kinds.KINDS[request.reference]
+    million = request.size[0] * request.size[1] * 1e-6 / (os.cpu_count() or 1)
+    yield "converged render", "cycles", 2 * kind.cost * request.reference_samples * million
+    for model in request.models:
+        for taps in request.taps if model == "model_3" else (None,):
+            frames = request.samples[-1] + request.frames
+            what = f"{model}, {taps} taps" if taps else model
+            yield what, f"{model} {taps}", (0.3 + 0.3 * (taps or 0)) * frames * million
+    for samples in request.cycles_samples:
+        yield f"Cycles at {samples} samples", "cycles", kind.cost * samples * million
+
+
+def _per_unit(settings, millimetres_per_unit):
+    """Settings with coefficients per scene unit, as material values have them."""
+    return {
+        name: tuple(channel * millimetres_per_unit for channel in value) if name in ("sigma_a", "sigma_s") else value
+        for name, value in settings.items()
+    }

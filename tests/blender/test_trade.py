@@ -1,0 +1,71 @@
+# The trade curve in Blender: points on both sides, measured once, and taken over by the next run.
+import csv
+import io
+import json
+
+import pytest
+from cycles_scenes import make_sphere
+
+from mesograin.comparison import progress
+from mesograin.cycles.cache import Cache
+from mesograin.trade import measure, progressive
+
+SUNS = [((1.0, 1.0, 1.0), 20.0)]
+
+
+def trade(folder, **changes):
+    asked = {
+        "out": folder / "out",
+        "reference": "volume_index_matched",
+        "models": ("model_1", "model_3"),
+        "samples": (1, 3),
+        "taps": (2, 4),
+        "reference_samples": 8,
+        "cycles_samples": (1, 4),
+        "size": (24, 20),
+        "frames": 2,
+        "cache": Cache(folder / "cache"),
+        "command": "./mesograin trade",
+    }
+    return measure.measure(measure.Request(**{**asked, **changes}), progress.Progress(io.StringIO()))
+
+
+def test_every_point_is_measured_and_taken_over(tmp_path, native, monkeypatch):
+    make_sphere(SUNS, sigma_s=(4.0, 4.0, 4.0), sigma_a=(0.2, 0.2, 0.2))
+    found = trade(tmp_path)
+    out = tmp_path / "out"
+    assert json.loads((out / "trade.json").read_text()) == json.loads(json.dumps(found))
+    names = [point["name"] for point in found["points"]]
+    assert names == [
+        "model_1.samples1",
+        "model_1.samples3",
+        "model_3.taps2.samples1",
+        "model_3.taps2.samples3",
+        "model_3.taps4.samples1",
+        "model_3.taps4.samples3",
+        "cycles.samples1",
+        "cycles.samples4",
+    ]
+    by_name = {point["name"]: point for point in found["points"]}
+    assert found["complete"] and found["front"] and len(found["summary"]) == 2
+    assert by_name["model_1.samples3"]["milliseconds"] == pytest.approx(3 * by_name["model_1.samples1"]["milliseconds"])
+    assert by_name["cycles.samples4"]["error"] < by_name["cycles.samples1"]["error"]
+    assert by_name["model_1.samples3"]["error"] < by_name["cycles.samples1"]["error"]
+    with open(out / "trade.csv", encoding="utf-8") as file:
+        assert [row["name"] for row in csv.DictReader(file)] == names
+    assert native.read_exr(out / "pictures/model_3.taps4.samples3.exr")[0].shape == (20, 24, 4)
+
+    # As a run that was killed before its last points leaves it.
+    (out / "trade.json").write_text(json.dumps({**found, "complete": False, "points": found["points"][:4]}))
+    begun = []
+    begin = progressive.Progressive.begin
+    monkeypatch.setattr(
+        progressive.Progressive, "begin", lambda self, *setting: (begun.append(setting), begin(self, *setting))
+    )
+    again = trade(tmp_path)
+    assert [taps for _, taps in begun] == [4], "only what was missing is measured"
+    assert again["points"][:4] == found["points"][:4]
+    assert [point["error"] for point in again["points"]] == [point["error"] for point in found["points"]]
+
+    trade(tmp_path, settings={"scale": 2.0})
+    assert len(begun) == 4, "what was measured on another material is not taken over"

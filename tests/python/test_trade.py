@@ -1,0 +1,178 @@
+"""The trade curve without Blender: the front, the time Cycles needs, the sentences, the command line, the page."""
+
+import html
+import json
+import re
+import subprocess
+import sys
+
+import mesograin_native as native
+import numpy as np
+import pytest
+from addon_rooms import ADDON, room
+
+arguments = room("trade.arguments")
+curve = room("trade.curve")
+
+BUILDER = ADDON / "mesograin" / "report" / "build.py"
+
+
+def point(model, samples, milliseconds, error, taps=None, resolved=True):
+    return {
+        "name": f"{model}.{taps}.{samples}",
+        "side": "cycles" if model == "Cycles" else "mesograin",
+        "model": model,
+        "taps": taps,
+        "samples": samples,
+        "milliseconds": milliseconds,
+        "error": error,
+        "resolved": resolved,
+        "metrics": {"relative_l1": error + 0.01, "bias": 1.0, "rse_mean": error**2},
+        "picture": f"pictures/{model}.{taps}.{samples}.exr",
+    }
+
+
+def path_tracer(*counts):
+    """100 ms a sample, an error of 0.8 at one that falls with the root."""
+    return [point("Cycles", count, 100.0 * count, 0.8 / count**0.5) for count in counts]
+
+
+def test_the_front_is_what_nothing_beats():
+    generator = np.random.default_rng(3)
+    points = [point("model_1", 1, *pair) for pair in generator.lognormal(0.0, 1.0, (60, 2))]
+    found = curve.front(points)
+    times, errors = np.array([(each["milliseconds"], each["error"]) for each in points]).T
+    beaten = [((times <= time) & (errors <= error) & ((times < time) | (errors < error))).any()
+              for time, error in zip(times, errors)]
+    assert sorted(found) == [index for index, is_beaten in enumerate(beaten) if not is_beaten]
+    assert (np.diff(times[found]) > 0).all() and (np.diff(errors[found]) < 0).all()
+
+
+@pytest.mark.parametrize("error, milliseconds, known", [
+    (0.4, 400.0, "between"),
+    (0.3, 100.0 * (0.8 / 0.3) ** 2, "between"),
+    (0.01, 640000.0, "beyond"),
+    (0.9, 100.0, "below"),
+])
+def test_cycles_time_follows_its_own_points(error, milliseconds, known):
+    found = curve.cycles_time(path_tracer(1, 4, 16), error)
+    assert found == (pytest.approx(milliseconds), known)
+
+
+def test_without_cycles_nothing_is_claimed():
+    points = [point("model_1", 1, 2.0, 0.1)]
+    assert curve.cycles_time(points, 0.1) == (None, None)
+    assert curve.summary(points)[0]["sentence"] == "model_1 with 1 sample: 10 % at 2 ms."
+
+
+def test_the_sentence_names_the_cheapest_of_the_good_settings():
+    points = [
+        point("model_3", 1, 3.0, 0.2, taps=16),
+        point("model_3", 4, 12.0, 0.061, taps=16),
+        point("model_3", 16, 48.0, 0.06, taps=16),
+        point("model_1", 1, 1.0, 0.3),
+        *path_tracer(1, 4, 16, 64, 256),
+    ]
+    entries = curve.summary(points)
+    assert [points[entry["point"]]["name"] for entry in entries] == ["model_3.16.4", "model_1.None.1"]
+    assert entries[0]["ratio"] == pytest.approx(100.0 * (0.8 / 0.061) ** 2 / 12.0)
+    assert entries[0]["sentence"] == (
+        "model_3 with 4 samples of 16 taps: 6.1 % at 12 ms; Cycles needs 17 s for the same error: 1400×."
+    )
+
+
+def test_an_error_below_the_noise_is_a_bound():
+    metrics = {"relative_l1_corrected": 0.001}
+    placed = curve.place(metrics, {"relative_l1": 0.04})
+    assert placed == {"error": pytest.approx(0.01), "resolved": False}
+    assert curve.place({"relative_l1_corrected": 0.02}, {"relative_l1": 0.04}) == {"error": 0.02, "resolved": True}
+    entry = curve.summary([point("model_2", 1, 5.0, 0.01, resolved=False), *path_tracer(1, 64)])[0]
+    assert entry["sentence"] == (
+        "model_2 with 1 sample: at most 1 % at 5 ms; Cycles needs at least 10 min 40 s for the same error,"
+        " extrapolated: 130\u202f000×."
+    )
+
+
+def test_defaults_suit_each_other():
+    chosen = arguments.parse([])
+    assert chosen.models == ("model_1", "model_2", "model_3")
+    assert chosen.cycles_samples == (1, 2, 4, 8, 16, 32, 64, 128)
+    assert arguments.parse(["--reference", "glossy", "--reference-samples", "1"]).cycles_samples == (1,)
+
+
+@pytest.mark.parametrize("words, part", [
+    (["--models", "lambert"], "not answered by volume_index_matched; allowed are model_1, model_2, model_3"),
+    (["--cycles-samples", "600"], "must not exceed the converged render's 512 samples; got 600"),
+    (["--samples", "0"], "a whole number from 1 to"),
+    (["--reference", "photons"], "invalid choice: 'photons'"),
+    (["none.blend"], "there is no scene 'none.blend'"),
+])
+def test_what_is_wrong_is_one_sentence(words, part, capsys):
+    with pytest.raises(SystemExit) as left:
+        arguments.parse(words)
+    complaint = capsys.readouterr().err
+    assert left.value.code == 2 and part in complaint and complaint.count("\n") == 1
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("trade")
+    (folder / "pictures").mkdir()
+    points = [
+        point("model_1", 1, 2.0, 0.1),
+        point("model_3", 4, 12.0, 0.06, taps=16),
+        point("model_3", 16, 48.0, 0.02, taps=16, resolved=False),
+        *path_tracer(1, 4, 16),
+    ]
+    pixels = np.ones((16, 16, 4), np.float32)
+    native.write_exr(folder / "pictures/reference.exr", pixels)
+    for each in points:
+        native.write_exr(folder / each["picture"], (1.0 + each["error"]) * pixels)
+    results = {
+        "format": "mesograin-trade",
+        "format_version": 1,
+        "complete": True,
+        "created": "2024-01-02T03:04:05+00:00",
+        "command": "./mesograin trade disc.blend --set 'g=0.1'",
+        "scene": "disc.blend",
+        "size": [16, 16],
+        "versions": {"mesograin": "0.1.0", "blender": "3.4.1 (abc)", "python": "3.11", "numpy": "1.24"},
+        "device": {"renderer": "llvmpipe", "version": "4.5"},
+        "cpu": {"name": "A CPU", "cores": 2, "machine": "x86_64"},
+        "settings": {"pixel_filter": "box", "colour_space": "linear", "frames_timed": 25},
+        "definitions": {"error": "what is left of it", "milliseconds": "how long", "front": "not beaten"},
+        "material": {"Sand": {"sigma_s": [0.9] * 3, "g": 0.1}},
+        "reference": {"kind": "volume_index_matched", "title": "Cycles volume", "samples": 64, "seeds": [1, 2],
+                      "bounces": 1024, "seconds": 3.0, "notes": [], "noise_floor": 0.05, "mask": {"pixels": 200}},
+        "points": points,
+        "front": [points[index]["name"] for index in curve.front(points)],
+        "summary": curve.summary(points),
+    }
+    (folder / "trade.json").write_text(json.dumps(results))
+    environment = {"PATH": "/usr/bin:/bin", "MESOGRAIN_NATIVE_DIR": str(native.__file__).rsplit("/", 1)[0]}
+    done = subprocess.run([sys.executable, str(BUILDER), str(folder)], env=environment, capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (0, "")
+    return folder
+
+
+def test_the_page_holds_sentences_points_and_definitions(folder):
+    page = (folder / "report.html").read_text()
+    text = " ".join(html.unescape(re.sub(r"<[^>]*>", " ", page)).split())
+    results = json.loads((folder / "trade.json").read_text())
+    for entry in results["summary"]:
+        assert entry["sentence"] in text
+    assert "./mesograin trade disc.blend --set 'g=0.1'" in text and "≤ 2.00 %" in text
+    table = page[page.index("<tbody>"):page.index("</tbody>")]
+    assert table.count("<tr") == len(results["points"]) and table.count('class="front"') == len(results["front"])
+    for name in re.findall(r'popovertarget="([^"]+)"', page):
+        assert f'popover id="{name}"' in page
+    for source in re.findall(r'(?:src|href)="([^"#][^"]*)"', page):
+        assert source.startswith("data:image/png;base64,") or source == "trade.csv" or (folder / source).is_file()
+
+
+def test_the_plot_is_a_file_too_and_names_everything(folder):
+    svg = (folder / "plots/trade.svg").read_text()
+    for words in ("model_1", "model_3, 16 taps", "Cycles", "Pareto front", "noise floor of the converged render",
+                  "time of a picture", "error: relative L1"):
+        assert words in svg
+    assert (folder / "plots/trade.png").read_bytes()[:4] == b"\x89PNG"
