@@ -90,6 +90,24 @@ run_render() {
   exec "$build/native/tool/mesograin-render" "$@"
 }
 
+run_bake() {
+  take_blender_option "$@"
+  eval "set -- $remaining"
+  case ${1:-} in
+    *.json)
+      run_render "$@" --bake
+      ;;
+    *.blend) ;;
+    *) fail "$exit_usage" "bake needs a scene and an output: ./mesograin bake SCENE.blend -o OUT.exr" ;;
+  esac
+  [ -f "$1" ] || fail "$exit_usage" "There is no scene '$1'."
+  ensure_blender
+  ensure_product product
+  mkdir -p "$logs"
+  exec /usr/bin/python3 "$source_folder/.launcher/run_blender.py" "$logs/bake.log" "$blender" --background \
+    --factory-startup --python-exit-code 1 --python "$source_folder/addon/mesograin/baking/command.py" -- "$@"
+}
+
 run_test() {
   take_blender_option "$@"
   eval "set -- $remaining"

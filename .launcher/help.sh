@@ -10,6 +10,7 @@ Mesograin renders granular materials in real time and compares every picture wit
   trade     error against time: every model and Cycles itself, the Pareto front drawn
   sweep     compare many cases listed in a file; resumable, on one machine or many
   render    render a scene described in JSON to EXR, without Blender
+  bake      bake a grain's surface to an EXR texture
   test      run the tests
   bench     measure speed and accuracy
   build     build the native module, and nothing else
@@ -142,6 +143,34 @@ missing; 130 interrupted.
 TEXT
 }
 
+help_bake() {
+  cat <<'TEXT'
+Bakes a grain's surface to an EXR texture at its UVs; for a scene in JSON needs no Blender.
+
+  ./mesograin bake SCENE.blend -o OUT.exr [option ...]
+  ./mesograin bake SCENE.json -o OUT.exr [option ...]
+
+  -o, --output OUT.exr      linear RGB radiance and coverage; u to the right, v up, row 0 is v = 1
+  --object NAME             what to bake (default: the active object, or the only one)
+  --model MODEL             lambert, conductor, model_1, model_2 or model_3 (default: the material's)
+  --size SIDE or WxH        texels (default: 1024; for JSON the scene's resolution)
+  --samples N               samples per texel (default: 64)
+  --view-from WHERE         what looks at the surface: above_surface, along its normal (default), or active_camera
+  --margin N                texels by which what is baked reaches beyond the UVs (default: 16; for JSON 0)
+  --set NAME=VALUE          a material parameter; may be repeated
+  --half                    16-bit instead of 32-bit floats
+  --blender PATH            the Blender to use
+
+A scene in JSON takes --model, --size, --samples, --view-from and --margin. The texture's header tells how it was made. Files
+appear complete or not at all.
+Exit codes: 0 written; 1 the object could not be baked; 2 wrong arguments or scene; 3 something needed is missing or the
+output cannot be written; 130 interrupted.
+
+  ./mesograin bake blend_files/grain.blend -o grain.exr
+  ./mesograin bake tests/data/sphere.json --size 512x256 -o sphere.exr
+TEXT
+}
+
 help_test() {
   cat <<'TEXT'
 Runs the tests; the last line printed is their sum, `N passed, M failed`.
@@ -227,7 +256,7 @@ TEXT
 help_about() {
   case $1 in
     overview | help) help_overview ;;
-    compare | trade | sweep | render | test | bench | build | package | install) "help_$1" ;;
-    *) fail "$exit_usage" "There is no help about '$1'; the commands are compare, trade, sweep, render, test, bench, build, package and install." ;;
+    compare | trade | sweep | render | bake | test | bench | build | package | install) "help_$1" ;;
+    *) fail "$exit_usage" "There is no help about '$1'; the commands are compare, trade, sweep, render, bake, test, bench, build, package and install." ;;
   esac
 }

@@ -125,6 +125,13 @@ def _zoom(region, width, height):
     return zoom
 
 
+def per_unit(parameter, value, millimetres_per_unit):
+    """A parameter's value as the native module takes it: coefficients in 1/mm become those per Blender unit."""
+    if parameter in ("sigma_a", "sigma_s"):
+        return tuple(channel * millimetres_per_unit for channel in value)
+    return value
+
+
 def material_values(material, millimetres_per_unit):
     """MaterialValues of a Blender material, or of the default grain where a slot is empty (None)."""
     if material is None:
@@ -143,10 +150,8 @@ def read_scene(depsgraph, cache):
 
 def _parameters(grain, millimetres_per_unit):
     for parameter in properties.MATERIAL_PARAMETERS:
-        value = getattr(grain, parameter)
-        if parameter in ("sigma_a", "sigma_s"):
-            value = tuple(channel * millimetres_per_unit for channel in value)
-        elif not isinstance(value, (str, float)):
+        value = per_unit(parameter, getattr(grain, parameter), millimetres_per_unit)
+        if not isinstance(value, (str, float)):
             value = tuple(value)
         yield parameter, value
 

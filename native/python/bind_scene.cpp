@@ -118,6 +118,7 @@ void bind_mesh_and_instance(py::module_& module) {
           "positions (n, 3) float32; normals (n, 3) float32, or None for smooth ones; indices (t, 3) uint32, "
           "counter-clockwise seen from outside; uvs (n, 2) float32 or None. Raises Error for arrays that make no mesh.")
       .def_property_readonly("vertex_count", [](const scene::Mesh& mesh) { return mesh.positions().size(); })
+      .def_property_readonly("has_uvs", [](const scene::Mesh& mesh) { return !mesh.uvs().empty(); })
       .def_property_readonly("triangle_count", [](const scene::Mesh& mesh) { return mesh.triangles().size(); });
 
   py::class_<scene::Instance>(module, "Instance", "A mesh with its material at its place in the world.")

@@ -106,6 +106,7 @@ py::dict uv_use(render::View& view) {
   result["texels"] = use.texels;
   result["overlapping"] = use.overlapping;
   result["triangles_outside"] = use.triangles_outside;
+  result["warnings"] = render::warnings(use);
   return result;
 }
 
@@ -161,7 +162,8 @@ void bind_view(py::module_& module) {
       .def("uv_use", &uv_use,
            "How the unwrapping being baked uses the texture: {'texels': whose middle is covered, 'overlapping': more "
            "than once, by the first of which the texel is baked, 'triangles_outside': that reach out of [0, 1]^2, "
-           "where they are cut off}. Raises Error if nothing is being baked.")
+           "where they are cut off, 'warnings': sentences about both}. Raises Error if nothing is being baked or no "
+           "texel is covered.")
       .def("render", &render, py::arg("samples") = 1,
            "Adds samples to the mean. Ctrl-C or cancel() ends it after the sample under way.")
       .def("cancel", &render::View::cancel, "Ends a render() under way in another thread after its current sample.")

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -30,5 +31,8 @@ struct UvUse {
   std::size_t overlapping = 0;        ///< whose middle is covered more than once: the first triangle is what is baked
   std::size_t triangles_outside = 0;  ///< that reach out of [0, 1]^2, where they are cut off
 };
+
+/// What the artist should know of it, a sentence each; throws Error if no texel is covered.
+std::vector<std::string> warnings(const UvUse& use);
 
 }  // namespace mesograin::render

@@ -1,4 +1,4 @@
-// mesograin-render: a scene in JSON, a picture in OpenEXR, nothing of Blender.
+// mesograin-render: a scene in JSON, a picture or a baked texture in OpenEXR, nothing of Blender.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -9,6 +9,7 @@
 #include <exception>
 #include <filesystem>
 #include <future>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -17,6 +18,8 @@
 #include "file/file.h"
 #include "gl/context_thread.h"
 #include "image/exr.h"
+#include "image/margin.h"
+#include "render/bake.h"
 #include "render/view.h"
 #include "scene/error.h"
 #include "scene/scene_json.h"
@@ -42,24 +45,39 @@ struct Options {
   std::string size;
   int samples = 64;
   std::uint32_t seed = 0;
+  bool bake = false;
+  std::string view_from{render::view_from_names.front()};
+  int margin = 0;
   bool quiet = false;
 };
 
-/// The two numbers of "400x300".
+/// The two numbers of "400x300", or twice that of "512".
 scene::SceneChoices parse_choices(const Options& options) {
   scene::SceneChoices choices;
   if (!options.model.empty()) choices.model = scene::parse_model(options.model);
   if (options.size.empty()) return choices;
   const char* const end = options.size.data() + options.size.size();
   const auto width = std::from_chars(options.size.data(), end, choices.width);
-  if (width.ec == std::errc{} && width.ptr != end && *width.ptr == 'x') {
-    const auto height = std::from_chars(width.ptr + 1, end, choices.height);
-    if (height.ec == std::errc{} && height.ptr == end && choices.width > 0) {
-      require_size(choices);
-      return choices;
-    }
+  bool understood = width.ec == std::errc{} && choices.width > 0;
+  if (understood && width.ptr == end) {
+    choices.height = choices.width;
+  } else {
+    understood = understood && *width.ptr == 'x';
+    const auto height = understood ? std::from_chars(width.ptr + 1, end, choices.height) : width;
+    understood = understood && height.ec == std::errc{} && height.ptr == end;
   }
-  throw Error("--size must be WIDTHxHEIGHT, such as 400x300; got '{}'.", options.size);
+  if (!understood) throw Error("--size must be WIDTHxHEIGHT, such as 400x300, or SIDE; got '{}'.", options.size);
+  require_size(choices);
+  return choices;
+}
+
+/// The texture of all instances, with a word about UVs that do not serve well.
+void set_bake(render::View& view, const Options& options, std::size_t instances) {
+  render::Bake bake;
+  bake.view_from = render::parse_view_from(options.view_from);
+  for (std::size_t i = 0; i < instances; ++i) bake.instances.push_back(i);
+  view.set_bake(bake);
+  for (const std::string& warning : warnings(view.uv_use())) fmt::print(stderr, "mesograin-render: {}\n", warning);
 }
 
 void run(const Options& options) {
@@ -75,6 +93,7 @@ void run(const Options& options) {
   render::View view(file.width, file.height, options.seed);
   view.set_scene(file.scene);
   view.set_camera(file.camera);
+  if (options.bake) set_bake(view, options, file.scene.instances.size());
   tool::Progress progress(options.samples);
   std::future<void> done = view.start(options.samples);
   while (done.wait_for(std::chrono::milliseconds(50)) != std::future_status::ready)
@@ -85,10 +104,13 @@ void run(const Options& options) {
   image::Image picture{.width = file.width, .height = file.height, .channels = 4, .pixels = {}};
   picture.pixels.resize(static_cast<std::size_t>(file.width) * static_cast<std::size_t>(file.height) * 4);
   view.read(picture.pixels.data());
+  if (options.bake) picture = image::extend_margin(picture.view(), options.margin);
   const gl::DeviceInfo& device = gl::ContextThread::instance().device_info();
   {
     const tool::Uninterrupted uninterrupted;
-    image::write_exr(output, picture.view(), {}, tool::provenance(file, options.samples, options.seed, device));
+    std::map<std::string, std::string> attributes = tool::provenance(file, options.samples, options.seed, device);
+    if (options.bake) attributes.merge(tool::bake_provenance(options.view_from, options.margin));
+    image::write_exr(output, picture.view(), {}, attributes);
   }
   if (options.quiet) return;
   progress.finish();
@@ -100,8 +122,9 @@ void run(const Options& options) {
 
 int command(int argument_count, char** arguments) {
   Options options;
-  CLI::App app("Renders a scene in JSON to OpenEXR: linear RGB radiance and coverage, float32, row 0 at the top.",
-               "mesograin-render");
+  CLI::App app(
+      "Renders or bakes a scene in JSON to OpenEXR: linear RGB radiance and coverage, float32, row 0 at the top.",
+      "mesograin-render");
   app.add_option("scene", options.scene, "Scene in JSON")->required()->option_text("SCENE.json");
   app.add_option("-o,--output", options.output, "Picture to write")->required()->option_text("OUT.exr");
   app.add_option("-m,--model", options.model,
@@ -112,7 +135,20 @@ int command(int argument_count, char** arguments) {
       ->check(CLI::Range(1, 1000000))
       ->option_text("N");
   app.add_option("--seed", options.seed, "Of the samples' places and of the models' own; default 0")->option_text("S");
-  app.add_option("--size", options.size, "Pixels, instead of the scene's resolution")->option_text("WIDTHxHEIGHT");
+  app.add_option("--size", options.size, "Pixels, instead of the scene's resolution")
+      ->option_text("WIDTHxHEIGHT or SIDE");
+  CLI::Option* bake =
+      app.add_flag("--bake", options.bake, "The surface's texture, unwrapped at its UVs with v upwards");
+  app.add_option(
+         "--view-from", options.view_from,
+         fmt::format("What looks at a baked surface: {}; default the first", fmt::join(render::view_from_names, ", ")))
+      ->needs(bake)
+      ->check(CLI::IsMember(std::vector<std::string>(render::view_from_names.begin(), render::view_from_names.end())))
+      ->option_text("WHERE");
+  app.add_option("--margin", options.margin, "Texels by which what is baked reaches beyond the UVs; default 0")
+      ->needs(bake)
+      ->check(CLI::Range(0, 32767))
+      ->option_text("TEXELS");
   app.add_flag("-q,--quiet", options.quiet, "No progress, only errors");
   app.set_version_flag("--version", MESOGRAIN_VERSION);
   app.footer(std::string(exit_codes));

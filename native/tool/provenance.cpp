@@ -20,4 +20,10 @@ std::map<std::string, std::string> provenance(const scene::SceneFile& file, int 
           {"mesograin:driver", device.version}};
 }
 
+std::map<std::string, std::string> bake_provenance(const std::string& view_from, int margin) {
+  return {{"mesograin:uv", "u to the right, v up, (0, 0) at the lower left corner; row 0 is v = 1"},
+          {"mesograin:view_from", view_from},
+          {"mesograin:margin", std::to_string(margin)}};
+}
+
 }  // namespace mesograin::tool

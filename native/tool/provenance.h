@@ -13,4 +13,7 @@ namespace mesograin::tool {
 std::map<std::string, std::string> provenance(const scene::SceneFile& file, int samples, std::uint32_t seed,
                                               const gl::DeviceInfo& device);
 
+/// What a baked texture's header says besides.
+std::map<std::string, std::string> bake_provenance(const std::string& view_from, int margin);
+
 }  // namespace mesograin::tool

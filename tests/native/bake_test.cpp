@@ -158,8 +158,11 @@ TEST_F(BakeTest, TheUseOfTheTextureIsCounted) {
   EXPECT_EQ(use.texels, 16U + 8U);
   EXPECT_EQ(use.overlapping, 4U);
   EXPECT_EQ(use.triangles_outside, 2U);
+  ASSERT_EQ(warnings(use).size(), 2U);
+  EXPECT_NE(warnings(use)[0].find("UVs overlap in 4 of 24 texels"), std::string::npos);
+  EXPECT_NE(warnings(use)[1].find("2 triangles reach out"), std::string::npos);
   view_.set_bake({{0}});
-  EXPECT_EQ(view_.uv_use().overlapping, 0U);
+  EXPECT_TRUE(warnings(view_.uv_use()).empty());
 }
 
 TEST_F(BakeTest, ANewSceneIsSeenThroughTheCameraAgain) {
@@ -179,6 +182,7 @@ TEST_F(BakeTest, WhatCannotBeBakedIsSaid) {
   expect_error([&] { view_.set_bake({{1}}); }, "among the scene's 1, counted from 0; got 1");
   expect_error([&] { view_.set_bake({{0}}); }, "the mesh of instance 0 has none");
   expect_error([&] { view_.uv_use(); }, "set_bake first");
+  expect_error([] { warnings({}); }, "the middle of no texel");
   expect_error([] { parse_view_from("below"); }, "above_surface, active_camera; got 'below'");
 }
 

@@ -9,7 +9,7 @@ import zipfile
 import pytest
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
-COMMANDS = ("compare", "trade", "sweep", "render", "test", "bench", "build", "package", "install")
+COMMANDS = ("compare", "trade", "sweep", "render", "bake", "test", "bench", "build", "package", "install")
 
 
 def launcher(*arguments, folder=SOURCE, **environment):
@@ -46,7 +46,14 @@ def test_help_of_render_names_the_options_there_are():
     build = pathlib.Path(os.environ.get("MESOGRAIN_BUILD", SOURCE / "build/release"))
     from_tool = subprocess.run([str(build / "native/tool/mesograin-render"), "--help"], check=True, capture_output=True,
                                text=True).stdout
-    assert options_in(launcher("render", "--help").stdout) == options_in(from_tool)
+    of_bake_alone = {"--bake", "--view-from", "--margin"}
+    assert options_in(launcher("render", "--help").stdout) == options_in(from_tool) - of_bake_alone
+
+
+def test_help_of_bake_names_the_options_there_are():
+    command = [sys.executable, "-m", "mesograin.baking.arguments"]
+    from_argparse = subprocess.run(command, check=True, capture_output=True, text=True, cwd=SOURCE / "addon").stdout
+    assert options_in(launcher("bake", "--help").stdout) == options_in(from_argparse) | {"--blender"}
 
 
 @pytest.mark.parametrize("arguments, code, sentence", [
@@ -59,6 +66,8 @@ def test_help_of_render_names_the_options_there_are():
     (("test", "everything"), 2, "no test part or option 'everything'"),
     (("bench", "marks"), 2, "no benchmark 'marks'"),
     (("render",), 2, "render needs a scene"),
+    (("bake",), 2, "bake needs a scene"),
+    (("bake", "no such.blend"), 2, "There is no scene 'no such.blend'"),
     (("build", "--blender", "/no/such/blender"), 3, "There is no Blender at '/no/such/blender'"),
     (("build", "--blender", "/bin/true"), 3, "did not say which Python it embeds"),
 ])

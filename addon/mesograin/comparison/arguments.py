@@ -73,11 +73,11 @@ def build():
         "--size", type=_size, default=None, metavar="WxH", help="picture size in pixels (default: the scene's)"
     )
     parser.add_argument(
-        "--samples", type=_positive, default=64, metavar="N", help="samples a pixel on our side (default: 64)"
+        "--samples", type=positive, default=64, metavar="N", help="samples a pixel on our side (default: 64)"
     )
     parser.add_argument(
         "--reference-samples",
-        type=_positive,
+        type=positive,
         default=None,
         metavar="N",
         help="Cycles samples a pixel for each of the two seeds (default: 64 for surfaces, 128 for volumes)",
@@ -85,7 +85,7 @@ def build():
     parser.add_argument(
         "--set",
         action="append",
-        type=_setting,
+        type=setting,
         default=[],
         dest="settings",
         metavar="NAME=VALUE",
@@ -95,7 +95,7 @@ def build():
         ),
     )
     parser.add_argument(
-        "--frames", type=_positive, default=9, metavar="N", help="frames timed for frame_ms (default: 9)"
+        "--frames", type=positive, default=9, metavar="N", help="frames timed for frame_ms (default: 9)"
     )
     parser.add_argument(
         "--cache",
@@ -126,7 +126,8 @@ def parse(words):
     return chosen
 
 
-def _positive(text):
+def positive(text):
+    """The number in a word of the command line."""
     if not text.isdigit() or not 1 <= int(text) <= 1 << 20:
         raise argparse.ArgumentTypeError(f"a whole number from 1 to {1 << 20} is needed, '{text}' came")
     return int(text)
@@ -146,7 +147,8 @@ def _bytes(text):
     return int(found[1]) * 1024 ** " KMG".index(found[2].upper() or " ")
 
 
-def _setting(text):
+def setting(text):
+    """(name, value) of a word NAME=VALUE: a number, three, or a word, as SETTABLE has it."""
     name, equals, value = text.partition("=")
     if not equals or name not in SETTABLE:
         hint = " (the reference chooses it)" if name in ("boundary", "masking") else ""

@@ -1,0 +1,80 @@
+# The command line of `bake`, readable without Blender.
+"""See `parse`."""
+
+import argparse
+import re
+from pathlib import Path
+
+from ..comparison.arguments import MODELS, SETTABLE, positive, setting
+from .choices import LARGEST_MARGIN, LARGEST_SIDE, VIEW_FROM
+
+
+class Parser(argparse.ArgumentParser):
+    """Says what is wrong in one sentence."""
+
+    def error(self, message):
+        self.exit(2, f"bake: {message}; see --help.\n")
+
+
+def build():
+    """The parser, for --help without Blender."""
+    parser = Parser(
+        prog="mesograin bake",
+        usage="mesograin bake SCENE.blend -o OUT.exr [options]",
+        description="Bakes an object's surface to an EXR texture at its UVs.",
+        epilog="Exit codes: 0 written, 1 it could not be baked, 2 bad arguments or scene, 3 the output cannot be"
+        " written, 130 interrupted. Files appear complete or not at all.",
+    )
+    parser.add_argument("scene", type=Path, metavar="SCENE.blend", help="the scene")
+    parser.add_argument("-o", "--output", type=_exr, required=True, metavar="OUT.exr", help="texture to write")
+    parser.add_argument("--object", default=None, metavar="NAME",
+                        help="what to bake (default: the active object, or the only one)")
+    parser.add_argument("--model", choices=MODELS, default=None, metavar="MODEL",
+                        help=f"one of {', '.join(MODELS)} (default: the material's)")
+    parser.add_argument("--size", type=_size, default=(1024, 1024), metavar="SIDE|WxH",
+                        help="texels (default: 1024, square)")
+    parser.add_argument("--samples", type=positive, default=64, metavar="N", help="samples a texel (default: 64)")
+    parser.add_argument("--view-from", choices=VIEW_FROM, default=VIEW_FROM[0], metavar="WHERE",
+                        help=f"what looks at the surface: {' or '.join(VIEW_FROM)} (default: the first)")
+    parser.add_argument("--margin", type=_margin, default=16, metavar="N",
+                        help="texels by which what is baked reaches beyond the UVs (default: 16)")
+    parser.add_argument("--half", action="store_true", help="16-bit instead of 32-bit floats")
+    parser.add_argument("--set", action="append", type=setting, default=[], dest="settings", metavar="NAME=VALUE",
+                        help=f"a material parameter: {', '.join(SETTABLE)}; RGB as one number or three with commas; may"
+                        " be repeated")
+    return parser
+
+
+def parse(words):
+    """argparse.Namespace of the command line after `--`. Raises SystemExit(2) after one sentence on standard error."""
+    parser = build()
+    chosen = parser.parse_args(words)
+    chosen.settings = dict(chosen.settings)
+    if not chosen.scene.is_file():
+        parser.error(f"there is no scene '{chosen.scene}'")
+    return chosen
+
+
+def _exr(text):
+    path = Path(text)
+    if path.suffix.lower() != ".exr":
+        raise argparse.ArgumentTypeError(f"the output is OpenEXR and must end in .exr, '{text}' came")
+    return path
+
+
+def _size(text):
+    found = re.fullmatch(r"(\d{1,5})(?:[xX](\d{1,5}))?", text)
+    size = tuple(int(side or found[1]) for side in found.groups()) if found else (0, 0)
+    if not all(1 <= side <= LARGEST_SIDE for side in size):
+        raise argparse.ArgumentTypeError(f"SIDE or WIDTHxHEIGHT of 1 to {LARGEST_SIDE} texels is needed, '{text}' came")
+    return size
+
+
+def _margin(text):
+    if not text.isdigit() or int(text) > LARGEST_MARGIN:
+        raise argparse.ArgumentTypeError(f"a whole number from 0 to {LARGEST_MARGIN} is needed, '{text}' came")
+    return int(text)
+
+
+if __name__ == "__main__":
+    build().print_help()
