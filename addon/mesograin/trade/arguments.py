@@ -3,7 +3,7 @@
 
 from pathlib import Path
 
-from ..comparison.arguments import SETTABLE, Parser, _bytes, _positive, _setting, _size
+from ..comparison.arguments import SETTABLE, Parser, _bytes, positive, setting, _size
 from ..cycles.kinds import KINDS
 
 
@@ -39,7 +39,7 @@ def build():
     parser.add_argument(
         "--samples",
         nargs="+",
-        type=_positive,
+        type=positive,
         default=(1, 4, 16, 64),
         metavar="N",
         help="samples a pixel on our side (default: 1 4 16 64)",
@@ -47,14 +47,14 @@ def build():
     parser.add_argument(
         "--taps",
         nargs="+",
-        type=_positive,
+        type=positive,
         default=(4, 16, 64),
         metavar="N",
         help="samples of the lit surface that model 3 takes for each of those (default: 4 16 64)",
     )
     parser.add_argument(
         "--reference-samples",
-        type=_positive,
+        type=positive,
         default=512,
         metavar="N",
         help="samples a pixel of each of the two seeds of the converged render (default: 512)",
@@ -62,7 +62,7 @@ def build():
     parser.add_argument(
         "--cycles-samples",
         nargs="+",
-        type=_positive,
+        type=positive,
         default=None,
         metavar="N",
         help="samples a pixel of the Cycles renders to measure (default: 1 2 4 ... to a quarter of the converged one)",
@@ -74,12 +74,12 @@ def build():
         "--size", type=_size, default=(128, 128), metavar="WxH", help="picture size in pixels (default: 128x128)"
     )
     parser.add_argument(
-        "--frames", type=_positive, default=25, metavar="N", help="frames whose median is the time of one (default: 25)"
+        "--frames", type=positive, default=25, metavar="N", help="frames whose median is the time of one (default: 25)"
     )
     parser.add_argument(
         "--set",
         action="append",
-        type=_setting,
+        type=setting,
         default=[],
         dest="settings",
         metavar="NAME=VALUE",
