@@ -58,6 +58,7 @@ class Sums {
 
   double weight() const { return weight_; }
   double reference() const { return reference_; }
+
   Errors errors() const {
     const double mse = se_ / weight_;
     const double undefined = std::numeric_limits<double>::quiet_NaN();
@@ -81,85 +82,102 @@ class Sums {
   double rse_root_ = 0.0;
 };
 
-/// The image and its references, of one shape; a single reference stands for both, so that their difference is zero.
-class Pair {
+/// The image and its references, of one shape.
+class Compared {
  public:
-  Pair(const ImageView& image, const ImageView& reference_a, const std::optional<ImageView>& reference_b)
-      : image_(image), a_(reference_a), b_(reference_b.value_or(reference_a)), two_(reference_b.has_value()) {
-    for (const ImageView* reference : {&a_, &b_})
-      if (reference->width != image.width || reference->height != image.height)
+  Compared(const ImageView& image, const std::vector<ImageView>& references) : image_(image), references_(references) {
+    if (references.empty()) throw Error("A comparison needs at least one reference; got none.");
+    for (const ImageView& reference : references_)
+      if (reference.width != image.width || reference.height != image.height)
         throw Error("Image and reference must have one size; got {} x {} and {} x {} pixels.", image.width,
-                    image.height, reference->width, reference->height);
-    for (const ImageView* each : {&image_, &a_, &b_})
-      if (each->channels != 1 && each->channels != 3 && each->channels != 4)
-        throw Error("An image to compare needs 1, 3 or 4 channels; got {}.", each->channels);
+                    image.height, reference.width, reference.height);
+    const auto check_channels = [](const ImageView& each) {
+      if (each.channels != 1 && each.channels != 3 && each.channels != 4)
+        throw Error("An image to compare needs 1, 3 or 4 channels; got {}.", each.channels);
+    };
+    check_channels(image_);
+    std::for_each(references_.begin(), references_.end(), check_channels);
     colours_ = std::min(image.channels, 3);
-    for (const ImageView* reference : {&a_, &b_})
-      if (std::min(reference->channels, 3) != colours_)
+    for (const ImageView& reference : references_)
+      if (std::min(reference.channels, 3) != colours_)
         throw Error("Image and reference must both be grey or both be RGB; got {} and {} channels.", image.channels,
-                    reference->channels);
+                    reference.channels);
   }
 
   int width() const { return image_.width; }
   int height() const { return image_.height; }
   int colours() const { return colours_; }
-  bool two_references() const { return two_; }
-  bool covered_references() const { return a_.channels == 4 && b_.channels == 4; }
+  std::size_t seeds() const { return references_.size(); }
+  bool noise_is_known() const { return seeds() > 1; }
+  bool covered_references() const {
+    return std::all_of(references_.begin(), references_.end(),
+                       [](const ImageView& each) { return each.channels == 4; });
+  }
 
   double image(int x, int y, int channel) const { return image_.at(x, y)[channel]; }
-  double a(int x, int y, int channel) const { return a_.at(x, y)[channel]; }
-  double b(int x, int y, int channel) const { return b_.at(x, y)[channel]; }
-  double reference(int x, int y, int channel) const { return 0.5 * (a(x, y, channel) + b(x, y, channel)); }
-  double difference(int x, int y, int channel) const { return image(x, y, channel) - reference(x, y, channel); }
+  double seed(std::size_t index, int x, int y, int channel) const { return references_[index].at(x, y)[channel]; }
+  double reference(int x, int y, int channel) const {
+    double sum = 0.0;
+    for (const ImageView& reference : references_) sum += reference.at(x, y)[channel];
+    return sum / static_cast<double>(seeds());
+  }
+
+  /// What a seed's distance from the mean of K is divided by, to be distributed as the error of that mean: the variance
+  /// of the distance is (K - 1) / K, that of the mean 1 / K of one seed's.
+  double noise_divisor() const { return std::sqrt(static_cast<double>(seeds()) - 1.0); }
 
   Mask coverage_mask() const {
     Image coverage{.width = width(), .height = height(), .channels = 1, .pixels = {}};
     for (int y = 0; y < height(); ++y)
-      for (int x = 0; x < width(); ++x) coverage.pixels.push_back(std::min(a_.at(x, y)[3], b_.at(x, y)[3]));
+      for (int x = 0; x < width(); ++x) {
+        float least = references_.front().at(x, y)[3];
+        for (const ImageView& reference : references_) least = std::min(least, reference.at(x, y)[3]);
+        coverage.pixels.push_back(least);
+      }
     return default_mask(coverage.view());
   }
 
+  bool image_is_finite(int x, int y) const {
+    return all_of_pixel(image_, x, y, [](float v) { return std::isfinite(v); });
+  }
+  bool has_nan(int x, int y) const {
+    return any_of_pixel(x, y, [](float value) { return std::isnan(value); });
+  }
+  bool has_inf(int x, int y) const {
+    return any_of_pixel(x, y, [](float value) { return std::isinf(value); });
+  }
+
  private:
+  template <typename Test>
+  bool all_of_pixel(const ImageView& view, int x, int y, Test test) const {
+    return std::all_of(view.at(x, y), view.at(x, y) + colours_, test);
+  }
+  template <typename Test>
+  bool any_of_pixel(int x, int y, Test test) const {
+    const auto any = [&](const ImageView& view) { return std::any_of(view.at(x, y), view.at(x, y) + colours_, test); };
+    return any(image_) || std::any_of(references_.begin(), references_.end(), any);
+  }
+
   ImageView image_;
-  ImageView a_;
-  ImageView b_;
-  bool two_;
+  std::vector<ImageView> references_;
   int colours_ = 0;
 };
 
-enum class Finiteness { finite, nan, inf };
-
-Finiteness finiteness(const Pair& pair, int x, int y) {
-  Finiteness found = Finiteness::finite;
-  for (int channel = 0; channel < pair.colours(); ++channel)
-    for (const double value : {pair.image(x, y, channel), pair.a(x, y, channel), pair.b(x, y, channel)}) {
-      if (std::isnan(value)) return Finiteness::nan;
-      if (std::isinf(value)) found = Finiteness::inf;
-    }
-  return found;
-}
-
-bool image_is_finite(const Pair& pair, int x, int y) {
-  for (int channel = 0; channel < pair.colours(); ++channel)
-    if (!std::isfinite(pair.image(x, y, channel))) return false;
-  return true;
-}
-
 /// Pixels of `mask` that are finite; the others are counted.
-Mask usable_pixels(const Pair& pair, Mask mask, MaskCounts& counts) {
-  for (int y = 0; y < pair.height(); ++y)
-    for (int x = 0; x < pair.width(); ++x) {
-      std::uint8_t& selected = mask.pixels[static_cast<std::size_t>(y) * pair.width() + x];
+Mask usable_pixels(const Compared& compared, Mask mask, MaskCounts& counts) {
+  for (int y = 0; y < compared.height(); ++y)
+    for (int x = 0; x < compared.width(); ++x) {
+      std::uint8_t& selected = mask.pixels[static_cast<std::size_t>(y) * compared.width() + x];
       if (!selected) continue;
       ++counts.pixels;
-      const Finiteness found = finiteness(pair, x, y);
-      if (found == Finiteness::finite) {
+      const bool nan = compared.has_nan(x, y);
+      if (!nan && !compared.has_inf(x, y)) {
         ++counts.used;
         continue;
       }
       selected = 0;
-      ++(found == Finiteness::nan ? counts.nan : counts.inf);
-      if (!image_is_finite(pair, x, y)) ++counts.image_not_finite;
+      ++(nan ? counts.nan : counts.inf);
+      if (!compared.image_is_finite(x, y)) ++counts.image_not_finite;
     }
   return mask;
 }
@@ -179,24 +197,26 @@ Percentiles percentiles(std::vector<double> values) {
   return {percentile(values, 0.50), percentile(values, 0.95), percentile(values, 0.99)};
 }
 
-void compare_pixels(const Pair& pair, const Mask& usable, Comparison& result) {
+void compare_pixels(const Compared& compared, const Mask& usable, Comparison& result) {
   Sums errors, noise;
   std::vector<double> absolute, relative;
-  absolute.reserve(static_cast<std::size_t>(result.mask.used) * static_cast<std::size_t>(pair.colours()));
+  absolute.reserve(static_cast<std::size_t>(result.mask.used) * static_cast<std::size_t>(compared.colours()));
   relative.reserve(absolute.capacity());
   double difference_sum = 0.0;
   double image_sum = 0.0;
   result.max_error = result.rse_max = -1.0;
-  for (int y = 0; y < pair.height(); ++y)
-    for (int x = 0; x < pair.width(); ++x) {
-      if (!usable.pixels[static_cast<std::size_t>(y) * pair.width() + x]) continue;
-      for (int channel = 0; channel < pair.colours(); ++channel) {
-        const double reference = pair.reference(x, y, channel);
-        const double difference = pair.difference(x, y, channel);
+  for (int y = 0; y < compared.height(); ++y)
+    for (int x = 0; x < compared.width(); ++x) {
+      if (!usable.pixels[static_cast<std::size_t>(y) * compared.width() + x]) continue;
+      for (int channel = 0; channel < compared.colours(); ++channel) {
+        const double image = compared.image(x, y, channel);
+        const double reference = compared.reference(x, y, channel);
+        const double difference = image - reference;
         errors.add(difference, reference, 1.0);
-        noise.add(0.5 * (pair.a(x, y, channel) - pair.b(x, y, channel)), reference, 1.0);
+        for (std::size_t seed = 0; compared.noise_is_known() && seed < compared.seeds(); ++seed)
+          noise.add((compared.seed(seed, x, y, channel) - reference) / compared.noise_divisor(), reference, 1.0);
         difference_sum += difference;
-        image_sum += pair.image(x, y, channel);
+        image_sum += image;
         absolute.push_back(std::abs(difference));
         relative.push_back(squared_relative(difference, reference));
         if (absolute.back() > result.max_error) {
@@ -214,30 +234,33 @@ void compare_pixels(const Pair& pair, const Mask& usable, Comparison& result) {
   result.ae = percentiles(std::move(absolute));
   result.rse = percentiles(std::move(relative));
   result.pixels = errors.errors();
-  if (pair.two_references()) result.noise_floor = noise.errors();
+  if (compared.noise_is_known()) result.noise_floor = noise.errors();
 }
 
 /// Averages over the usable pixels of each block, which weighs as many as it has.
-void compare_blocks(const Pair& pair, const Mask& usable, Comparison& result) {
+void compare_blocks(const Compared& compared, const Mask& usable, Comparison& result) {
   Sums errors, noise;
-  for (int top = 0; top < pair.height(); top += block_size)
-    for (int left = 0; left < pair.width(); left += block_size)
-      for (int channel = 0; channel < pair.colours(); ++channel) {
-        double count = 0.0, difference = 0.0, reference = 0.0, half_spread = 0.0;
-        for (int y = top; y < std::min(top + block_size, pair.height()); ++y)
-          for (int x = left; x < std::min(left + block_size, pair.width()); ++x) {
-            if (!usable.pixels[static_cast<std::size_t>(y) * pair.width() + x]) continue;
+  std::vector<double> seeds(compared.seeds());
+  for (int top = 0; top < compared.height(); top += block_size)
+    for (int left = 0; left < compared.width(); left += block_size)
+      for (int channel = 0; channel < compared.colours(); ++channel) {
+        double count = 0.0, image = 0.0, reference = 0.0;
+        std::fill(seeds.begin(), seeds.end(), 0.0);
+        for (int y = top; y < std::min(top + block_size, compared.height()); ++y)
+          for (int x = left; x < std::min(left + block_size, compared.width()); ++x) {
+            if (!usable.pixels[static_cast<std::size_t>(y) * compared.width() + x]) continue;
             count += 1.0;
-            difference += pair.difference(x, y, channel);
-            reference += pair.reference(x, y, channel);
-            half_spread += 0.5 * (pair.a(x, y, channel) - pair.b(x, y, channel));
+            image += compared.image(x, y, channel);
+            reference += compared.reference(x, y, channel);
+            for (std::size_t seed = 0; seed < seeds.size(); ++seed) seeds[seed] += compared.seed(seed, x, y, channel);
           }
         if (count == 0.0) continue;
-        errors.add(difference / count, reference / count, count);
-        noise.add(half_spread / count, reference / count, count);
+        errors.add((image - reference) / count, reference / count, count);
+        for (std::size_t seed = 0; compared.noise_is_known() && seed < seeds.size(); ++seed)
+          noise.add((seeds[seed] - reference) / count / compared.noise_divisor(), reference / count, count);
       }
   result.blocks = errors.errors();
-  if (pair.two_references()) result.noise_floor_blocks = noise.errors();
+  if (compared.noise_is_known()) result.noise_floor_blocks = noise.errors();
 }
 
 }  // namespace
@@ -294,9 +317,8 @@ Mask default_mask(const ImageView& coverage, int erode) {
   return mask;
 }
 
-Comparison compare(const ImageView& image, const ImageView& reference_a, const std::optional<ImageView>& reference_b,
-                   const std::optional<Mask>& mask) {
-  const Pair pair(image, reference_a, reference_b);
+Comparison compare(const ImageView& image, const std::vector<ImageView>& references, const std::optional<Mask>& mask) {
+  const Compared compared(image, references);
   Comparison result;
   Mask selected;
   if (mask) {
@@ -305,15 +327,15 @@ Comparison compare(const ImageView& image, const ImageView& reference_a, const s
                   image.width, image.height);
     selected = *mask;
     result.mask.source = "given";
-  } else if (pair.covered_references()) {
-    selected = pair.coverage_mask();
+  } else if (compared.covered_references()) {
+    selected = compared.coverage_mask();
     result.mask.source = "reference coverage";
   } else {
     const std::size_t pixels = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
     selected = {.width = image.width, .height = image.height, .pixels = std::vector<std::uint8_t>(pixels, 1)};
     result.mask.source = "all pixels";
   }
-  const Mask usable = usable_pixels(pair, std::move(selected), result.mask);
+  const Mask usable = usable_pixels(compared, std::move(selected), result.mask);
   if (result.mask.pixels == 0)
     throw Error("The mask ({}) selects no pixel; at least one is needed to compare.", result.mask.source);
   if (result.mask.used == 0)
@@ -321,22 +343,23 @@ Comparison compare(const ImageView& image, const ImageView& reference_a, const s
         "None of the {} masked pixels is finite in image and reference ({} hold NaN, {} Inf); nothing is left "
         "to compare.",
         result.mask.pixels, result.mask.nan, result.mask.inf);
-  compare_pixels(pair, usable, result);
-  compare_blocks(pair, usable, result);
+  compare_pixels(compared, usable, result);
+  compare_blocks(compared, usable, result);
   return result;
 }
 
-Image error_image(const ImageView& image, const ImageView& reference_a, const std::optional<ImageView>& reference_b,
-                  ErrorMetric metric) {
-  const Pair pair(image, reference_a, reference_b);
-  Image errors{.width = pair.width(), .height = pair.height(), .channels = pair.colours(), .pixels = {}};
-  errors.pixels.reserve(static_cast<std::size_t>(pair.width()) * static_cast<std::size_t>(pair.height()) *
-                        static_cast<std::size_t>(pair.colours()));
-  for (int y = 0; y < pair.height(); ++y)
-    for (int x = 0; x < pair.width(); ++x)
-      for (int channel = 0; channel < pair.colours(); ++channel)
+Image error_image(const ImageView& image, const std::vector<ImageView>& references, ErrorMetric metric) {
+  const Compared compared(image, references);
+  Image errors{.width = image.width, .height = image.height, .channels = compared.colours(), .pixels = {}};
+  errors.pixels.reserve(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height) *
+                        static_cast<std::size_t>(compared.colours()));
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x)
+      for (int channel = 0; channel < compared.colours(); ++channel) {
+        const double reference = compared.reference(x, y, channel);
         errors.pixels.push_back(
-            static_cast<float>(sample_error(metric, pair.difference(x, y, channel), pair.reference(x, y, channel))));
+            static_cast<float>(sample_error(metric, compared.image(x, y, channel) - reference, reference)));
+      }
   return errors;
 }
 

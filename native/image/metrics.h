@@ -93,8 +93,8 @@ struct Comparison {
   Percentiles rse;
   Errors pixels;
   Errors blocks;
-  std::optional<Errors> noise_floor;         ///< known with two references
-  std::optional<Errors> noise_floor_blocks;  ///< known with two references
+  std::optional<Errors> noise_floor;         ///< known with two or more references
+  std::optional<Errors> noise_floor_blocks;  ///< known with two or more references
   MaskCounts mask;
 };
 
@@ -106,16 +106,14 @@ Errors correct_for_noise(const Errors& value, const Errors& noise_floor);
 Mask default_mask(const ImageView& coverage, int erode = 2);
 
 /// Compares the colour of `image` (1, 3 or 4 channels; a fourth is coverage and not compared) with a reference, or with
-/// the mean of two references of independent noise. Without a mask: the default mask of the references' coverage if
+/// the mean of several references of independent noise. Without a mask: the default mask of the references' coverage if
 /// they have 4 channels, else all pixels.
-/// Throws Error if shapes differ, the mask is empty or no masked pixel is finite.
-Comparison compare(const ImageView& image, const ImageView& reference_a,
-                   const std::optional<ImageView>& reference_b = std::nullopt,
+/// Throws Error if there is no reference, shapes differ, the mask is empty or no masked pixel is finite.
+Comparison compare(const ImageView& image, const std::vector<ImageView>& references,
                    const std::optional<Mask>& mask = std::nullopt);
 
 /// The metric of each sample, with 1 or 3 channels. NaN and Inf pass through. Throws Error if shapes differ.
-Image error_image(const ImageView& image, const ImageView& reference_a, const std::optional<ImageView>& reference_b,
-                  ErrorMetric metric);
+Image error_image(const ImageView& image, const std::vector<ImageView>& references, ErrorMetric metric);
 
 /// Throws Error listing the names allowed.
 ErrorMetric parse_error_metric(std::string_view name);

@@ -30,26 +30,41 @@ std::vector<double> box_sums(const std::vector<double>& values, int width, int h
   return sums;
 }
 
-bool all_finite(const ImageView& image, const std::vector<ImageView>& references, int colours, int x, int y) {
-  const auto finite = [&](const ImageView& view) {
+bool all_finite(const std::vector<ImageView>& images, int colours, int x, int y) {
+  return std::all_of(images.begin(), images.end(), [&](const ImageView& view) {
     return std::all_of(view.at(x, y), view.at(x, y) + colours, [](float value) { return std::isfinite(value); });
-  };
-  return finite(image) && std::all_of(references.begin(), references.end(), finite);
+  });
 }
 
 struct Moments {
   double mean = 0.0;
-  double variance = 0.0;  // of one reference, unbiased
+  double variance = 0.0;  // of one image, unbiased; 0 for a single one
 };
 
-Moments moments(const std::vector<ImageView>& references, int x, int y, int channel) {
-  const auto count = static_cast<double>(references.size());
+Moments moments(const std::vector<ImageView>& images, int x, int y, int channel) {
+  const auto count = static_cast<double>(images.size());
   double sum = 0.0;
-  for (const ImageView& reference : references) sum += reference.at(x, y)[channel];
+  for (const ImageView& image : images) sum += image.at(x, y)[channel];
   const double mean = sum / count;
   double squares = 0.0;
-  for (const ImageView& reference : references) squares += std::pow(reference.at(x, y)[channel] - mean, 2);
-  return {mean, squares / (count - 1.0)};
+  for (const ImageView& image : images) squares += std::pow(image.at(x, y)[channel] - mean, 2);
+  return {mean, images.size() > 1 ? squares / (count - 1.0) : 0.0};
+}
+
+// The variance of a mean, and the degrees of freedom with which it is known.
+struct Spread {
+  double variance = 0.0;
+  double degrees_of_freedom = 0.0;
+};
+
+// Of the difference of two means: Welch 1947, Satterthwaite 1946.
+Spread add(const Spread& a, const Spread& b) {
+  const double variance = a.variance + b.variance;
+  if (a.variance <= 0.0) return {variance, b.degrees_of_freedom};
+  if (b.variance <= 0.0) return {variance, a.degrees_of_freedom};
+  return {variance,
+          variance * variance /
+              (a.variance * a.variance / a.degrees_of_freedom + b.variance * b.variance / b.degrees_of_freedom)};
 }
 
 // The normal score with nearly the tail of Student's t: Wallace 1959, equation 2.
@@ -58,35 +73,50 @@ double normal_score(double t, double degrees_of_freedom) {
          std::sqrt(degrees_of_freedom * std::log1p(t * t / degrees_of_freedom));
 }
 
-void check(const ImageView& image, const std::vector<ImageView>& references, const Mask& mask) {
+void check(const std::vector<ImageView>& images, const std::vector<ImageView>& references, const Mask& mask) {
+  if (images.empty()) throw Error("A significance test needs at least one image; got none.");
   if (references.size() < 2)
     throw Error("A significance test needs two or more references of independent noise; got {}.", references.size());
-  for (const ImageView& reference : references)
-    if (reference.width != image.width || reference.height != image.height || reference.channels != image.channels)
-      throw Error("Image and references must have one shape; got ({}, {}, {}) and ({}, {}, {}).", image.height,
-                  image.width, image.channels, reference.height, reference.width, reference.channels);
-  if (mask.width != image.width || mask.height != image.height)
-    throw Error("The mask must have the image's size, {} x {}; got {} x {}.", image.width, image.height, mask.width,
+  const ImageView& first = images.front();
+  for (const std::vector<ImageView>* views : {&images, &references})
+    for (const ImageView& view : *views)
+      if (view.width != first.width || view.height != first.height || view.channels != first.channels)
+        throw Error("Image and references must have one shape; got ({}, {}, {}) and ({}, {}, {}).", first.height,
+                    first.width, first.channels, view.height, view.width, view.channels);
+  if (mask.width != first.width || mask.height != first.height)
+    throw Error("The mask must have the image's size, {} x {}; got {} x {}.", first.width, first.height, mask.width,
                 mask.height);
+}
+
+// The |score| whose two-sided p-value this is, by bisection: erfc falls.
+double score_of(double p_value) {
+  double low = 0.0, high = 40.0;
+  for (int step = 0; step < 80; ++step) {
+    const double middle = 0.5 * (low + high);
+    (std::erfc(middle / std::sqrt(2.0)) > p_value ? low : high) = middle;
+  }
+  return high;
 }
 
 }  // namespace
 
-Significance test_significance(const ImageView& image, const std::vector<ImageView>& references, const Mask& mask,
-                               const SignificanceOptions& options) {
-  check(image, references, mask);
-  const int colours = image.channels == 4 ? 3 : image.channels;
-  const int width = image.width;
-  const int height = image.height;
+Significance test_significance(const std::vector<ImageView>& images, const std::vector<ImageView>& references,
+                               const Mask& mask, const SignificanceOptions& options) {
+  check(images, references, mask);
+  const int colours = images.front().channels == 4 ? 3 : images.front().channels;
+  const int width = images.front().width;
+  const int height = images.front().height;
   const auto pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-  const auto count = static_cast<double>(references.size());
+  const auto image_count = static_cast<double>(images.size());
+  const auto reference_count = static_cast<double>(references.size());
 
   std::vector<double> tested(pixels, 0.0);
   double used = 0.0;
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) {
       const std::size_t pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + x;
-      if (mask.pixels[pixel] != 0 && all_finite(image, references, colours, x, y)) used += tested[pixel] = 1.0;
+      if (mask.pixels[pixel] != 0 && all_finite(images, colours, x, y) && all_finite(references, colours, x, y))
+        used += tested[pixel] = 1.0;
     }
   if (used == 0.0) throw Error("A significance test needs at least one masked pixel that is finite in every image.");
   const std::vector<double> neighbours = box_sums(tested, width, height, variance_window / 2);
@@ -94,38 +124,48 @@ Significance test_significance(const ImageView& image, const std::vector<ImageVi
   Significance result;
   result.p_value = {width, height, 1, std::vector<float>(pixels, 1.0F)};
   result.score = {width, height, colours, std::vector<float>(pixels * static_cast<std::size_t>(colours), 0.0F)};
-  result.tests = static_cast<std::int64_t>(used) * colours;
+  result.pixels = static_cast<std::int64_t>(used);
+  result.tests = result.pixels * colours;
   result.threshold = -std::expm1(std::log1p(-options.false_alarm_rate) / static_cast<double>(result.tests));
+  result.score_threshold = score_of(result.threshold);
 
   for (int channel = 0; channel < colours; ++channel) {
-    std::vector<double> means(pixels, 0.0);
-    std::vector<double> variances(pixels, 0.0);
-    std::vector<double> levels(pixels, 0.0);
+    std::vector<double> image_means(pixels, 0.0), image_variances(pixels, 0.0);
+    std::vector<double> means(pixels, 0.0), variances(pixels, 0.0);
+    double image_noise = 0.0, reference_noise = 0.0;
     for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
       if (tested[pixel] == 0.0) continue;
       const int x = static_cast<int>(pixel % static_cast<std::size_t>(width));
       const int y = static_cast<int>(pixel / static_cast<std::size_t>(width));
-      const Moments here = moments(references, x, y, channel);
-      means[pixel] = here.mean;
-      variances[pixel] = here.variance;
-      levels[pixel] = std::abs(image.at(x, y)[channel]);
+      const Moments ours = moments(images, x, y, channel);
+      const Moments theirs = moments(references, x, y, channel);
+      image_means[pixel] = ours.mean;
+      image_variances[pixel] = ours.variance;
+      means[pixel] = theirs.mean;
+      variances[pixel] = theirs.variance;
+      image_noise += ours.variance / image_count;
+      reference_noise += theirs.variance / reference_count;
     }
+    // The variance of Monte Carlo grows with what is estimated, so neighbours share it in proportion to the level. The
+    // level is taken from the side with less noise, commonly the image, which is right if the hypothesis is: on the
+    // other side a pixel that came out dark by chance would seem less noisy than it is.
+    std::vector<double> levels = image_noise <= reference_noise ? image_means : means;
+    for (double& level : levels) level = std::abs(level);
+    const std::vector<double> image_variance_sums = box_sums(image_variances, width, height, variance_window / 2);
     const std::vector<double> variance_sums = box_sums(variances, width, height, variance_window / 2);
     const std::vector<double> level_sums = box_sums(levels, width, height, variance_window / 2);
     for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
       if (tested[pixel] == 0.0) continue;
-      const int x = static_cast<int>(pixel % static_cast<std::size_t>(width));
-      const int y = static_cast<int>(pixel / static_cast<std::size_t>(width));
-      const double difference = image.at(x, y)[channel] - means[pixel];
+      const double difference = image_means[pixel] - means[pixel];
       constexpr double rounding = 1e-6;  // of single precision, on both sides
       const double excess = std::abs(difference) - (options.relative_tolerance + rounding) * std::abs(means[pixel]);
       if (excess <= 0.0) continue;
-      // The variance of Monte Carlo grows with what is estimated, so neighbours share it in proportion to the level.
-      // The level is taken from the image, which is right if the hypothesis is, and not from the references: a pixel
-      // that came out dark by chance would seem less noisy than it is.
       const double share = level_sums[pixel] > 0.0 ? levels[pixel] / level_sums[pixel] : 1.0 / neighbours[pixel];
-      const double deviation = std::sqrt(variance_sums[pixel] * share / count);
-      const double score = deviation > 0.0 ? normal_score(excess / deviation, (count - 1.0) * neighbours[pixel]) : 1e3;
+      const Spread spread =
+          add({image_variance_sums[pixel] * share / image_count, (image_count - 1.0) * neighbours[pixel]},
+              {variance_sums[pixel] * share / reference_count, (reference_count - 1.0) * neighbours[pixel]});
+      const double score =
+          spread.variance > 0.0 ? normal_score(excess / std::sqrt(spread.variance), spread.degrees_of_freedom) : 1e3;
       const double p_value = std::erfc(score / std::sqrt(2.0));
       result.score.pixels[pixel * static_cast<std::size_t>(colours) + static_cast<std::size_t>(channel)] =
           static_cast<float>(std::copysign(score, difference));

@@ -20,21 +20,26 @@ struct SignificanceOptions {
 
 struct Significance {
   Image p_value;  ///< one channel: the smallest over the pixel's channels; 1 outside the mask
-  Image score;    ///< as many channels as compared: signed, in standard deviations of the reference's mean
-  std::int64_t tests = 0;
+  Image score;    ///< as many channels as compared: signed, in standard deviations of the difference of the means
+  std::int64_t pixels = 0;  ///< tested
+  std::int64_t tests = 0;   ///< pixels times channels
   std::int64_t significant_pixels = 0;
-  double threshold = 0.0;  ///< p-value below which one test is significant (Sidak)
-  bool differs = false;    ///< some pixel is significant
+  double threshold = 0.0;        ///< p-value below which one test is significant (Sidak)
+  double score_threshold = 0.0;  ///< |score| above which it is
+  bool differs = false;          ///< some pixel is significant
 };
 
-/// Tests the colour of `image` against K >= 2 references of independent noise: in every masked pixel and channel a
-/// t-test of the mean of the references, with the variance pooled over the masked pixels of a square of
-/// `variance_window` pixels (so K = 2 serves), the score turned into a normal one after Wallace, "Bounds on normal
-/// approximations to Student's and the chi-square distributions" (1959), and the threshold corrected after Sidak,
-/// "Rectangular confidence regions for the means of multivariate normal distributions" (1967). Pixels with NaN or Inf
-/// in any image are not tested. Throws Error if shapes differ, fewer than two references came or no pixel remains.
-Significance test_significance(const ImageView& image, const std::vector<ImageView>& references, const Mask& mask,
-                               const SignificanceOptions& options = {});
+/// Tests the mean of one or more images against K >= 2 references of independent noise, by colour: in every masked
+/// pixel and channel a t-test of the difference of the means, with the variances pooled over the masked pixels of a
+/// square of `variance_window` pixels (so two of either serve), the score turned into a normal one after Wallace,
+/// "Bounds on normal approximations to Student's and the chi-square distributions" (1959), and the threshold corrected
+/// after Sidak, "Rectangular confidence regions for the means of multivariate normal distributions" (1967). A single
+/// image counts as exact; of several the noise counts too, with the degrees of freedom of Welch, "The generalization of
+/// 'Student's' problem when several different population variances are involved" (1947). Pixels with NaN or Inf in any
+/// image are not tested. Throws Error if shapes differ, there is no image, fewer than two references came or no pixel
+/// remains.
+Significance test_significance(const std::vector<ImageView>& images, const std::vector<ImageView>& references,
+                               const Mask& mask, const SignificanceOptions& options = {});
 
 inline constexpr int variance_window = 9;
 

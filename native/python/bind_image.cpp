@@ -49,11 +49,6 @@ image::ImageView to_view(const Pixels& pixels, const char* name) {
           pixels.ndim() == 3 ? static_cast<int>(pixels.shape(2)) : 1};
 }
 
-std::optional<image::ImageView> to_view(const std::optional<Pixels>& pixels, const char* name) {
-  if (!pixels) return std::nullopt;
-  return to_view(*pixels, name);
-}
-
 /// The array takes the vector over.
 py::array_t<float> to_array(image::Image image) {
   const std::vector<py::ssize_t> shape{image.height, image.width, image.channels};
@@ -122,23 +117,30 @@ py::array_t<bool> otsu_mask(const Pixels& error, const Selection& mask, int medi
   return to_selection(image::otsu_mask(to_view(error, "error"), to_mask(mask), median_size));
 }
 
-py::dict test_significance(const Pixels& pixels, const std::vector<Pixels>& references, const Selection& selection,
-                           double false_alarm_rate, double relative_tolerance) {
-  const image::ImageView view = to_view(pixels, "image");
-  std::vector<image::ImageView> reference_views;
-  reference_views.reserve(references.size());
-  for (const Pixels& reference : references) reference_views.push_back(to_view(reference, "references"));
+std::vector<image::ImageView> to_views(const std::vector<Pixels>& images, const char* name) {
+  std::vector<image::ImageView> views;
+  views.reserve(images.size());
+  for (const Pixels& pixels : images) views.push_back(to_view(pixels, name));
+  return views;
+}
+
+py::dict test_significance(const std::vector<Pixels>& images, const std::vector<Pixels>& references,
+                           const Selection& selection, double false_alarm_rate, double relative_tolerance) {
+  const std::vector<image::ImageView> views = to_views(images, "images");
+  const std::vector<image::ImageView> reference_views = to_views(references, "references");
   const image::Mask mask = to_mask(selection);
   image::Significance significance;
   {
     const py::gil_scoped_release release;
-    significance = image::test_significance(view, reference_views, mask, {false_alarm_rate, relative_tolerance});
+    significance = image::test_significance(views, reference_views, mask, {false_alarm_rate, relative_tolerance});
   }
   py::dict result;
   result["differs"] = significance.differs;
   result["significant_pixels"] = significance.significant_pixels;
+  result["pixels"] = significance.pixels;
   result["tests"] = significance.tests;
   result["threshold"] = significance.threshold;
+  result["score_threshold"] = significance.score_threshold;
   result["false_alarm_rate"] = false_alarm_rate;
   result["relative_tolerance"] = relative_tolerance;
   result["p_value"] = to_array(std::move(significance.p_value));
@@ -191,24 +193,23 @@ py::dict to_dict(const image::Comparison& comparison) {
   return result;
 }
 
-py::dict compare(const Pixels& pixels, const Pixels& reference_a, const std::optional<Pixels>& reference_b,
-                 const std::optional<Selection>& selection) {
+py::dict compare(const Pixels& pixels, const py::args& references, const std::optional<Selection>& selection) {
   const image::ImageView view = to_view(pixels, "image");
-  const image::ImageView a = to_view(reference_a, "reference_a");
-  const std::optional<image::ImageView> b = to_view(reference_b, "reference_b");
+  const auto arrays = references.cast<std::vector<Pixels>>();
+  const std::vector<image::ImageView> reference_views = to_views(arrays, "references");
   const std::optional<image::Mask> mask = to_mask(selection);
   image::Comparison comparison;
   {
     const py::gil_scoped_release release;
-    comparison = image::compare(view, a, b, mask);
+    comparison = image::compare(view, reference_views, mask);
   }
   return to_dict(comparison);
 }
 
-py::array_t<float> error_image(const Pixels& pixels, const Pixels& reference_a,
-                               const std::optional<Pixels>& reference_b, const std::string& metric) {
-  return to_array(image::error_image(to_view(pixels, "image"), to_view(reference_a, "reference_a"),
-                                     to_view(reference_b, "reference_b"), image::parse_error_metric(metric)));
+py::array_t<float> error_image(const Pixels& pixels, const py::args& references, const std::string& metric) {
+  const auto arrays = references.cast<std::vector<Pixels>>();
+  return to_array(
+      image::error_image(to_view(pixels, "image"), to_views(arrays, "references"), image::parse_error_metric(metric)));
 }
 
 }  // namespace
@@ -252,24 +253,24 @@ void bind_image(py::module_& module) {
              "(h, w) bool: mask where the median of error over median_size x median_size pixels is in the lower of the "
              "two classes that Otsu's threshold parts. Raises Error if shapes differ.");
   module.def(
-      "test_significance", &test_significance, py::arg("image"), py::arg("references"), py::arg("mask"),
+      "test_significance", &test_significance, py::arg("images"), py::arg("references"), py::arg("mask"),
       py::arg("false_alarm_rate") = 0.01, py::arg("relative_tolerance") = 0.002,
-      "Tests an image against K >= 2 references of independent noise, pixel by pixel (docs/metrics.md): "
-      "{'differs', 'significant_pixels', 'tests', 'threshold', 'false_alarm_rate', 'relative_tolerance', "
-      "'p_value': (h, w, 1) float32, 'score': (h, w, 1 or 3) float32, in standard deviations, positive where the "
-      "image is too bright}. Raises Error if shapes differ or nothing can be tested.");
-  module.def("compare", &compare, py::arg("image"), py::arg("reference_a"), py::arg("reference_b") = py::none(),
-             py::arg("mask") = py::none(),
-             "Metrics of an image against a reference, or against the mean of two whose noise is independent: a flat "
-             "dict that docs/metrics.md defines, with 'noise_floor' and 'mask' dicts beside it. Images have shape (h, "
-             "w, 1), (h, w, 3) or (h, w, 4), linear, row 0 at the top; a fourth channel is coverage and not compared. "
-             "mask: (h, w) bool; without it, the default mask of the references' coverage if they have 4 channels, "
-             "else all pixels. What is not defined or not known is None. Raises Error if shapes differ, or nothing "
-             "finite is selected.");
-  module.def("error_image", &error_image, py::arg("image"), py::arg("reference_a"), py::arg("reference_b") = py::none(),
-             py::arg("metric") = "rse",
-             "One metric of each sample, float32 of shape (h, w, 1 or 3): 'e', 'ae', 'se', 'rae', 'rse' or "
-             "'rse_root'. NaN and Inf pass through. Raises Error if shapes differ or the metric is unknown.");
+      "Tests the mean of a list of images against a list of K >= 2 references of independent noise, pixel by pixel "
+      "(docs/metrics.md): {'differs', 'significant_pixels', 'pixels', 'tests', 'threshold', 'score_threshold', "
+      "'false_alarm_rate', 'relative_tolerance', 'p_value': (h, w, 1) float32, 'score': (h, w, 1 or 3) float32, in "
+      "standard deviations, positive where the images are too bright}. One image counts as exact, of several the noise "
+      "counts. Raises Error if shapes differ or nothing can be tested.");
+  module.def("compare", &compare, py::arg("image"), py::arg("mask") = py::none(),
+             "compare(image, *references, mask=None): metrics of an image against a reference, or against the mean of "
+             "several whose noise is independent: a flat dict that docs/metrics.md defines, with 'noise_floor' and "
+             "'mask' dicts beside it. Images have shape (h, w, 1), (h, w, 3) or (h, w, 4), linear, row 0 at the top; a "
+             "fourth channel is coverage and not compared. mask: (h, w) bool; without it, the default mask of the "
+             "references' coverage if they have 4 channels, else all pixels. What is not defined or not known is None. "
+             "Raises Error if shapes differ, or nothing finite is selected.");
+  module.def("error_image", &error_image, py::arg("image"), py::arg("metric") = "rse",
+             "error_image(image, *references, metric='rse'): one metric of each sample, float32 of shape (h, w, 1 or "
+             "3): 'e', 'ae', 'se', 'rae', 'rse' or 'rse_root'. NaN and Inf pass through. Raises Error if shapes differ "
+             "or the metric is unknown.");
 }
 
 }  // namespace mesograin::python

@@ -44,7 +44,7 @@ Significance run(const Image& image, unsigned seed, int seeds, double relative_n
   std::vector<ImageView> views;
   views.reserve(images.size());
   for (const Image& reference : images) views.push_back(reference.view());
-  return test_significance(image.view(), views, everywhere(), {rate, 0.002});
+  return test_significance({image.view()}, views, everywhere(), {rate, 0.002});
 }
 
 TEST(Significance, FalseAlarmsComeAtTheStatedRate) {
@@ -59,6 +59,33 @@ TEST(Significance, TwoSeedsSufficeToStayQuiet) {
   int alarms = 0;
   for (unsigned trial = 0; trial < 100; ++trial) alarms += run(exact(), 1000 + trial, 2, 0.2, 0.05).differs ? 1 : 0;
   EXPECT_LE(alarms, 14);
+}
+
+// `images` noisy renders of the truth, darkened by `factor`, against four of another noise.
+Significance run_noisy(unsigned seed, int images, double image_noise, double rate, double factor = 1.0) {
+  std::mt19937 random(seed);
+  std::vector<Image> rendered;
+  for (int i = 0; i < images; ++i) rendered.push_back(noisy(random, image_noise));
+  for (Image& image : rendered)
+    for (float& value : image.pixels) value *= static_cast<float>(factor);
+  for (int i = 0; i < 4; ++i) rendered.push_back(noisy(random, 0.1));
+  std::vector<ImageView> views;
+  for (const Image& image : rendered) views.push_back(image.view());
+  const auto first = views.begin() + images;
+  return test_significance({views.begin(), first}, {first, views.end()}, everywhere(), {rate, 0.002});
+}
+
+TEST(Significance, TheNoiseOfTheImageCounts) {
+  // 60 trials at a rate of 0.2 give 12 +- 3; the tolerance can only lower the rate. The same image taken for exact is
+  // called different every time.
+  for (const double image_noise : {0.02, 0.3}) {
+    int alarms = 0;
+    for (unsigned trial = 0; trial < 60; ++trial) alarms += run_noisy(500 + trial, 4, image_noise, 0.2).differs ? 1 : 0;
+    EXPECT_GE(alarms, 2) << image_noise;
+    EXPECT_LE(alarms, 24) << image_noise;
+  }
+  EXPECT_TRUE(run_noisy(1, 1, 0.3, 0.01).differs);
+  EXPECT_TRUE(run_noisy(1, 4, 0.1, 0.01, 0.5).differs);
 }
 
 TEST(Significance, AWrongImageIsFound) {
@@ -89,6 +116,7 @@ TEST(Significance, TheThresholdIsSidaks) {
   const Significance result = run(exact(), 8, 2, 0.1);
   EXPECT_EQ(result.tests, side * side * 3);
   EXPECT_NEAR(std::pow(1.0 - result.threshold, static_cast<double>(result.tests)), 0.99, 1e-9);
+  EXPECT_NEAR(std::erfc(result.score_threshold / std::sqrt(2.0)), result.threshold, 1e-12);
 }
 
 TEST(Significance, NotANumberIsNotTested) {
@@ -101,11 +129,16 @@ TEST(Significance, NotANumberIsNotTested) {
 
 TEST(Significance, WhatCannotBeTestedIsSaid) {
   const Image image = exact();
-  expect_error([&] { test_significance(image.view(), {image.view()}, everywhere()); }, "two or more references");
+  expect_error([&] { test_significance({image.view()}, {image.view()}, everywhere()); }, "two or more references");
+  expect_error([&] { test_significance({}, {image.view(), image.view()}, everywhere()); }, "at least one image");
   const Image small{8, 8, 3, std::vector<float>(8 * 8 * 3)};
-  expect_error([&] { test_significance(image.view(), {image.view(), small.view()}, everywhere()); }, "one shape");
+  expect_error([&] { test_significance({image.view()}, {image.view(), small.view()}, everywhere()); }, "one shape");
   const Mask nothing{side, side, std::vector<std::uint8_t>(side * side, 0)};
-  expect_error([&] { test_significance(image.view(), {image.view(), image.view()}, nothing); }, "at least one masked");
+  expect_error(
+      [&] {
+        test_significance({image.view()}, {image.view(), image.view()}, nothing);
+      },
+      "at least one masked");
 }
 
 }  // namespace

@@ -94,7 +94,7 @@ def check_against_numpy(result, image, a, b, mask):
 def test_numpy_agrees(seed, masked):
     image, a, b = random_pair(seed=seed)
     mask = np.random.default_rng(seed).random(image.shape[:2]) < (0.4 if masked else 2.0)
-    result = native.compare(image, a, b, mask if masked else None)
+    result = native.compare(image, a, b, mask=mask if masked else None)
     check_against_numpy(result, image, a, b, mask)
     assert result["mask"]["source"] == ("given" if masked else "all pixels")
     assert result["mask"]["nan"] == result["mask"]["inf"] == 0
@@ -109,7 +109,7 @@ def test_nan_and_inf_are_counted_exactly_and_left_out(seed):
             image[generator.random(image.shape) < 0.01] = value
     image, a, b = images
     mask = generator.random(image.shape[:2]) < 0.7
-    result = native.compare(image, a, b, mask)
+    result = native.compare(image, a, b, mask=mask)
     check_against_numpy(result, image, a, b, mask)
     has_nan = np.isnan(images).any(axis=(0, 3)) & mask
     has_inf = np.isinf(images).any(axis=(0, 3)) & mask
@@ -165,7 +165,7 @@ def test_alpha_makes_the_default_mask_and_is_not_compared():
 @pytest.mark.parametrize("metric", ["e", "ae", "se", "rae", "rse", "rse_root"])
 def test_error_images_average_to_the_metrics(metric):
     image, a, b = random_pair()
-    errors = native.error_image(image, a, b, metric)
+    errors = native.error_image(image, a, b, metric=metric)
     assert errors.dtype == np.float32 and errors.shape == image.shape
     result = native.compare(image, a, b)
     assert errors.mean(dtype=np.float64) == pytest.approx(result[metric + "_mean"], rel=1e-6)
