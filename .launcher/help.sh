@@ -46,7 +46,11 @@ Renders every model and the Cycles reference that means the same, and writes pic
   --out DIR                 folder for results (default: comparison)
   --size WxH                picture size in pixels (default: the scene's)
   --samples N               samples per pixel on our side (default: 64)
-  --reference-samples N     Cycles samples per pixel for each of the two seeds (default: 64 for surfaces, 128 for volumes)
+  --reference-samples N     Cycles samples per pixel for each seed (default: 64 for surfaces, 128 for volumes)
+  --seeds K                 independent renders of each reference, whose spread tells its noise; more are added to those
+                            in the cache (default: 2)
+  --until FRACTION          adds seeds until the reference's noise is at most this fraction of the measured error
+  --most-seeds K            how many seeds --until may lead to (default: 64)
   --set NAME=VALUE          a material parameter for every material, on both sides: reflectance, sigma_a, sigma_s, g, eta,
                             roughness, scale, profile; RGB as one number or three with commas; may be repeated
   --frames N                frames timed for frame_ms (default: 9)

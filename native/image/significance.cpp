@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
 
 #include "scene/error.h"
 
@@ -120,6 +121,7 @@ Significance test_significance(const std::vector<ImageView>& images, const std::
     }
   if (used == 0.0) throw Error("A significance test needs at least one masked pixel that is finite in every image.");
   const std::vector<double> neighbours = box_sums(tested, width, height, variance_window / 2);
+  const std::vector<double> nearest = box_sums(tested, width, height, 1);
 
   Significance result;
   result.p_value = {width, height, 1, std::vector<float>(pixels, 1.0F)};
@@ -151,6 +153,9 @@ Significance test_significance(const std::vector<ImageView>& images, const std::
     // other side a pixel that came out dark by chance would seem less noisy than it is.
     std::vector<double> levels = image_noise <= reference_noise ? image_means : means;
     for (double& level : levels) level = std::abs(level);
+    const double mean_level = std::accumulate(means.begin(), means.end(), 0.0) / used;
+    const std::vector<double> nearby_image_variances = box_sums(image_variances, width, height, 1);
+    const std::vector<double> nearby_variances = box_sums(variances, width, height, 1);
     const std::vector<double> image_variance_sums = box_sums(image_variances, width, height, variance_window / 2);
     const std::vector<double> variance_sums = box_sums(variances, width, height, variance_window / 2);
     const std::vector<double> level_sums = box_sums(levels, width, height, variance_window / 2);
@@ -158,12 +163,17 @@ Significance test_significance(const std::vector<ImageView>& images, const std::
       if (tested[pixel] == 0.0) continue;
       const double difference = image_means[pixel] - means[pixel];
       constexpr double rounding = 1e-6;  // of single precision, on both sides
-      const double excess = std::abs(difference) - (options.relative_tolerance + rounding) * std::abs(means[pixel]);
+      const double excess = std::abs(difference) - (options.relative_tolerance + rounding) *
+                                                       std::max(std::abs(means[pixel]), std::abs(mean_level));
       if (excess <= 0.0) continue;
       const double share = level_sums[pixel] > 0.0 ? levels[pixel] / level_sums[pixel] : 1.0 / neighbours[pixel];
-      const Spread spread =
-          add({image_variance_sums[pixel] * share / image_count, (image_count - 1.0) * neighbours[pixel]},
-              {variance_sums[pixel] * share / reference_count, (reference_count - 1.0) * neighbours[pixel]});
+      // At an edge noise does not follow the level: there the next neighbours' own counts, if it is more.
+      const auto variance = [&](const std::vector<double>& wide, const std::vector<double>& near, double count) {
+        return std::max(wide[pixel] * share, near[pixel] / nearest[pixel]) / count;
+      };
+      const Spread spread = add(
+          {variance(image_variance_sums, nearby_image_variances, image_count), (image_count - 1.0) * neighbours[pixel]},
+          {variance(variance_sums, nearby_variances, reference_count), (reference_count - 1.0) * neighbours[pixel]});
       const double score =
           spread.variance > 0.0 ? normal_score(excess / std::sqrt(spread.variance), spread.degrees_of_freedom) : 1e3;
       const double p_value = std::erfc(score / std::sqrt(2.0));

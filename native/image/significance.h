@@ -13,8 +13,8 @@ struct SignificanceOptions {
   /// Probability that an image without any error is called different.
   double false_alarm_rate = 0.01;
 
-  /// A difference up to this part of the reference is not looked for: two right renderers still sample edges and
-  /// tessellate differently.
+  /// A difference up to this part of the reference, or of its mean over the mask if that is more, is not looked for:
+  /// two right renderers still sample edges and tessellate differently.
   double relative_tolerance = 0.002;
 };
 

@@ -11,10 +11,11 @@ import time
 import bpy
 import numpy as np
 import pytest
-from cycles_scenes import make_sphere
+from cycles_scenes import depsgraph, make_sphere
 
-from mesograin.comparison import progress, results, run
-from mesograin.cycles import reference
+from mesograin import native_module
+from mesograin.comparison import progress, results, run, significance
+from mesograin.cycles import reference, shot
 from mesograin.cycles.cache import Cache
 
 COMMAND = pathlib.Path(__file__).resolve().parents[2] / "addon/mesograin/comparison/command.py"
@@ -54,7 +55,8 @@ def test_every_file_is_there_and_agrees(tmp_path, native):
     for case in found["cases"]:
         assert case["status"] == "done" and case["frame_ms"] > 0.0 and case["reference_seconds"] > 0.0
         assert {"rse_mean", "rse_max", "relative_l1", "bias"} <= set(case["metrics"])
-        assert case["noise_floor"]["relative_l1"] > 0.0
+        assert case["noise_floor"]["relative_l1"] > 0.0 and case["our_noise"]["relative_l1"] >= 0.0
+        assert case["significance"]["pixels"] == case["mask"]["used"]
         assert case["mask"]["pixels"] > 100 and case["mask"]["nan"] == case["mask"]["inf"] == 0
         assert set(case["versions"]) >= {"mesograin", "blender"} and set(found["definitions"]) >= set(case["metrics"])
         pictures = {name: native.read_exr(out / path) for name, path in case["files"].items() if path.endswith(".exr")}
@@ -114,6 +116,81 @@ def test_settings_reach_both_sides_and_leave_the_material_alone(tmp_path, native
     )
     assert theirs["mean_of"][0]["materials"][0]["nodes"]["Scatter"]["inputs"]["Density"] == pytest.approx(10.0)
     assert (material.mesograin.scale, material.mesograin.boundary) == (3.0, "dielectric")
+
+
+@pytest.fixture
+def noisy_cycles(monkeypatch):
+    """Puts quick noise round a picture of our own where Cycles renders; returns the list of seeds rendered."""
+    rendered = []
+
+    def stand_in(native, scene, on_progress):
+        seed = scene.cycles.seed
+        rendered.append(seed)
+        height, width = scene.render.resolution_y, scene.render.resolution_x
+        pixels = np.ones((height, width, 4), np.float32)
+        pixels[..., :3] += np.random.default_rng(seed).normal(0.0, 0.1, (height, width, 3))
+        return pixels
+
+    monkeypatch.setattr(shot, "render_stage", stand_in)
+    return rendered
+
+
+def test_more_seeds_are_added_to_those_in_the_cache(tmp_path, noisy_cycles):
+    make_sphere(SUNS, segments=16, rings=8)
+    floors = []
+    for seeds in (2, 8):
+        case = compare(tmp_path, models=("lambert",), seeds=seeds)["cases"][0]
+        assert case["reference_seeds"] == list(range(1, seeds + 1))
+        assert case["significance"]["reference_seeds"] == seeds and case["significance"]["our_seeds"] == 4
+        floors.append(case["noise_floor"]["relative_l1"])
+    assert sorted(noisy_cycles) == list(range(1, 9))
+    assert floors[1] == pytest.approx(0.5 * floors[0], rel=0.1)
+
+
+def test_one_seed_has_no_verdict(tmp_path, noisy_cycles):
+    make_sphere(SUNS, segments=16, rings=8)
+    case = compare(tmp_path, models=("lambert",), seeds=1)["cases"][0]
+    assert case["significance"] is None and case["noise_floor"]["relative_l1"] is None
+    assert case["status"] == "done" and "z_map" not in case["files"]
+
+
+def test_until_adds_seeds_till_the_noise_is_small_or_the_limit_is_there(tmp_path, noisy_cycles):
+    make_sphere(SUNS, segments=16, rings=8)
+    case = compare(tmp_path, models=("lambert",), until=0.02)["cases"][0]
+    ratio = case["noise_floor"]["relative_l1"] / case["metrics"]["relative_l1_corrected"]
+    assert case["until"]["reached"] and case["until"]["ratio"] == pytest.approx(ratio) and ratio <= 0.02
+    assert 2 < len(case["reference_seeds"]) < 64 and case["significance"]["verdict"] == "differs"
+    case = compare(tmp_path, models=("lambert",), until=0.001, most_seeds=6)["cases"][0]
+    assert not case["until"]["reached"] and case["reference_seeds"] == [1, 2, 3, 4, 5, 6]
+
+
+def test_a_cancelled_comparison_keeps_what_was_finished(tmp_path, noisy_cycles):
+    make_sphere(SUNS, segments=16, rings=8, roughness=0.4)
+    done = {"models": ("lambert", "conductor"), "out": tmp_path / "out", "size": (16, 16), "samples": 4, "frames": 1}
+    line = progress.Calls(lambda step: step.number == 2 and line.cancel(), print)
+    with pytest.raises(progress.Cancelled):
+        run.compare(run.Request(**done, cache=Cache(tmp_path / "cache")), line)
+    found = json.loads((tmp_path / "out" / "results.json").read_text())
+    assert not found["complete"] and [case["name"] for case in found["cases"]] == ["lambert.diffuse"]
+
+
+def test_doubled_sigma_is_flagged_and_the_same_grain_is_not(tmp_path):
+    """Cycles stands on both sides, so that nothing but the material and the noise differs."""
+    make_sphere(SUNS, sigma_s=(0.9,) * 3, sigma_a=(0.1,) * 3)
+
+    def volume(seeds, **overrides):
+        return reference.render(
+            depsgraph(), "volume_index_matched", (40, 40), samples=32, seeds=seeds, overrides=overrides
+        )
+
+    theirs, same = volume((1, 2, 3)), volume((4, 5, 6))
+    other = volume((4, 5, 6), sigma_s=(1.8,) * 3, sigma_a=(0.2,) * 3)
+    mask = native_module.get().default_mask(theirs.mean[..., 3])
+    entry, scores = significance.test(same.images, theirs.images, mask)
+    assert entry["verdict"] == "no significant difference" and entry["significant_pixels"] == 0
+    entry, scores = significance.test(other.images, theirs.images, mask)
+    assert entry["verdict"] == "differs" and entry["share"] > 0.02
+    assert np.abs(scores[mask]).max() > entry["score_threshold"] and not scores[~mask].any()
 
 
 def test_cases_pair_models_with_references_that_answer_them():

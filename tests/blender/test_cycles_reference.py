@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from cycles_scenes import RADIUS, depsgraph, make_sphere, sphere_points, unit
 
-from mesograin.cycles import nodes, reference
+from mesograin.cycles import nodes, reference, shot
 from mesograin.cycles.cache import Cache
 from mesograin.cycles.stage import StageError
 
@@ -44,7 +44,7 @@ def counted(monkeypatch):
         on_progress(1.0)
         return np.full((scene.render.resolution_y, scene.render.resolution_x, 4), 1.0 + scene.cycles.seed, np.float32)
 
-    monkeypatch.setattr(reference, "_render_stage", stand_in)
+    monkeypatch.setattr(shot, "render_stage", stand_in)
     return rendered
 
 
@@ -64,7 +64,7 @@ def test_scene_stays_as_it_was_when_rendering_fails(monkeypatch):
     def fail(*_):
         raise MemoryError("no more")
 
-    monkeypatch.setattr(reference, "_render_stage", fail)
+    monkeypatch.setattr(shot, "render_stage", fail)
     with pytest.raises(MemoryError):
         reference.render(depsgraph(), "diffuse", (16, 16), samples=2)
     assert state() == before

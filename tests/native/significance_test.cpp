@@ -65,11 +65,13 @@ TEST(Significance, TwoSeedsSufficeToStayQuiet) {
 Significance run_noisy(unsigned seed, int images, double image_noise, double rate, double factor = 1.0) {
   std::mt19937 random(seed);
   std::vector<Image> rendered;
+  rendered.reserve(static_cast<std::size_t>(images) + 4);
   for (int i = 0; i < images; ++i) rendered.push_back(noisy(random, image_noise));
   for (Image& image : rendered)
     for (float& value : image.pixels) value *= static_cast<float>(factor);
   for (int i = 0; i < 4; ++i) rendered.push_back(noisy(random, 0.1));
   std::vector<ImageView> views;
+  views.reserve(rendered.size());
   for (const Image& image : rendered) views.push_back(image.view());
   const auto first = views.begin() + images;
   return test_significance({views.begin(), first}, {first, views.end()}, everywhere(), {rate, 0.002});

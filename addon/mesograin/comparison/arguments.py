@@ -19,6 +19,8 @@ SETTABLE = {
     "profile": 0,
 }
 """Parameters that --set may change, and how many numbers each takes; 0 for a word."""
+MOST_SEEDS = 64
+"""How many seeds of a reference --until may lead to, if nothing else is said."""
 
 
 class Parser(argparse.ArgumentParser):
@@ -80,7 +82,29 @@ def build():
         type=positive,
         default=None,
         metavar="N",
-        help="Cycles samples a pixel for each of the two seeds (default: 64 for surfaces, 128 for volumes)",
+        help="Cycles samples a pixel for each seed (default: 64 for surfaces, 128 for volumes)",
+    )
+    parser.add_argument(
+        "--seeds",
+        type=_positive,
+        default=2,
+        metavar="K",
+        help="independent renders of each reference, whose spread tells its noise; more are added to those in the cache"
+        " (default: 2)",
+    )
+    parser.add_argument(
+        "--until",
+        type=_fraction,
+        default=None,
+        metavar="FRACTION",
+        help="add seeds until the reference's noise is at most this fraction of the measured error, such as 0.2",
+    )
+    parser.add_argument(
+        "--most-seeds",
+        type=_positive,
+        default=MOST_SEEDS,
+        metavar="K",
+        help=f"how many seeds --until may lead to (default: {MOST_SEEDS})",
     )
     parser.add_argument(
         "--set",
@@ -131,6 +155,16 @@ def positive(text):
     if not text.isdigit() or not 1 <= int(text) <= 1 << 20:
         raise argparse.ArgumentTypeError(f"a whole number from 1 to {1 << 20} is needed, '{text}' came")
     return int(text)
+
+
+def _fraction(text):
+    try:
+        fraction = float(text)
+    except ValueError:
+        fraction = 0.0
+    if not 0.0 < fraction <= 1.0:
+        raise argparse.ArgumentTypeError(f"a number above 0 and up to 1 is needed, '{text}' came")
+    return fraction
 
 
 def _size(text):

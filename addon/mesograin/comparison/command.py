@@ -73,6 +73,9 @@ def _run(chosen, words):
         size=chosen.size,
         samples=chosen.samples,
         reference_samples=chosen.reference_samples,
+        seeds=chosen.seeds,
+        until=chosen.until,
+        most_seeds=chosen.most_seeds,
         settings=chosen.settings,
         frames=chosen.frames,
         cache=cache,
@@ -108,8 +111,8 @@ def _command(words):
 
 def _print_table(results):
     """What matters most of each case; the rest is in the files."""
-    titles = ("relative L1", "in blocks", "noise floor", "bias", "ms/frame", "Cycles s")
-    print(f"{'case':<34}" + "".join(f"{title:>{width}}" for title, width in zip(titles, (12, 11, 13, 8, 10, 10))))
+    titles = ("relative L1", "in blocks", "noise floor", "bias", "ms/frame", "Cycles s", "significant")
+    print(f"{'case':<34}" + "".join(f"{title:>{width}}" for title, width in zip(titles, (12, 11, 13, 8, 10, 10, 13))))
     for case in results["cases"]:
         if case["status"] != "done":
             print(f"{case['name']:<34}{'failed':>12}")
@@ -120,7 +123,12 @@ def _print_table(results):
             f"{'-' if value is None else format(value, '.2%'):>{width}}" for value, width in zip(numbers, (12, 11, 13))
         )
         bias = "-" if metrics["bias"] is None else f"{metrics['bias']:.4f}"
-        print(f"{case['name']:<34}{shares}{bias:>8}{case['frame_ms']:>10.2f}{case['reference_seconds']:>10.1f}")
+        test = case["significance"]
+        significant = "-" if test is None else f"{test['share']:.1%} px" if test["significant_pixels"] else "nothing"
+        print(
+            f"{case['name']:<34}{shares}{bias:>8}{case['frame_ms']:>10.2f}{case['reference_seconds']:>10.1f}"
+            f"{significant:>13}"
+        )
 
 
 def _write_report(folder):

@@ -1,5 +1,5 @@
 # What every number of a result means, in one sentence each, kept with the numbers themselves.
-"""`i` is a sample of our image, `r` of the reference, the mean of its seeds `a` and `b`: masked linear radiance."""
+"""`i` is a sample of our image, `r` of the reference, the mean of its seeds: masked linear radiance."""
 
 METRICS = {
     "relative_l1": "sum |i - r| / sum r; 0 is perfect, no unit",
@@ -40,8 +40,17 @@ SUFFIXES = {
 
 OTHERS = {
     "noise_floor": (
-        "the metric with |a - b| / 2 in the place of |i - r|: what a perfect image would score against this reference"
+        "what a perfect image would score against this reference: the metric with |s - r| / sqrt(K - 1) in the place of"
+        " |i - r|, s one of the K seeds whose mean is r, averaged over the seeds; with two seeds that is |a - b| / 2"
     ),
+    "our_noise": "the same of our picture: what it would score against itself, had it all samples that there are",
+    "significance.verdict": (
+        "whether some pixel differs by more than the noise of both sides explains, and by more than 0.2 %: t-tests of"
+        " every masked pixel and channel, corrected after Sidak; an image without error is called different with"
+        " probability false_alarm_rate"
+    ),
+    "significance.share": "significant pixels / pixels tested",
+    "until": "seeds were added until noise_floor / metric_corrected was at most fraction, or most_seeds were there",
     "mask.pixels": (
         "pixels compared: coverage 1 in the reference, less those within 2 pixels of one whose coverage is not"
     ),

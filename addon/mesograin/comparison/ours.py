@@ -7,8 +7,12 @@ import statistics
 from .. import export, meshes, native_module
 
 
+SEEDS = 4
+"""Our picture is the mean of this many parts of independent noise, whose spread tells how far it is sampled out."""
+
+
 class Ours:
-    """One evaluated scene and a view of it, ready for any number of models.
+    """One evaluated scene and views of it, ready for any number of models.
 
     depsgraph: evaluated. size: (width, height) in pixels. overrides: {parameter: value} for every material,
     coefficients per scene unit. Raises native.Error with a sentence if the scene has no camera or cannot be drawn.
@@ -18,7 +22,7 @@ class Ours:
         native = native_module.get()
         self._overrides = overrides
         self._scene = export.read_scene(depsgraph, meshes.MeshCache())
-        self._view = native.View(*size)
+        self._views = [native.View(*size, seed=seed) for seed in range(SEEDS)]
         self._camera = export.camera_from_scene(depsgraph, *size)
         self.warnings = self._scene.warnings
 
@@ -29,8 +33,15 @@ class Ours:
             for instance in self._scene.instances
         }
 
+    @staticmethod
+    def samples(samples):
+        """How many samples a pixel `render` really takes: so many that all parts have as many."""
+        parts = min(SEEDS, samples)
+        return -(-samples // parts) * parts
+
     def render(self, chosen, samples):
-        """(h, w, 4) float32 of the scene with the case's choice of parameters, `samples` a pixel."""
+        """The scene with the case's choice of parameters, as parts of independent noise whose mean is the picture:
+        a list of (h, w, 4) float32. samples: of each pixel, over all parts."""
         parameters = self.parameters(chosen)
         instances = tuple(
             dataclasses.replace(
@@ -41,18 +52,24 @@ class Ours:
             )
             for instance in self._scene.instances
         )
-        self._view.set_scene(dataclasses.replace(self._scene, instances=instances).to_native())
-        self._view.set_camera(self._camera)
-        self._view.render(samples)
-        return self._view.read()
+        scene = dataclasses.replace(self._scene, instances=instances).to_native()
+        views = self._views[: min(SEEDS, samples)]
+        parts = []
+        for view in views:
+            view.set_scene(scene)
+            view.set_camera(self._camera)
+            view.render(self.samples(samples) // len(views))
+            parts.append(view.read())
+        return parts
 
     def time_frames(self, frames):
         """(median milliseconds of a frame, [(pass, median milliseconds)]): one sample of what was rendered last."""
         totals, passes = [], {}
+        view = self._views[0]
         for _ in range(frames):
-            self._view.set_camera(self._camera)
-            self._view.render(1)
-            timings = self._view.timings()
+            view.set_camera(self._camera)
+            view.render(1)
+            timings = view.timings()
             totals.append(sum(timing["milliseconds"] for timing in timings))
             for timing in timings:
                 passes.setdefault(timing["pass"], []).append(timing["milliseconds"])

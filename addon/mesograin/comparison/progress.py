@@ -25,6 +25,10 @@ class Step:
     seconds_left: float
 
 
+class Cancelled(Exception):
+    """Somebody called `Progress.cancel`."""
+
+
 class Progress:
     """Steps with guessed costs; each step that ends corrects the guess of those of its kind.
 
@@ -43,13 +47,25 @@ class Progress:
         self._started = time.monotonic()
         self._shown = 0.0
         self._lock = threading.Lock()
+        self._cancelled = False
 
     def plan(self, steps):
         """steps: [(what, kind, guessed seconds)], in the order in which `begin` will be called."""
         self._steps = list(steps)
 
+    def insert(self, steps):
+        """Steps that come before all that are planned, as in `plan`."""
+        with self._lock:
+            self._steps[self._at + 1:self._at + 1] = list(steps)
+
+    def cancel(self):
+        """From any thread: the next step is not begun."""
+        self._cancelled = True
+
     def begin(self):
-        """The next step is under way."""
+        """The next step is under way. Raises Cancelled after `cancel`."""
+        if self._cancelled:
+            raise Cancelled("The comparison was cancelled.")
         with self._lock:
             self._at += 1
             self._fraction = 0.0
@@ -67,18 +83,18 @@ class Progress:
         with self._lock:
             _, kind, guess = self._steps[self._at]
             if learn and guess > 0.0:
-                self._pace[kind] = (time.monotonic() - self._started) / guess
+                self._pace[kind] = (time.monotonic() - self._started, guess)
             self._fraction = 1.0
 
     @property
-    def steps_begun(self):
-        """How many steps are done or under way."""
-        return self._at + 1
+    def steps_left(self):
+        """How many steps have not begun."""
+        return len(self._steps) - self._at - 1
 
-    def skip_to(self, count):
-        """Gives up on all steps before `count`."""
+    def skip_to_last(self, count):
+        """Gives up on all steps but the last `count`."""
         with self._lock:
-            self._at = count - 1
+            self._at = len(self._steps) - count - 1
             self._fraction = 1.0
 
     def say(self, sentence):
@@ -97,7 +113,7 @@ class Progress:
         elapsed = time.monotonic() - self._started
         left = 0.0
         for index, (_, kind, guess) in enumerate(self._steps):
-            pace = self._pace.get(kind) or (sum(self._pace.values()) / len(self._pace) if self._pace else 1.0)
+            pace = self._pace_of(kind)
             if index > self._at:
                 left += guess * pace
             elif index == self._at and self._fraction < 1.0:
@@ -106,6 +122,12 @@ class Progress:
                 total = self._fraction * seen + (1.0 - self._fraction) * max(guess * pace, elapsed)
                 left += max(total * (1.0 - self._fraction), 0.0)
         return left
+
+    def _pace_of(self, kind):
+        """Seconds for a guessed second: of the last step of this kind, else of all kinds together."""
+        taken = [self._pace[kind]] if kind in self._pace else list(self._pace.values())
+        guessed = sum(guess for _, guess in taken)
+        return sum(seconds for seconds, _ in taken) / guessed if guessed else 1.0
 
     def _show(self, force=False):
         now = time.monotonic()

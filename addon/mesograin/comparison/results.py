@@ -114,8 +114,8 @@ def _csv(cases):
 def _row(case):
     row = {name: value for name, value in case.items() if not isinstance(value, (dict, list))}
     row.update(case.get("metrics", {}))
-    for group in ("noise_floor", "mask"):
-        row.update({f"{group}.{name}": value for name, value in case.get(group, {}).items()})
+    for group in ("noise_floor", "our_noise", "mask", "significance", "until"):
+        row.update({f"{group}.{name}": value for name, value in (case.get(group) or {}).items()})
     return {
         name: json.dumps(value) if isinstance(value, list) else value
         for name, value in row.items()

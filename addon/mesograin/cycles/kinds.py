@@ -24,7 +24,7 @@ class Kind:
     name: as on the command line and in results. title: as in the report. models: our models that it answers.
     bounces: Cycles' limit on path length. samples: per pixel and seed by default. coverage_pass: its alpha is not the
     coverage, so the coverage is rendered apart. cost: guessed seconds for a million samples on one core, for the first
-    estimate of the time left.
+    estimate of the time left. judged_by: the metric that says how far a model is off, pixel by pixel or in blocks.
     """
 
     name: str
@@ -34,6 +34,7 @@ class Kind:
     samples: int
     coverage_pass: bool
     cost: float
+    judged_by: str = "relative_l1"
 
 
 # The opaque kinds see direct light alone, as the models that they answer do; inside a medium everything counts.

@@ -1,40 +1,29 @@
-# Renders a reference with Cycles, or finds it in the cache.
-"""See `render`."""
+# A reference: images of independent seeds by Cycles, rendered or found in the cache, and what is common to them.
+"""See `Sampling` and `render`."""
 
-import json
-import tempfile
-import time
 from dataclasses import dataclass
-from pathlib import Path
 
-import bpy
 import numpy
 
-from .. import export, native_module
-from . import fingerprint, kinds, nodes, recipes, settings
-from .console import Console
-from .grain_values import GrainValues
+from . import kinds, shot
 from .limits import limits
-from .stage import Stage
+from .shot import PROVENANCE, ReferenceError
+
+__all__ = ["PROVENANCE", "SEEDS", "Reference", "ReferenceError", "Sampling", "render"]
 
 SEEDS = (1, 2)
-"""Two independent references: their difference is the noise, their mean the reference."""
-
-PROVENANCE = "mesograin:provenance"
-"""The string attribute of an EXR file that holds where it comes from, as JSON."""
-
-
-class ReferenceError(Exception):
-    """No reference can be rendered; one sentence."""
+"""Two independent images by default: their difference tells the noise, their mean is the reference."""
 
 
 @dataclass(frozen=True)
 class Reference:
     """images: one (h, w, 4) float32 array for each seed, linear, premultiplied, row 0 at the top; alpha: coverage.
-    seconds: what rendering them took, now or when they were put into the cache. cached: whether nothing was rendered.
-    provenance: one dict for each seed. notes: sentences about what Cycles could not express exactly."""
+    seeds: their numbers. seconds: what rendering them took, now or when they were put into the cache. cached: whether
+    nothing was rendered. provenance: one dict for each seed. notes: sentences about what Cycles could not express
+    exactly."""
 
     images: tuple
+    seeds: tuple
     seconds: float
     cached: bool
     provenance: tuple
@@ -45,55 +34,83 @@ class Reference:
         """The reference itself, (h, w, 4) float32."""
         return numpy.mean(self.images, axis=0, dtype=numpy.float64).astype(numpy.float32)
 
+    @property
+    def standard_error(self):
+        """Of the mean, in radiance, (h, w, 3) float32; None with a single seed."""
+        count = len(self.images)
+        if count < 2:
+            return None
+        variance = numpy.var([image[..., :3] for image in self.images], axis=0, ddof=1, dtype=numpy.float64)
+        return numpy.sqrt(variance / count).astype(numpy.float32)
 
-def render(depsgraph, kind, size, samples=None, seeds=SEEDS, cache=None, overrides=None, on_progress=None):
-    """Renders what `depsgraph` shows with the Cycles materials of a kind of reference; the user's scene stays as it is.
+
+class Sampling:
+    """A reference that can be given more seeds; each is kept in the cache by itself.
 
     depsgraph: evaluated, of the scene with its `mesograin` properties. kind: a name in `kinds.KINDS`.
     size: (width, height) in pixels. samples: per pixel and seed; the kind's default if None.
     cache: a `Cache`, or None for none. overrides: {parameter: value} for every material, coefficients per scene unit.
-    on_progress: called with the fraction done, from any thread.
-    Raises ReferenceError, StageError or native.Error with one sentence.
+    Raises ReferenceError for what Cycles cannot render at all, before anything is rendered.
     """
-    kind = kinds.KINDS[kind]
-    samples = samples or kind.samples
-    overrides = overrides or {}
-    notes = _check(depsgraph, kind, overrides)
-    steps = len(seeds) + kind.coverage_pass
-    tell = on_progress or (lambda fraction: None)
 
-    def shoot(step, kind, samples, seed):
-        def on_shot(done):
-            tell((step + done) / steps)
+    def __init__(self, depsgraph, kind, size, samples=None, cache=None, overrides=None):
+        self.kind = kinds.KINDS[kind]
+        self.samples = samples or self.kind.samples
+        self._depsgraph, self._size, self._cache, self._overrides = depsgraph, size, cache, overrides or {}
+        self.notes = _check(depsgraph, self.kind, self._overrides)
+        self._coverage = None
+        self._shots = {}
 
-        return _shot(depsgraph, kind, size, samples, seed, cache, overrides, on_shot)
+    def add(self, seeds, on_progress=None):
+        """Renders those of `seeds` that are not there. on_progress: called with the fraction done, from any thread.
 
-    shots = [shoot(step, kind, samples, seed) for step, seed in enumerate(seeds)]
-    images = [shot.pixels for shot in shots]
-    if kind.coverage_pass:
-        covering = shoot(len(seeds), kinds.COVERAGE, kinds.COVERAGE.samples, 0)
-        for image in images:
-            image[..., 3] = covering.pixels[..., 3]
-    return Reference(
-        images=tuple(images),
-        seconds=sum(shot.provenance["seconds"] for shot in shots),
-        cached=all(shot.cached for shot in shots),
-        provenance=tuple(shot.provenance for shot in shots),
-        notes=notes,
-    )
+        Raises ReferenceError, StageError or native.Error with one sentence; the seeds before stay.
+        """
+        tell = on_progress or (lambda fraction: None)
+        missing = [seed for seed in dict.fromkeys(seeds) if seed not in self._shots]
+        first = self.kind.coverage_pass and self._coverage is None
+        steps = len(missing) + first
+        for step, seed in enumerate(missing):
+            self._shots[seed] = self._take(self.kind, self.samples, seed, _part(tell, step, steps))
+        if first:
+            covering = _part(tell, len(missing), steps)
+            self._coverage = self._take(kinds.COVERAGE, kinds.COVERAGE.samples, 0, covering)
+
+    def result(self):
+        """What there is so far: a Reference of at least one seed."""
+        taken = [self._shots[seed] for seed in sorted(self._shots)]
+        images = [each.pixels for each in taken]
+        if self._coverage:
+            for image in images:
+                image[..., 3] = self._coverage.pixels[..., 3]
+        return Reference(
+            images=tuple(images),
+            seeds=tuple(sorted(self._shots)),
+            seconds=sum(each.provenance["seconds"] for each in taken),
+            cached=all(each.cached for each in taken),
+            provenance=tuple(each.provenance for each in taken),
+            notes=self.notes,
+        )
+
+    def _take(self, kind, samples, seed, on_progress):
+        return shot.take(
+            self._depsgraph, kind, self._size, samples, seed, self._cache, self._overrides, on_progress
+        )
 
 
-@dataclass(frozen=True)
-class _Shot:
-    pixels: numpy.ndarray
-    provenance: dict
-    cached: bool
+def render(depsgraph, kind, size, samples=None, seeds=SEEDS, cache=None, overrides=None, on_progress=None):
+    """Renders what `depsgraph` shows with the Cycles materials of a kind of reference; the user's scene stays as it is.
+
+    Returns a Reference of these seeds. The arguments are those of `Sampling` and its `add`.
+    """
+    sampling = Sampling(depsgraph, kind, size, samples, cache, overrides)
+    sampling.add(seeds, on_progress)
+    return sampling.result()
 
 
-def _values(depsgraph, overrides, material):
-    """GrainValues of a bpy.types.Material, or of the default grain for faces that have none (None)."""
-    parameters = dict(export.material_values(material, depsgraph.scene.mesograin.millimetres_per_unit).values)
-    return GrainValues.from_parameters({**parameters, **overrides})
+def _part(tell, step, steps):
+    """The progress of one of several steps, told as that of all."""
+    return lambda done: tell((step + done) / steps)
 
 
 def _check(depsgraph, kind, overrides):
@@ -105,89 +122,9 @@ def _check(depsgraph, kind, overrides):
                 materials[slot.material.name] = slot.material.original
     notes = []
     for name, material in sorted(materials.items()):
-        for limit in limits(_values(depsgraph, overrides, material), kind.name):
+        for limit in limits(shot.grain_values(depsgraph, overrides, material), kind.name):
             sentence = f"Material '{name}': {limit.sentence}"
             if limit.fatal:
                 raise ReferenceError(sentence)
             notes.append(sentence)
     return tuple(notes)
-
-
-def _shot(depsgraph, kind, size, samples, seed, cache, overrides, on_progress):
-    """One image of one seed, from the cache or rendered into it."""
-    native = native_module.get()
-    source = depsgraph.scene.render
-    description = settings.settings(kind, samples, seed, size, (source.pixel_aspect_x, source.pixel_aspect_y))
-    used = {}
-
-    def build(material):
-        recipe = recipes.recipe(kind.name, _values(depsgraph, overrides, material), nodes.features())
-        made = nodes.build("Mesograin reference", recipe)
-        used[made.name] = recipe
-        return made
-
-    with Stage(depsgraph, description, build) as stage:
-        determined_by = fingerprint.describe(stage.scene, used, description)
-        key = fingerprint.key(determined_by)
-        found = _read_cached(native, cache, key)
-        if found:
-            on_progress(1.0)
-            return found
-        started = time.monotonic()
-        pixels = _render_stage(native, stage.scene, on_progress)
-        seconds = time.monotonic() - started
-    provenance = {
-        "made_by": f"Mesograin {native.__version__}",
-        "blender": f"{determined_by['blender']} ({determined_by['build']})",
-        "reference": kind.name,
-        "samples": samples,
-        "seed": seed,
-        "bounces": kind.bounces,
-        "pixel_filter": "box, one pixel",
-        "colour_space": "linear, scene-referred; alpha is premultiplied",
-        "seconds": round(seconds, 3),
-        "materials": list(used.values()),
-        "key": key,
-    }
-    # As it will come back from a file.
-    provenance = json.loads(json.dumps(provenance))
-    if cache:
-        try:
-            cache.store(
-                key, lambda path: native.write_exr(path, pixels, attributes={PROVENANCE: json.dumps(provenance)})
-            )
-        except (OSError, native.Error) as error:
-            print(f"The reference is not kept: {error}")
-    return _Shot(pixels, provenance, cached=False)
-
-
-def _read_cached(native, cache, key):
-    path = cache.find(key) if cache else None
-    if not path:
-        return None
-    try:
-        pixels, _, attributes = native.read_exr(path)
-        return _Shot(pixels, json.loads(attributes[PROVENANCE]), cached=True)
-    except (native.Error, KeyError, ValueError):
-        cache.forget(key)
-        return None
-
-
-def _render_stage(native, scene, on_progress):
-    """What Cycles renders of a staged scene, (h, w, 4) float32."""
-    with tempfile.TemporaryDirectory(prefix="mesograin-") as folder:
-        scene.render.filepath = str(Path(folder) / "reference")
-        with Console(on_progress) as console:
-            try:
-                outcome = bpy.ops.render.render(scene=scene.name, write_still=True)
-            except RuntimeError as error:
-                raise ReferenceError(
-                    f"Cycles could not render the reference: {' '.join(str(error).split())}"
-                ) from error
-        files = list(Path(folder).glob("*.exr"))
-        if "FINISHED" not in outcome or not files:
-            reason = next((line for line in reversed(console.lines) if "rror" in line), "Cycles gave no reason")
-            raise ReferenceError(f"Cycles could not render the reference: {reason}.")
-        pixels, channels, _ = native.read_exr(files[0])
-    order = [channels.index(name) for name in "RGBA"]
-    return numpy.ascontiguousarray(pixels[..., order])

@@ -93,6 +93,14 @@ def signed_colour(relative):
         return _look_up(DIVERGING, 0.5 + 0.5 * relative.mean(axis=-1) / SIGNED_RANGE)
 
 
+def score_colour(score, threshold):
+    """Colours of a significance test's scores, linear: strong from the threshold up, pale below it. (h, w) to (h, w,
+    3)."""
+    relative = numpy.nan_to_num(score) / threshold * SIGNED_RANGE
+    strong = numpy.sign(relative) * (0.5 * SIGNED_RANGE + 0.1 * numpy.abs(relative))
+    return signed_colour(numpy.where(numpy.abs(score) >= threshold, strong, 0.2 * relative))
+
+
 def _look_up(colours, at):
     finite = numpy.isfinite(at)
     index = numpy.rint(numpy.where(finite, at, 0.0) * (len(colours) - 1))

@@ -1,0 +1,55 @@
+# What is to be compared: one request, unfolded into cases.
+"""See `Request` and `cases`."""
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from ..cycles import kinds
+from ..cycles.cache import Cache
+from .arguments import MOST_SEEDS
+
+
+@dataclass(frozen=True)
+class Case:
+    """One model against one kind of reference."""
+
+    model: str
+    reference: str
+
+    @property
+    def name(self):
+        return f"{self.model}.{self.reference}"
+
+
+@dataclass(frozen=True)
+class Request:
+    """What to compare. settings: {material parameter: value} for every material on both sides, coefficients in 1/mm.
+    size: (width, height), or None for the scene's. reference_samples: per pixel and seed, None for the kind's default.
+    references: names in `kinds.KINDS`, or None for each model's default. seeds: of the reference, independent of each
+    other. until: adds seeds until the reference's noise is at most this fraction of the measured error, but no more
+    than `most_seeds` in all; None for `seeds` as they are. command: the line that repeats it."""
+
+    models: tuple
+    out: Path
+    references: tuple = None
+    size: tuple = None
+    samples: int = 64
+    reference_samples: int = None
+    seeds: int = 2
+    until: float = None
+    most_seeds: int = MOST_SEEDS
+    settings: dict = field(default_factory=dict)
+    frames: int = 9
+    cache: Cache = field(default_factory=Cache)
+    command: str = ""
+
+
+def cases(models, references=None):
+    """The cases asked for: each model with each of `references` that answers it, or with its default one."""
+    found = []
+    for model in dict.fromkeys(models):
+        if references is None:
+            found.append(Case(model, kinds.default_kind(model)))
+        else:
+            found += [Case(model, kind) for kind in dict.fromkeys(references) if model in kinds.KINDS[kind].models]
+    return found

@@ -1,0 +1,123 @@
+# One image of one seed, rendered with Cycles or found in the cache.
+"""See `take`."""
+
+import json
+import tempfile
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+import bpy
+import numpy
+
+from .. import export, native_module
+from . import fingerprint, nodes, recipes, settings
+from .console import Console
+from .grain_values import GrainValues
+from .stage import Stage
+
+PROVENANCE = "mesograin:provenance"
+"""The string attribute of an EXR file that holds where it comes from, as JSON."""
+
+
+class ReferenceError(Exception):
+    """No reference can be rendered; one sentence."""
+
+
+@dataclass(frozen=True)
+class Shot:
+    """pixels: (h, w, 4) float32, linear, row 0 at the top. provenance: JSON-able. cached: whether it was found."""
+
+    pixels: numpy.ndarray
+    provenance: dict
+    cached: bool
+
+
+def grain_values(depsgraph, overrides, material):
+    """GrainValues of a bpy.types.Material, or of the default grain for faces that have none (None)."""
+    parameters = dict(export.material_values(material, depsgraph.scene.mesograin.millimetres_per_unit).values)
+    return GrainValues.from_parameters({**parameters, **overrides})
+
+
+def take(depsgraph, kind, size, samples, seed, cache=None, overrides=None, on_progress=None):
+    """One image of one seed, from the cache or rendered into it: a Shot.
+
+    kind: kinds.Kind. The rest as in `reference.Sampling`. Raises ReferenceError, StageError or native.Error.
+    """
+    on_progress = on_progress or (lambda fraction: None)
+    native = native_module.get()
+    source = depsgraph.scene.render
+    description = settings.settings(kind, samples, seed, size, (source.pixel_aspect_x, source.pixel_aspect_y))
+    used = {}
+
+    def build(material):
+        recipe = recipes.recipe(kind.name, grain_values(depsgraph, overrides or {}, material), nodes.features())
+        made = nodes.build("Mesograin reference", recipe)
+        used[made.name] = recipe
+        return made
+
+    with Stage(depsgraph, description, build) as stage:
+        determined_by = fingerprint.describe(stage.scene, used, description)
+        key = fingerprint.key(determined_by)
+        found = _read_cached(native, cache, key)
+        if found:
+            on_progress(1.0)
+            return found
+        started = time.monotonic()
+        pixels = render_stage(native, stage.scene, on_progress)
+        seconds = time.monotonic() - started
+    provenance = {
+        "made_by": f"Mesograin {native.__version__}",
+        "blender": f"{determined_by['blender']} ({determined_by['build']})",
+        "reference": kind.name,
+        "samples": samples,
+        "seed": seed,
+        "bounces": kind.bounces,
+        "pixel_filter": "box, one pixel",
+        "colour_space": "linear, scene-referred; alpha is premultiplied",
+        "seconds": round(seconds, 3),
+        "materials": list(used.values()),
+        "key": key,
+    }
+    # As it will come back from a file.
+    provenance = json.loads(json.dumps(provenance))
+    if cache:
+        try:
+            cache.store(
+                key, lambda path: native.write_exr(path, pixels, attributes={PROVENANCE: json.dumps(provenance)})
+            )
+        except (OSError, native.Error) as error:
+            print(f"The reference is not kept: {error}")
+    return Shot(pixels, provenance, cached=False)
+
+
+def _read_cached(native, cache, key):
+    path = cache.find(key) if cache else None
+    if not path:
+        return None
+    try:
+        pixels, _, attributes = native.read_exr(path)
+        return Shot(pixels, json.loads(attributes[PROVENANCE]), cached=True)
+    except (native.Error, KeyError, ValueError):
+        cache.forget(key)
+        return None
+
+
+def render_stage(native, scene, on_progress):
+    """What Cycles renders of a staged scene, (h, w, 4) float32."""
+    with tempfile.TemporaryDirectory(prefix="mesograin-") as folder:
+        scene.render.filepath = str(Path(folder) / "reference")
+        with Console(on_progress) as console:
+            try:
+                outcome = bpy.ops.render.render(scene=scene.name, write_still=True)
+            except RuntimeError as error:
+                raise ReferenceError(
+                    f"Cycles could not render the reference: {' '.join(str(error).split())}"
+                ) from error
+        files = list(Path(folder).glob("*.exr"))
+        if "FINISHED" not in outcome or not files:
+            reason = next((line for line in reversed(console.lines) if "rror" in line), "Cycles gave no reason")
+            raise ReferenceError(f"Cycles could not render the reference: {reason}.")
+        pixels, channels, _ = native.read_exr(files[0])
+    order = [channels.index(name) for name in "RGBA"]
+    return numpy.ascontiguousarray(pixels[..., order])
