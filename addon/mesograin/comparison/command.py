@@ -124,11 +124,18 @@ def _print_table(results):
         )
         bias = "-" if metrics["bias"] is None else f"{metrics['bias']:.4f}"
         test = case["significance"]
-        significant = "-" if test is None else f"{test['share']:.1%} px" if test["significant_pixels"] else "nothing"
+        significant = "-" if test is None else _significant(test)
         print(
             f"{case['name']:<34}{shares}{bias:>8}{case['frame_ms']:>10.2f}{case['reference_seconds']:>10.1f}"
             f"{significant:>13}"
         )
+
+
+def _significant(test):
+    """What the significance test found, in a few letters."""
+    if test["significant_pixels"]:
+        return f"{test['share']:.1%} px"
+    return f"{test['share_blocks']:.0%} blocks" if test["significant_blocks"] else "nothing"
 
 
 def _write_report(folder):
