@@ -96,9 +96,9 @@ def signed_colour(relative):
 def score_colour(score, threshold):
     """Colours of a significance test's scores, linear: strong from the threshold up, pale below it. (h, w) to (h, w,
     3)."""
-    relative = numpy.nan_to_num(score) / threshold * SIGNED_RANGE
-    strong = numpy.sign(relative) * (0.5 * SIGNED_RANGE + 0.1 * numpy.abs(relative))
-    return signed_colour(numpy.where(numpy.abs(score) >= threshold, strong, 0.2 * relative))
+    relative = score / threshold
+    strong = numpy.sign(relative) * (0.5 + 0.2 * numpy.abs(relative))
+    return _look_up(DIVERGING, 0.5 + 0.5 * numpy.where(numpy.abs(relative) >= 1.0, strong, 0.2 * relative))
 
 
 def _look_up(colours, at):
