@@ -41,3 +41,22 @@ def borrowed_panels():
             continue
         if ("BLENDER_RENDER" in engines and panel.__name__ not in drawn_by_us) or panel.__name__ in tied_by_name:
             yield panel
+
+
+def set_linear(image):
+    """Marks an image's pixels as scene-linear with Rec. 709 primaries, whatever this Blender calls that."""
+    for name in ("Linear Rec.709", "Linear"):
+        try:
+            image.colorspace_settings.name = name
+            return
+        except TypeError:  # no such item
+            continue
+
+
+def draw_progress(layout, owner, name, text):
+    """A bar for the property `name` of `owner`, a percentage."""
+    if hasattr(layout, "progress"):
+        percent = getattr(owner, name)
+        layout.progress(factor=percent / 100.0, text=f"{percent:.0f} %, {text}")
+    else:
+        layout.prop(owner, name, text=text, slider=True)

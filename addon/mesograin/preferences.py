@@ -1,8 +1,10 @@
-# The add-on's preferences: whether the native module works here, and a button that proves it.
+# The add-on's preferences: whether the native module works here, a button that proves it, and the cache of references.
 import bpy
 import numpy as np
+from bpy.props import IntProperty, StringProperty
 
-from . import native_module, panels
+from . import native_module, panels, reference_cache
+from .cycles.cache import DEFAULT_LIMIT
 
 
 class MESOGRAIN_OT_self_test(bpy.types.Operator):
@@ -47,6 +49,13 @@ def _worst_error(native):
 class MesograinPreferences(bpy.types.AddonPreferences):
     bl_idname = __package__
 
+    cache_folder: StringProperty(
+        name="Reference cache", subtype="DIR_PATH",
+        description="Where rendered references are kept; empty is mesograin/references in your cache folder")
+    cache_limit: IntProperty(
+        name="Limit (MiB)", default=DEFAULT_LIMIT // 1024**2, min=1, max=1 << 30, soft_max=1 << 16,
+        description="What all references together may take; the longest unused go first")
+
     def draw(self, context):
         layout = self.layout
         if not panels.draw_native_problem(layout, context):
@@ -54,6 +63,9 @@ class MesograinPreferences(bpy.types.AddonPreferences):
             layout.label(text=f"Native module {native.__version__}: {native.__file__}", icon="CHECKMARK")
             self._draw_devices(context, native)
         layout.operator(MESOGRAIN_OT_self_test.bl_idname)
+        layout.prop(self, "cache_folder")
+        layout.prop(self, "cache_limit")
+        reference_cache.draw(layout)
 
     def _draw_devices(self, context, native):
         try:

@@ -139,9 +139,11 @@ def compare(models=arguments.DEFAULT_MODELS, references=None, out="//comparison"
         raise ComparisonError(str(error)) from error
     except native.Error as error:
         raise ComparisonError(str(error)) from error
-    page = _write_report(request.out, warnings) if report else None
     cases = tuple(Case(entry["name"], entry["model"], entry["reference"], entry.get("error", ""), request.out, entry)
                   for entry in found["cases"])
+    # What failed is said by its case.
+    warnings = [sentence for sentence in warnings if not any(case.error and case.error in sentence for case in cases)]
+    page = _write_report(request.out, warnings) if report else None
     return Comparison(cases, request.out, page, found, tuple(warnings))
 
 

@@ -17,10 +17,11 @@ def registered():
                 for name in (handler.__name__ for handler in getattr(bpy.app.handlers, event))}
     return {
         "classes": {name for name in dir(bpy.types) if "mesograin" in name.lower()},
-        "properties": {kind for kind in ("Material", "Scene") if hasattr(getattr(bpy.types, kind), "mesograin")},
+        "properties": {(kind, name) for kind in ("Material", "Scene", "WindowManager")
+                       for name in dir(getattr(bpy.types, kind)) if name.startswith("mesograin")},
         "engines": {panel.__name__ for panel in compat.borrowed_panels()
                     if engine.MesograinRenderEngine.bl_idname in panel.COMPAT_ENGINES},
-        "handlers": {name for name in handlers if name in ("_forget_meshes", "_stop_sessions")},
+        "handlers": {name for name in handlers if name in ("_forget_meshes", "_stop_sessions", "_forget")},
     }
 
 

@@ -1,0 +1,108 @@
+# What the buttons of the Compare panel do.
+import bpy
+from bpy.props import EnumProperty, StringProperty
+
+from .. import native_module, scripting
+from . import pictures, session
+
+
+class MESOGRAIN_OT_compare(bpy.types.Operator):
+    bl_idname = "mesograin.compare"
+    bl_label = "Compare with Cycles"
+    bl_description = ("Render every chosen model and the Cycles materials that mean the same, beside this Blender, and "
+                      "measure the difference")
+
+    @classmethod
+    def poll(cls, _context):
+        return native_module.problem() is None and not session.running()
+
+    def execute(self, context):
+        if bpy.app.background:
+            self.report({"ERROR"}, "Without a window, call mesograin.compare() from the script.")
+            return {"CANCELLED"}
+        try:
+            session.start(context)
+        except scripting.ComparisonError as error:
+            session.error = str(error)
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        return {"FINISHED"}
+
+
+class MESOGRAIN_OT_cancel_compare(bpy.types.Operator):
+    bl_idname = "mesograin.cancel_compare"
+    bl_label = "Cancel"
+    bl_description = "End the comparison at once; references that are rendered stay in the cache"
+
+    @classmethod
+    def poll(cls, _context):
+        return session.running()
+
+    def execute(self, _context):
+        session.cancel()
+        return {"FINISHED"}
+
+
+class MESOGRAIN_OT_open_report(bpy.types.Operator):
+    bl_idname = "mesograin.open_report"
+    bl_label = "Open Report"
+    bl_description = "Show report.html in the web browser"
+
+    @classmethod
+    def poll(cls, _context):
+        return session.results is not None and (session.job.out / "report.html").is_file()
+
+    def execute(self, _context):
+        return bpy.ops.wm.url_open(url=(session.job.out / "report.html").as_uri())
+
+
+class MESOGRAIN_OT_show_picture(bpy.types.Operator):
+    bl_idname = "mesograin.show_picture"
+    bl_label = "Show Picture"
+    bl_description = "Show this picture of the comparison in an Image Editor"
+
+    case: StringProperty(name="Case", description="MODEL.REFERENCE")
+    picture: EnumProperty(name="Picture", items=tuple(
+        (name, name.capitalize(), description, number) for number, (name, description) in enumerate((
+            ("model", "Our picture, linear"),
+            ("reference", "The mean of Cycles' seeds, linear"),
+            ("error", "Our picture less the reference, linear; negative where ours is too dark"),
+            ("error colours", "The relative error in false colours")))))
+
+    @classmethod
+    def poll(cls, _context):
+        return session.results is not None
+
+    def execute(self, context):
+        entry = next((entry for entry in session.results["cases"]
+                      if entry["name"] == self.case and entry["status"] == "done"), None)
+        if entry is None:
+            self.report({"ERROR"}, f"The last comparison has no pictures of a case '{self.case}'.")
+            return {"CANCELLED"}
+        try:
+            image = pictures.show(entry, self.picture, session.job.out)
+        except RuntimeError as error:
+            self.report({"ERROR"}, f"The picture cannot be shown: {' '.join(str(error).split())}")
+            return {"CANCELLED"}
+        area = _image_editor(context)
+        area.spaces.active.image = image
+        return {"FINISHED"}
+
+
+def _image_editor(context):
+    """The Image Editor that is used, or else the largest, or else one in a window of its own."""
+    if context.area and context.area.type == "IMAGE_EDITOR":
+        return context.area
+    editors = [area for window in context.window_manager.windows for area in window.screen.areas
+               if area.type == "IMAGE_EDITOR"]
+    if not editors:
+        before = set(context.window_manager.windows)
+        bpy.ops.wm.window_new()
+        [window] = set(context.window_manager.windows) - before
+        editors = [window.screen.areas[0]]
+        editors[0].ui_type = "IMAGE_EDITOR"
+    return max(editors, key=lambda area: area.width * area.height)
+
+
+register, unregister = bpy.utils.register_classes_factory(
+    (MESOGRAIN_OT_compare, MESOGRAIN_OT_cancel_compare, MESOGRAIN_OT_open_report, MESOGRAIN_OT_show_picture))

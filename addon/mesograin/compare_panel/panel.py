@@ -1,0 +1,134 @@
+# The Compare panel, among the render properties and beside the pictures in the Image Editor.
+import bpy
+
+from .. import compat, panels, reference_cache
+from ..background import job as jobs
+from ..comparison.progress import duration
+from ..comparison.verdict import verdict
+from ..properties import MODELS
+from . import operators, pictures, properties, session
+
+MODEL_LABELS = {item[0]: item[1] for item in MODELS}
+
+
+def draw_settings(layout, context):
+    scene, settings = context.scene, context.scene.mesograin_compare
+    column = layout.column(align=True)
+    column.label(text="Models")
+    column.prop(settings, "models")
+    layout.row().prop(settings, "quality", expand=True)
+    width, height = properties.size(scene)
+    row = layout.row()
+    row.prop(settings, "size_percent")
+    row.label(text=f"{width} x {height} pixels")
+    layout.prop(settings, "out", text="")
+    if settings.out.startswith("//") and not bpy.data.filepath:
+        panels.draw_sentence(layout, context, "The file is not saved: results last until Blender quits.", icon="INFO")
+
+
+def draw_job(layout, context):
+    """The button, or how far the job is; then what went wrong or was left out."""
+    job = session.job
+    if session.running():
+        text = f"about {duration(job.step.seconds_left)} left" if job.step else "Blender is starting"
+        column = layout.column(align=True)
+        compat.draw_progress(column, context.window_manager, "mesograin_compare_progress", text)
+        if job.step:
+            column.label(text=f"{job.step.number} of {job.step.count}: {job.step.what}")
+        layout.operator(operators.MESOGRAIN_OT_cancel_compare.bl_idname, icon="CANCEL")
+    else:
+        row = layout.row()
+        row.scale_y = 1.4
+        row.operator(operators.MESOGRAIN_OT_compare.bl_idname, icon="RESTRICT_RENDER_OFF")
+    if session.error:
+        panels.draw_sentence(layout, context, session.error)
+    elif job is not None and job.state == jobs.CANCELLED:
+        layout.label(text="Cancelled; rendered references are kept.", icon="INFO")
+    for sentence in job.sentences if job is not None else ():
+        panels.draw_sentence(layout, context, sentence)
+
+
+def draw_results(layout, context):
+    if session.results is None:
+        return
+    for entry in session.results["cases"]:
+        _draw_case(layout.box(), context, entry)
+    layout.operator(operators.MESOGRAIN_OT_open_report.bl_idname, icon="URL")
+
+
+def _draw_case(box, context, entry):
+    box.label(text=f"{MODEL_LABELS[entry['model']]} against {entry['reference_title']}")
+    if entry["status"] != "done":
+        panels.draw_sentence(box, context, entry["error"])
+        return
+    grid = box.grid_flow(row_major=True, columns=2, even_columns=True, align=True)
+    for title, value in _numbers(entry):
+        grid.label(text=title)
+        grid.label(text=value)
+    panels.draw_sentence(box, context, verdict(entry).capitalize(), icon="CHECKMARK")
+    row = box.row(align=True)
+    for picture in pictures.FILES:
+        button = row.operator(operators.MESOGRAIN_OT_show_picture.bl_idname, text=picture.capitalize())
+        button.case, button.picture = entry["name"], picture
+
+
+def _numbers(entry):
+    """(title, value) pairs. The definitions are in results.json and in the report."""
+    yield "Error (relative L1)", _share(entry["metrics"]["relative_l1"])
+    yield "Noise of the reference", _share(entry["noise_floor"]["relative_l1"])
+    yield "Frame, Mesograin", f"{entry['frame_ms']:.2f} ms"
+    yield "Reference, Cycles", duration(entry["reference_seconds"]) if entry["reference_seconds"] >= 1.0 else (
+        f"{1000.0 * entry['reference_seconds']:.0f} ms")
+
+
+def _share(value):
+    return "none" if value is None else f"{value:.2%}"
+
+
+class MESOGRAIN_PT_compare(panels.MesograinPanel, bpy.types.Panel):
+    bl_label = "Compare with Cycles"
+    bl_context = "render"
+
+    def draw(self, context):
+        layout = self.layout
+        if not panels.draw_native_problem(layout, context):
+            column = layout.column()
+            column.enabled = not session.running()
+            draw_settings(column, context)
+        draw_job(layout, context)
+        draw_results(layout, context)
+
+
+class MESOGRAIN_PT_compare_references(panels.MesograinPanel, bpy.types.Panel):
+    bl_label = "References"
+    bl_context = "render"
+    bl_parent_id = "MESOGRAIN_PT_compare"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        settings = context.scene.mesograin_compare
+        column = self.layout.column(align=True)
+        column.enabled = not session.running()
+        column.prop(settings, "references")
+        if not settings.references:
+            column.label(text="None chosen: each model's usual one", icon="INFO")
+        reference_cache.draw(self.layout)
+
+
+class MESOGRAIN_PT_compare_pictures(bpy.types.Panel):
+    bl_label = "Compare with Cycles"
+    bl_space_type = "IMAGE_EDITOR"
+    bl_region_type = "UI"
+    bl_category = "Mesograin"
+
+    @classmethod
+    def poll(cls, context):
+        return context.scene.render.engine in panels.ENGINES
+
+    def draw(self, context):
+        draw_job(self.layout, context)
+        draw_results(self.layout, context)
+
+
+register, unregister = bpy.utils.register_classes_factory(
+    (MESOGRAIN_PT_compare, MESOGRAIN_PT_compare_references, MESOGRAIN_PT_compare_pictures))

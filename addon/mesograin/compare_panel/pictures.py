@@ -1,0 +1,35 @@
+# The pictures of a comparison as images in Blender, brought up to date by the next comparison and never doubled.
+"""Each is found again by what it shows, not by a pointer or name: undo removes datablocks, and artists rename them."""
+
+import bpy
+
+from .. import compat
+
+KEY = "mesograin_picture"
+
+# Which file of a case is shown under which word. The EXR files are linear float, the false colours a PNG.
+FILES = {"model": "model", "reference": "reference", "error": "error", "error colours": "error_png"}
+
+
+def show(entry, picture, folder):
+    """The image of one picture of a case of results.json, made or brought up to date. Raises RuntimeError if its file
+    cannot be read."""
+    path = str(folder / entry["files"][FILES[picture]])
+    key = f"{entry['name']} {picture}"
+    image = next((image for image in bpy.data.images if image.get(KEY) == key), None)
+    if image is None:
+        image = bpy.data.images.load(path)
+        image.name = f"Mesograin {key}"
+        image[KEY] = key
+    else:
+        image.filepath = path
+        image.reload()
+    if path.endswith(".exr"):
+        compat.set_linear(image)
+    return image
+
+
+def show_all(results, folder):
+    """Every picture of every case that succeeded; the images in order."""
+    return [show(entry, picture, folder) for entry in results["cases"] if entry["status"] == "done"
+            for picture in FILES]
