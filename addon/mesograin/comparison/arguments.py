@@ -86,7 +86,7 @@ def build():
     )
     parser.add_argument(
         "--seeds",
-        type=_positive,
+        type=positive,
         default=2,
         metavar="K",
         help="independent renders of each reference, whose spread tells its noise; more are added to those in the cache"
@@ -101,7 +101,7 @@ def build():
     )
     parser.add_argument(
         "--most-seeds",
-        type=_positive,
+        type=positive,
         default=MOST_SEEDS,
         metavar="K",
         help=f"how many seeds --until may lead to (default: {MOST_SEEDS})",
