@@ -32,7 +32,8 @@ def compile_commands():
 @functools.cache
 def included():
     """{path: the project's own files that its last build read}, relative to the source folder."""
-    listed = subprocess.run(["ninja", "-C", str(BUILD), "-t", "deps"], capture_output=True, text=True, check=True).stdout
+    listed = subprocess.run(["ninja", "-C", str(BUILD), "-t", "deps"], capture_output=True, text=True,
+                            check=True).stdout
     found = {}
     for block in listed.split("\n\n"):
         paths = [os.path.normpath(BUILD / line.strip()) for line in block.splitlines()[1:]]
@@ -57,7 +58,8 @@ def fingerprint(path):
     if path not in included() or path not in compile_commands():
         return None
     own = [path for path in included()[path] if (SOURCE / path).is_file()]
-    parts = [version(), digest_of(".clang-tidy"), compile_commands()[path], *(f"{path} {digest_of(path)}" for path in own)]
+    parts = [version(), digest_of(".clang-tidy"), compile_commands()[path],
+             *(f"{path} {digest_of(path)}" for path in own)]
     return hashlib.sha256("\n".join(parts).encode()).hexdigest()
 
 
