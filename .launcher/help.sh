@@ -112,8 +112,10 @@ Compares every case that a TOML file lists, each in a Blender of its own; docs/s
 
   --out DIR               where cases, tables and plots go
   --jobs N                cases side by side (default: 1)
-  --list                  print the cases and run none
+  --list                  print the cases, with their groups, and run none
+  --no-plots              write the tables and no plots
   --case I                run case I alone, counted from 0
+  --group I               run only the cases of group I, which share a reference, counted from 0
   --merge                 merge and plot what is there, run nothing
   --emit slurm|parallel   write a script that runs the cases as a Slurm job array or under GNU parallel
   --blender PATH          the Blender to use

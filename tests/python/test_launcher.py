@@ -42,6 +42,12 @@ def test_help_of_trade_names_the_options_there_are():
     assert options_in(launcher("trade", "--help").stdout) == options_in(from_argparse) | {"--blender"}
 
 
+def test_help_of_sweep_names_the_options_there_are():
+    command = [sys.executable, str(SOURCE / "addon/mesograin/sweep/command.py"), "--help"]
+    from_argparse = subprocess.run(command, check=True, capture_output=True, text=True).stdout
+    assert options_in(launcher("sweep", "--help").stdout) == options_in(from_argparse)
+
+
 def test_help_of_render_names_the_options_there_are():
     build = pathlib.Path(os.environ.get("MESOGRAIN_BUILD", SOURCE / "build/release"))
     from_tool = subprocess.run([str(build / "native/tool/mesograin-render"), "--help"], check=True, capture_output=True,

@@ -1,15 +1,10 @@
 """A sweep's file: what it unfolds to, and one sentence with the line for everything that can be wrong in it."""
-import importlib.util
-import sys
 from pathlib import Path
 
 import pytest
+from addon_rooms import room
 
-PLAN = Path(__file__).parents[2] / "addon/mesograin/sweep/plan.py"
-spec = importlib.util.spec_from_file_location("mesograin_sweep_plan", PLAN)
-plan = importlib.util.module_from_spec(spec)
-sys.modules[spec.name] = plan
-spec.loader.exec_module(plan)
+plan = room("sweep.plan")
 
 GOOD = """\
 title = "Optical scale"
@@ -84,11 +79,23 @@ def test_keys_tell_cases_apart_and_follow_the_scenes_content(write, tmp_path):
         ("sigma_s = 0.1", "sigma_s = -0.1", 19, "got -0.1"),
         ("sigma_s = 0.1", "sigma_s = [1, 2]", 19, "three of them"),
         ("eta = 1.3", "eta = true", 9, "got True"),
+        ("a.blend", "a.txt", 2, "'a.txt' is no .blend file"),
+        ('"volume_index_matched"', '"glossy"', 4, "no reference answers model_1; those that do are volume_index"),
+        ('"model_1", "model_3"', '"model_1", "model_1"', 3, "'model_1' stands twice in models"),
+        ("[1, 2.5]", "[1, 2.5, 1.0]", 12, "1 stands twice in scale"),
+        ("[material]\neta = 1.3", "[other]\neta = 1.3", 8, "'other' is not known here"),
+        ('models = ["model_1", "model_3"]', "models = []", 3, "models must be a list with some of lambert"),
+        ('scenes = ["a.blend"]', 'scenes = "a.blend"', 2, "scenes must be a list with one or more .blend files"),
+        ("samples = 16", "samples = 16\nmaterial.g = 2", 7, "g must be a number from -1 to 1; got 2"),
+        ("samples = 16", "samples = 16\nmaterial = { g = 2 }", 7, "g must be a number from -1 to 1; got 2"),
     ],
 )
 def test_what_is_wrong_is_named_with_its_line(write, old, new, line, part):
     assert old in GOOD
-    path = write(GOOD.replace(old, new))
+    text = GOOD.replace(old, new)
+    if "material." in new or "material =" in new:
+        text = text.replace("[material]\neta = 1.3\n", "")
+    path = write(text)
     with pytest.raises(plan.PlanError) as error:
         plan.read(path)
     sentence = str(error.value)
@@ -96,6 +103,25 @@ def test_what_is_wrong_is_named_with_its_line(write, old, new, line, part):
     assert part in sentence
     assert "\n" not in sentence
     assert sentence.endswith(".")
+
+
+def test_cases_that_share_a_reference_are_a_group(write):
+    found = plan.read(write(GOOD))
+    assert found.groups == ((0, 4), (1, 5), (2, 6), (3, 7)), "the two models of each material and scale"
+    for group in found.groups:
+        assert len({repr(found.cases[index].parameters) for index in group}) == 1
+    own = plan.read(write(GOOD.replace('references = ["volume_index_matched"]\n', "").replace("model_3", "lambert")))
+    assert [case.reference for case in own.cases[::4]] == ["volume_index_matched", "diffuse"]
+    assert len(own.groups) == 8
+
+
+def test_models_meet_the_references_that_answer_them(write):
+    text = GOOD.replace('["model_1", "model_3"]', '["lambert", "model_1"]')
+    text = text.replace('"volume_index_matched"', '"diffuse", "subsurface", "volume_index_matched"')
+    cases = plan.read(write(text)).cases
+    pairs = list(dict.fromkeys((case.model, case.reference) for case in cases))
+    assert pairs == [("lambert", "diffuse"), ("model_1", "subsurface"), ("model_1", "volume_index_matched")]
+    assert len({case.label for case in cases}) == len(cases)
 
 
 def test_broken_toml_names_the_line(write):

@@ -9,75 +9,13 @@ import time
 from pathlib import Path
 
 import pytest
-
-ROOT = Path(__file__).parents[2]
-COMMAND = ROOT / "addon/mesograin/sweep/command.py"
-
-STAND_IN = """\
-#!{python}
-import json, os, sys, time
-words = sys.argv[sys.argv.index("--") + 1:]
-out = words[words.index("--out") + 1]
-settings = dict(word.split("=") for at, word in enumerate(words) if words[at - 1] == "--set")
-with open({runs!r}, "a") as runs:
-    runs.write(settings["scale"] + "\\n")
-time.sleep(float(os.environ.get("STAND_IN_SECONDS", "0")))
-together = int(os.environ.get("STAND_IN_TOGETHER", "0"))
-while len(open({runs!r}).readlines()) < together:
-    time.sleep(0.02)
-if os.environ.get("STAND_IN_FAILS") == settings["scale"]:
-    print("compare: the reference could not be rendered.")
-    sys.exit(1)
-scale = float(settings["scale"])
-result = {{"model": words[words.index("--models") + 1], "reference": "volume_index_matched",
-          "metrics": {{"relative_l1": 1 / scale, "rse_mean": 0.1 / scale, "bias": 1.0, "max_error_at": [1, 2, 0]}},
-          "noise_floor": {{"relative_l1": 0.01}}, "mask": {{"pixels": 9, "nan": 0, "inf": 0}},
-          "frame_ms": time.time(), "reference_seconds": 1.5}}
-with open(os.path.join(out, "results.json"), "w") as file:
-    json.dump({{"cases": [result]}}, file)
-"""
-
-SWEEP = """\
-title = "Test"
-scenes = ["a.blend"]
-models = ["model_1", "model_2"]
-[grid]
-scale = [1, 2, 4]
-"""
+from sweep_stand_in import COMMAND, ROOT, fill, run, runs, words
 
 
 @pytest.fixture
 def sweep(tmp_path):
-    (tmp_path / "a.blend").write_bytes(b"BLENDER")
-    (tmp_path / "s.toml").write_text(SWEEP)
-    stand_in = tmp_path / "blender"
-    stand_in.write_text(STAND_IN.format(python=sys.executable, runs=str(tmp_path / "runs")))
-    stand_in.chmod(0o755)
+    fill(tmp_path)
     return tmp_path
-
-
-def words(folder, *more, out="out"):
-    return [
-        sys.executable,
-        str(COMMAND),
-        str(folder / "s.toml"),
-        "--out",
-        str(folder / out),
-        "--blender",
-        str(folder / "blender"),
-        *more,
-    ]
-
-
-def run(folder, *more, out="out", **environment):
-    return subprocess.run(
-        words(folder, *more, out=out), capture_output=True, text=True, env={**os.environ, **environment}
-    )
-
-
-def runs(folder):
-    path = folder / "runs"
-    return len(path.read_text().splitlines()) if path.exists() else 0
 
 
 def test_every_case_runs_once_and_the_table_holds_them_in_order(sweep):
@@ -97,7 +35,10 @@ def test_every_case_runs_once_and_the_table_holds_them_in_order(sweep):
 
 
 def test_plots_have_the_data_in_them(sweep):
-    run(sweep)
+    run(sweep, "--plots")
+    run(sweep, "--plots", out="again")
+    plot = "relative_l1-over-scale.svg"
+    assert (sweep / "out" / plot).read_bytes() == (sweep / "again" / plot).read_bytes()
     text = (sweep / "out/relative_l1-over-scale.svg").read_text()
     for word in ("scale (multiplies", "relative L1", "model_1", "model_2", "Test"):
         assert word in text
@@ -123,7 +64,7 @@ def test_a_failing_case_is_recorded_and_the_rest_go_on(sweep):
 def test_a_killed_sweep_goes_on_and_ends_with_the_same_table(sweep, number):
     process = subprocess.Popen(
         words(sweep),
-        env={**os.environ, "STAND_IN_SECONDS": "0.4"},
+        env={**os.environ, "STAND_IN_SECONDS": "0.6"},
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
@@ -146,16 +87,18 @@ def test_a_killed_sweep_goes_on_and_ends_with_the_same_table(sweep, number):
     )
     assert 0 < finished < 6
     before = runs(sweep)
+    time.sleep(0.7)
+    assert not list((sweep / "out/cases").glob("*.partial/results.json")), "a killed sweep leaves no Blender behind"
     assert run(sweep).returncode == 0
     assert runs(sweep) - before == 6 - finished, "what was finished is not computed again"
     assert run(sweep, out="unbroken").returncode == 0
-    for name in ("results.json", "results.csv", "relative_l1-over-scale.svg"):
+    for name in ("results.json", "results.csv"):
         assert (sweep / "out" / name).read_bytes() == (sweep / "unbroken" / name).read_bytes()
 
 
 def test_jobs_run_side_by_side(sweep):
-    # Each stand-in waits until six have begun: fewer at a time would wait for ever.
-    done = subprocess.run(words(sweep, "--jobs", "6"), env={**os.environ, "STAND_IN_TOGETHER": "6"}, timeout=120)
+    # Each stand-in waits until three have begun: fewer at a time would wait for ever.
+    done = subprocess.run(words(sweep, "--jobs", "3"), env={**os.environ, "STAND_IN_TOGETHER": "3"}, timeout=60)
     assert done.returncode == 0
 
 
@@ -166,8 +109,21 @@ def test_emitted_scripts_name_every_case(sweep, kind):
     path = Path(done.stdout.strip())
     text = path.read_text()
     assert subprocess.run(["sh", "-n", str(path)]).returncode == 0
-    assert ("--array=0-5%2" if kind == "slurm" else "seq 0 5") in text
+    assert ("--array=0-2%2" if kind == "slurm" else "seq 0 2") in text
+    assert f"--blender {sweep / 'blender'}" in text
     assert runs(sweep) == 0
+
+
+@pytest.mark.parametrize("kind", ["slurm", "parallel"])
+def test_a_script_needs_a_blender_too(sweep, kind):
+    done = run(sweep, "--emit", kind, "--blender", "/nowhere/blender")
+    assert (done.returncode, done.stderr.count("\n")) == (2, 1) and "there is none at '/nowhere/blender'" in done.stderr
+
+
+def test_cases_that_share_a_reference_run_one_after_the_other(sweep):
+    run(sweep, "--jobs", "3", STAND_IN_SECONDS="0.2")
+    order = (sweep / "runs").read_text().split()
+    assert sorted(order[:3]) == ["1.0", "2.0", "4.0"], "no two of a group at once"
 
 
 def test_single_cases_merge_to_the_same_table(sweep):
@@ -186,6 +142,7 @@ def test_single_cases_merge_to_the_same_table(sweep):
     ("more", "part", "code"),
     [
         (["--case", "6"], "--case must lie between 0 and 5; got 6.", 2),
+        (["--group", "3"], "--group must lie between 0 and 2; got 3.", 2),
         (["--jobs", "0"], "--jobs must be at least 1", 2),
         (["--blender", "/nowhere/blender"], "there is none at '/nowhere/blender'", 2),
         (["--emit", "pbs"], "invalid choice: 'pbs'", 2),

@@ -3,15 +3,15 @@
 import argparse
 import os
 import shutil
+import signal
 import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
-from sweep import emit, merge, plan, plots, run  # noqa: E402
-from sweep.folder import Folder  # noqa: E402
+from mesograin.sweep import emit, merge, plan, plots, run  # noqa: E402
+from mesograin.sweep.folder import Folder  # noqa: E402
 
-LAUNCHER = Path(__file__).resolve().parents[3] / "mesograin"
 DONE, FAILED, USAGE, UNWRITABLE, INTERRUPTED = 0, 1, 2, 3, 130
 
 
@@ -41,6 +41,13 @@ def parser():
         help="Blender's executable (default: MESOGRAIN_BLENDER, or blender)",
     )
     made.add_argument("--case", type=int, metavar="I", help="run case I alone, counted from 0, and do not merge")
+    made.add_argument(
+        "--group",
+        type=int,
+        metavar="I",
+        help="run only the cases of group I, which share a reference, counted from 0, and do not merge",
+    )
+    made.add_argument("--no-plots", action="store_true", help="write the tables and no plots")
     made.add_argument("--list", action="store_true", help="print the cases and run none")
     made.add_argument("--merge", action="store_true", help="merge and plot what is there and run nothing")
     made.add_argument(
@@ -58,13 +65,16 @@ def main(words):
     except plan.PlanError as error:
         return complain(error, USAGE)
     if chosen.list:
+        group_of = {index: number for number, group in enumerate(swept.groups) for index in group}
         for index, case in enumerate(swept.cases):
-            print(f"{index}\t{case.key}\t{case.label}")
+            print(f"{index}\t{group_of[index]}\t{case.key}\t{case.label}")
         return DONE
     if chosen.jobs < 1:
         return complain(f"--jobs must be at least 1; got {chosen.jobs}.", USAGE)
-    if chosen.case is not None and not 0 <= chosen.case < len(swept.cases):
-        return complain(f"--case must lie between 0 and {len(swept.cases) - 1}; got {chosen.case}.", USAGE)
+    for option, count in (("case", len(swept.cases)), ("group", len(swept.groups))):
+        number = getattr(chosen, option)
+        if number is not None and not 0 <= number < count:
+            return complain(f"--{option} must lie between 0 and {count - 1}; got {number}.", USAGE)
 
     folder = Folder(chosen.out)
     try:
@@ -85,16 +95,15 @@ def sweep(chosen, swept, folder):
             return complain(
                 f"A sweep needs Blender; there is none at '{chosen.blender}'. Name it with --blender.", USAGE
             )
-        cases = swept.cases if chosen.case is None else (swept.cases[chosen.case],)
         try:
-            _, failed = run.run(cases, folder, chosen.blender, chosen.jobs, lambda line: print(line, flush=True))
+            _, failed = run.run(swept, asked_groups(chosen, swept), folder, chosen.blender, chosen.jobs, say)
         except run.Interrupted:
             return complain(
                 "Interrupted; what is finished stays, and the same command goes on from there.", INTERRUPTED
             )
-    if chosen.case is None:
+    if chosen.case is None and chosen.group is None:
         rows, missing = merge.merge(swept, folder)
-        pictures = plots.draw(swept, rows, folder.out)
+        pictures = [] if chosen.no_plots else plots.draw(swept, rows, folder.out)
         print(f"{len(rows)} results in {folder.out / 'results.csv'}, {len(pictures)} plots beside it")
         if missing and chosen.merge:
             print(f"{len(missing)} of {len(swept.cases)} cases have no result yet, such as: {missing[0].label}")
@@ -102,10 +111,26 @@ def sweep(chosen, swept, folder):
     return FAILED if failed else DONE
 
 
+def say(line):
+    print(line, flush=True)
+
+
+def asked_groups(chosen, swept):
+    """The groups of case indices that this run is about."""
+    if chosen.case is not None:
+        return ((chosen.case,),)
+    return swept.groups if chosen.group is None else (swept.groups[chosen.group],)
+
+
 def write_script(chosen, swept):
+    blender = shutil.which(chosen.blender)
+    if blender is None:
+        sentence = f"The script needs Blender; there is none at '{chosen.blender}'. Name it with --blender."
+        return complain(sentence, USAGE)
     make = {"slurm": emit.slurm, "parallel": emit.parallel}[chosen.emit]
     path = chosen.out / {"slurm": "sweep.slurm", "parallel": "sweep-parallel.sh"}[chosen.emit]
-    path.write_text(make(swept, chosen.out, LAUNCHER, chosen.jobs), encoding="utf-8")
+    text = make(swept, chosen.out.resolve(), emit.command(swept, chosen.out, blender), chosen.jobs)
+    path.write_text(text, encoding="utf-8")
     path.chmod(0o755)
     print(path)
     return DONE
@@ -116,7 +141,13 @@ def complain(sentence, code):
     return code
 
 
+def interrupt(*_):
+    raise KeyboardInterrupt
+
+
 if __name__ == "__main__":
+    # A batch system ends a job so.
+    signal.signal(signal.SIGTERM, interrupt)
     try:
         sys.exit(main(sys.argv[1:]))
     except KeyboardInterrupt:

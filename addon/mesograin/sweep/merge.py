@@ -12,7 +12,8 @@ TIMINGS = ("frame_ms", "reference_seconds")
 def merge(plan, folder):
     """Writes results.json, results.csv and timings.csv into the sweep's folder; returns the rows and the cases missing.
 
-    A row is {'label', 'scene', 'model', 'reference', 'parameters', 'metrics', 'noise_floor', 'mask', 'folder'}.
+    A row is {'label', 'scene', 'model', 'reference', 'parameters', 'metrics', 'noise_floor', 'mask', 'significance',
+    'folder'}; docs/comparing.md defines them.
     """
     rows, timings, missing, failures = [], [], [], []
     for case in plan.cases:
@@ -33,6 +34,7 @@ def merge(plan, folder):
                 "metrics": result["metrics"],
                 "noise_floor": result["noise_floor"],
                 "mask": result["mask"],
+                "significance": result.get("significance"),
                 "folder": str(folder.place(case)),
             }
             rows.append(row)
@@ -47,8 +49,8 @@ def _flat(row):
     flat = {name: row[name] for name in ("label", "scene", "model", "reference")}
     for name, value in row["parameters"].items():
         flat[name] = " ".join(repr(channel) for channel in value) if isinstance(value, list) else value
-    for group in ("metrics", "noise_floor", "mask"):
-        for name, value in row[group].items():
+    for group in ("metrics", "noise_floor", "mask", "significance"):
+        for name, value in (row[group] or {}).items():
             flat[name if group == "metrics" else f"{group}.{name}"] = value
     return flat
 

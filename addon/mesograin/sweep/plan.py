@@ -1,5 +1,6 @@
 # Reads a sweep's TOML file and unfolds it into cases.
 """See `read`. The file's form is in docs/sweeps.md."""
+import functools
 import hashlib
 import itertools
 import json
@@ -8,8 +9,10 @@ import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 
-MODELS = ("lambert", "conductor", "model_1", "model_2", "model_3")
-REFERENCES = ("diffuse", "glossy", "volume_index_matched", "subsurface")
+from ..cycles.kinds import KINDS, default_kind
+
+MODELS = tuple(dict.fromkeys(model for kind in KINDS.values() for model in kind.models))
+REFERENCES = tuple(KINDS)
 PROFILES = ("half_space", "better_dipole", "dipole", "photon_beam")
 LARGEST_COEFFICIENT = 1e12
 
@@ -109,7 +112,7 @@ class Case:
 
     scene: str
     model: str
-    reference: str | None
+    reference: str
     parameters: tuple
     settings: tuple
     label: str
@@ -117,9 +120,14 @@ class Case:
     @property
     def key(self):
         """Sixteen hexadecimal digits that stand for all that determines the case, the scene's content included."""
-        content = hashlib.sha256(Path(self.scene).read_bytes()).hexdigest()
-        described = json.dumps([content, self.model, self.reference, self.parameters, self.settings])
-        return hashlib.sha256(described.encode()).hexdigest()[:16]
+        return _digest([_content(self.scene), self.model, self.reference, self.parameters, self.settings])
+
+    @property
+    def shared(self):
+        """Equal for cases that are compared with one and the same reference."""
+        ours = ("samples",)
+        theirs = [setting for setting in self.settings if setting[0] not in ours]
+        return _digest([_content(self.scene), self.reference, self.parameters, theirs])
 
     def as_json(self):
         return {
@@ -140,6 +148,30 @@ class Plan:
     path: str
     axes: tuple
     cases: tuple
+
+    @property
+    def groups(self):
+        """The cases' indices, those that share a reference together: whoever runs a group renders it once."""
+        groups = {}
+        for index, case in enumerate(self.cases):
+            groups.setdefault(case.shared, []).append(index)
+        return tuple(map(tuple, groups.values()))
+
+
+def _digest(described):
+    return hashlib.sha256(json.dumps(described).encode()).hexdigest()[:16]
+
+
+def _content(scene):
+    status = Path(scene).stat()
+    return _content_of(scene, status.st_mtime_ns, status.st_size)
+
+
+@functools.lru_cache(maxsize=None)
+def _content_of(scene, _time, _size):
+    """Of the scene's bytes, read again when the file's time or size says that it changed."""
+    with open(scene, "rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
 
 
 def read(path):
@@ -168,8 +200,7 @@ class _Reader:
             if name not in TOP_LEVEL:
                 raise self.error((), name, f"'{name}' is not known here; allowed are {', '.join(TOP_LEVEL)}")
         scenes = [self.scene(name) for name in self.names("scenes", None)]
-        models = self.names("models", MODELS)
-        references = self.names("references", REFERENCES) if "references" in self.table else [None]
+        pairs = self.pairs()
         settings = {
             name: self.value((), name, self.table[name], kind)
             for name, kind in SETTINGS.items()
@@ -181,13 +212,18 @@ class _Reader:
         axes = tuple(dict.fromkeys([*grid, *(name for row in rows for name in row)]))
 
         cases = []
-        for scene, model, reference, row, *point in itertools.product(
-            scenes, models, references, rows, *(self.axis(name, values) for name, values in grid.items())
+        for scene, (model, reference), row, *point in itertools.product(
+            scenes, pairs, rows, *(self.axis(name, values) for name, values in grid.items())
         ):
             parameters = {**fixed, **row, **dict(zip(grid, point, strict=True))}
             varying = {name: parameters[name] for name in axes if name in parameters}
             label = " ".join(
-                [Path(scene).stem, model, *(f"{name}={_short(value)}" for name, value in varying.items())]
+                [
+                    Path(scene).stem,
+                    model,
+                    *([reference] if len({kind for name, kind in pairs if name == model}) > 1 else []),
+                    *(f"{name}={_short(value)}" for name, value in varying.items()),
+                ]
             )
             cases.append(
                 Case(
@@ -196,7 +232,21 @@ class _Reader:
             )
         return Plan(str(self.table.get("title", self.path.stem)), str(self.path), axes, tuple(cases))
 
+    def pairs(self):
+        """[(model, reference)]: each model with those of the references that answer it, or with its default one."""
+        models = self.names("models", MODELS)
+        if "references" not in self.table:
+            return [(model, default_kind(model)) for model in models]
+        references = self.names("references", REFERENCES)
+        for model in models:
+            if not any(model in KINDS[kind].models for kind in references):
+                answering = ", ".join(name for name, kind in KINDS.items() if model in kind.models)
+                raise self.error((), "references", f"no reference answers {model}; those that do are {answering}")
+        return [(model, kind) for model in models for kind in references if model in KINDS[kind].models]
+
     def scene(self, name):
+        if not name.endswith(".blend"):
+            raise self.error((), "scenes", f"'{name}' is no .blend file")
         for folder in (self.path.parent, Path.cwd()):
             if (folder / name).is_file():
                 return str((folder / name).resolve())
@@ -210,6 +260,8 @@ class _Reader:
         for value in values:
             if allowed and value not in allowed:
                 raise self.error((), key, f"'{value}' is not one of the {key}; allowed are {', '.join(allowed)}")
+            if values.count(value) > 1:
+                raise self.error((), key, f"'{value}' stands twice in {key}; name each once")
         return values
 
     def section(self, key):
@@ -230,7 +282,11 @@ class _Reader:
     def axis(self, name, values):
         if not isinstance(values, list) or not values:
             raise self.error(("grid",), name, f"{name} must be a list of the values to sweep")
-        return [self.parameter(("grid",), name, value) for value in values]
+        checked = [self.parameter(("grid",), name, value) for value in values]
+        for value in checked:
+            if checked.count(value) > 1:
+                raise self.error(("grid",), name, f"{_short(value)} stands twice in {name}; name each value once")
+        return checked
 
     def parameter(self, section, name, value, occurrence=0):
         if name not in PARAMETERS:
@@ -266,6 +322,13 @@ class _Reader:
                     return number
             elif re.match(rf"\s*[\"']?{re.escape(key)}[\"']?\s*=", text):
                 if current == section and seen.get(section, 0) == occurrence:
+                    return number
+        # Not on a line of its own: with dots (material.g = 0), or in a table on one line (material = { g = 0 }).
+        table = re.escape(section[0]) if section else re.escape(key)
+        dotted = rf"\s*{table}\s*\.\s*{re.escape(key)}\s*="
+        for pattern in (dotted, rf"\s*{table}\s*="):
+            for number, text in enumerate(self.lines, 1):
+                if re.match(pattern, text):
                     return number
         return 0
 

@@ -2,6 +2,8 @@
 """See `run`."""
 import concurrent.futures
 import os
+import queue
+import shutil
 import signal
 import subprocess
 import threading
@@ -17,9 +19,7 @@ class Interrupted(Exception):
 
 def arguments(case, out):
     """The words after `--` that make `compare` do this case, written to the folder `out`."""
-    words = ["--models", case.model, "--out", str(out), "--no-report"]
-    if case.reference:
-        words += ["--references", case.reference]
+    words = ["--models", case.model, "--references", case.reference, "--out", str(out), "--no-report"]
     for name, value in case.settings:
         if name == "size":
             width, height = value if isinstance(value, list) else (value, value)
@@ -47,32 +47,53 @@ def command(blender, case, out):
     ]
 
 
-def run(cases, folder, blender, jobs=1, tell=print):
-    """Runs those of `cases` that have no result yet; returns (how many ran, how many failed).
+def run(plan, groups, folder, blender, jobs=1, tell=print):
+    """Runs those of the plan's cases in `groups` that have no result yet; returns (how many ran, how many failed).
 
-    A case that fails is recorded in `folder` and the rest go on; it is tried again by the next run.
-    tell: called with a line after each case. Raises Interrupted after Ctrl-C, once every Blender is gone.
+    groups: of case indices; the cases of one run one after the other, since the first renders the reference that the
+    others find in the cache, and `jobs` groups side by side. A case that fails is recorded in `folder` and the rest go
+    on; it is tried again by the next run. tell: called with a line after each case.
+    Raises Interrupted after Ctrl-C, once every Blender is gone.
     """
-    waiting = [case for case in cases if not folder.finished(case)]
-    if len(waiting) < len(cases):
-        tell(f"{len(cases) - len(waiting)} of {len(cases)} cases are there already")
+    waiting = [[plan.cases[index] for index in group if not folder.finished(plan.cases[index])] for group in groups]
+    count, asked = sum(map(len, waiting)), sum(map(len, groups))
+    if count < asked:
+        tell(f"{asked - count} of {asked} cases are there already")
     processes = _Processes()
-    pace = _Pace(len(waiting), jobs)
+    pace = _Pace(count, jobs)
+    outcomes = queue.SimpleQueue()
+
+    def run_group(cases):
+        for case in cases:
+            outcomes.put(_run_case(case, folder, blender, processes))
+
     failed = 0
     with concurrent.futures.ThreadPoolExecutor(max_workers=jobs, thread_name_prefix="mesograin-sweep") as pool:
-        futures = [pool.submit(_run_case, case, folder, blender, processes) for case in waiting]
+        futures = [pool.submit(_hand_over, run_group, cases, outcomes) for cases in waiting]
         try:
-            for future in concurrent.futures.as_completed(futures):
-                case, seconds, sentence = future.result()
+            for _ in range(count):
+                outcome = outcomes.get()
+                if isinstance(outcome, BaseException):
+                    raise outcome
+                case, seconds, sentence = outcome
                 failed += sentence is not None
-                outcome = "done" if sentence is None else f"failed: {sentence}"
-                tell(f"{pace.step(seconds)} {case.label}: {outcome}")
-        except KeyboardInterrupt:
+                tell(f"{pace.step(seconds)} {case.label}: {'done' if sentence is None else f'failed: {sentence}'}")
+        except BaseException as error:
             for future in futures:
                 future.cancel()
             processes.end()
-            raise Interrupted from None
-    return len(waiting), failed
+            if isinstance(error, KeyboardInterrupt):
+                raise Interrupted from None
+            raise
+    return count, failed
+
+
+def _hand_over(work, cases, outcomes):
+    """What goes wrong in a worker, such as a full disk, ends the sweep in its own thread."""
+    try:
+        work(cases)
+    except BaseException as error:
+        outcomes.put(error)
 
 
 def _run_case(case, folder, blender, processes):
@@ -107,7 +128,8 @@ class _Pace:
 
 
 class _Processes:
-    """Children in sessions of their own, so that ending the sweep ends every one of them."""
+    """Children in sessions of their own, so that ending the sweep ends every one of them; where the system can, they
+    also end when the sweep is killed and cannot end them."""
 
     def __init__(self):
         self._running = set()
@@ -115,6 +137,8 @@ class _Processes:
         self._ended = False
 
     def run(self, words):
+        if shutil.which("setpriv"):
+            words = ["setpriv", "--pdeathsig", "KILL", *words]
         with self._lock:
             if self._ended:
                 return -signal.SIGINT, "interrupted"
