@@ -164,6 +164,25 @@ def _default_parameters(millimetres_per_unit):
                        millimetres_per_unit)
 
 
+def _shines(world):
+    """Whether a world lights the scene in Cycles, as far as its nodes tell without evaluating them."""
+    if world is None:
+        return False
+    if not world.use_nodes:
+        return any(world.color)
+    output = world.node_tree.get_output_node("CYCLES")
+    links = output.inputs["Surface"].links if output else ()
+    if not links:
+        return False
+    node = links[0].from_node
+    if node.type != "BACKGROUND":
+        return True
+    colour, strength = node.inputs["Color"], node.inputs["Strength"]
+    dark = not colour.is_linked and not any(colour.default_value[:3])
+    off = not strength.is_linked and strength.default_value == 0.0
+    return not (dark or off)
+
+
 class _Reader:
     """Collects what one pass over the instances finds; complaints come once, however often an object is instanced."""
 
@@ -190,6 +209,9 @@ class _Reader:
             self._warn("There is nothing to draw: add a mesh that is visible in renders.")
         if not self._lights:
             self._warn("The scene has no sun light, so everything is black: add one (Add > Light > Sun).")
+        if _shines(scene.world):
+            self._warn(f"World '{scene.world.name}' shines, but only suns are rendered: light the scene with suns, and "
+                       "make the world black to see what is left without it.")
         camera = scene.camera
         if camera is not None and camera.type == "CAMERA" and camera.data.type == "PANO":
             self._warn(f"Camera '{camera.name}' is panoramic, which Mesograin draws as perspective.")
@@ -225,6 +247,9 @@ class _Reader:
         if light.type != "SUN":
             self._warn(f"Light '{evaluated_object.name}' is a {light.type.lower()} light; only suns are rendered.")
             return
+        if light.use_nodes:
+            self._warn(f"Light '{evaluated_object.name}' has nodes, which are left out: its own colour and strength "
+                       "are rendered.")
         # A sun shines along its -z axis, and its strength is irradiance already.
         direction = matrix_world.to_3x3().col[2].normalized()
         self._lights.append(LightValues(evaluated_object.name, tuple(direction),

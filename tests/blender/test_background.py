@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import time
+import zipfile
 
 import bpy
 import numpy as np
@@ -17,6 +18,7 @@ from mesograin import native_module
 from mesograin.background import job
 from mesograin.background.launch import launch
 
+ROOT = pathlib.Path(__file__).resolve().parents[2]
 SUNS = [((1.0, 1.0, 1.0), 20.0)]
 TINY = {"models": ["lambert"], "size": [24, 24], "samples": 2, "reference_samples": 2, "frames": 1, "report": False}
 
@@ -154,17 +156,22 @@ def test_cancel_ends_cycles_at_once(sphere, start, tmp_path):
     assert not list(tmp_path.rglob("*.exr")) and not is_running(started._process.pid)
 
 
-def test_a_blender_that_dies_takes_its_comparison_along(sphere, tmp_path):
-    """Killed, as by a crash, while the background Blender renders."""
+def test_an_add_on_from_the_zip_compares_and_a_blender_that_dies_takes_its_comparison_along(sphere, tmp_path):
+    """Unpacked inside other packages, as Blender 4.2 does with an extension; killed, as by a crash, while the background Blender
+    renders."""
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "grain.blend"), copy=True)
+    subprocess.run([sys.executable, str(ROOT / ".launcher/package.py"), str(ROOT), str(tmp_path / "mesograin.zip")],
+                   check=True, capture_output=True)
+    repository = tmp_path / "repository" / "user_default"
+    zipfile.ZipFile(tmp_path / "mesograin.zip").extractall(repository)
     script = tmp_path / "start.py"
     script.write_text(f"""
 import sys, time
-sys.path.insert(0, {str(pathlib.Path(job.__file__).parents[2])!r})
-import bpy, mesograin
+sys.path.insert(0, {str(tmp_path)!r})
+import bpy, repository.user_default.mesograin as mesograin
 mesograin.register()
 bpy.ops.wm.open_mainfile(filepath={str(tmp_path / "grain.blend")!r})
-from mesograin.background.launch import launch
+from repository.user_default.mesograin.background.launch import launch
 started = launch({str(tmp_path / "out")!r}, models=["model_1"], size=[256, 256], reference_samples=4000,
                  cache={str(tmp_path / "cache")!r})
 while started.step is None:
@@ -173,16 +180,20 @@ time.sleep(1.0)
 print("up", started._process.pid, started.folder, flush=True)
 time.sleep(1000)
 """)
-    parent = subprocess.Popen([bpy.app.binary_path, "-b", "--factory-startup", "--python", str(script)],
-                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    parent = subprocess.Popen([bpy.app.binary_path, "-b", "--factory-startup", "--python-exit-code", "1", "--python",
+                               str(script)], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    said = []
     try:
-        words = next((line for line in parent.stdout if line.startswith("up ")), None)
-        assert words, "Blender ended too early"
+        while not said or said[-1] and not said[-1].startswith("up "):
+            said.append(parent.stdout.readline())
+        assert said[-1], f"Blender ended too early: {said}"
+        _, child, folder = said[-1].split()
+        command = pathlib.Path(f"/proc/{child}/cmdline").read_bytes().decode()
+        assert str(repository / "mesograin" / "background" / "child.py") in command
     finally:
         os.kill(parent.pid, signal.SIGKILL)
         parent.stdout.close()
         parent.wait()
-    _, child, folder = words.split()
     until(lambda: not is_running(int(child)) and not os.path.exists(folder), 20.0)
     until(lambda: not (tmp_path / "out").exists() or not list((tmp_path / "out").iterdir()), 20.0)
 

@@ -99,6 +99,40 @@ def test_other_lights(scene, render):
         assert any(f"Light '{kind}'" in sentence and "only suns" in sentence for sentence in warnings)
 
 
+@pytest.mark.parametrize("colour, strength, shines", [
+    ((0.05, 0.05, 0.05), 1.0, True), ((0.0, 0.0, 0.0), 1.0, False), ((0.05, 0.05, 0.05), 0.0, False)])
+def test_world_that_shines(scene, render, colour, strength, shines):
+    scene.world = bpy.data.worlds.new("Sky")
+    scene.world.use_nodes = True
+    background = scene.world.node_tree.nodes["Background"]
+    background.inputs["Color"].default_value[:3] = colour
+    background.inputs["Strength"].default_value = strength
+    _, warnings = warnings_of_render(render)
+    assert len(warnings) == shines
+    for sentence in warnings:
+        assert_one_sentence(sentence, "World 'Sky' shines", "only suns")
+
+
+def test_world_without_background(scene, render):
+    scene.world = bpy.data.worlds.new("Sky")
+    scene.world.use_nodes = True
+    tree = scene.world.node_tree
+    background = tree.nodes["Background"]
+    background.inputs["Color"].default_value[:3] = (0.0, 0.0, 0.0)
+    tree.links.new(background.inputs["Color"], tree.nodes.new("ShaderNodeTexSky").outputs[0])
+    assert len(warnings_of_render(render)[1]) == 1
+    tree.nodes.remove(background)
+    assert warnings_of_render(render)[1] == ()
+    scene.world.use_nodes, scene.world.color = False, (0.1, 0.0, 0.0)
+    assert len(warnings_of_render(render)[1]) == 1
+
+
+def test_sun_with_nodes(scene, render):
+    bpy.data.lights["Sun"].use_nodes = True
+    [sentence] = warnings_of_render(render)[1]
+    assert_one_sentence(sentence, "Light 'Sun'", "nodes")
+
+
 def test_empty_mesh(scene, render):
     add_mesh_object("Dust", [], [])
     add_mesh_object("Wire", [(0, 0, 0), (1, 0, 0)], [])

@@ -38,7 +38,7 @@ def test_it_returns_pictures_and_numbers(sphere, compare, tmp_path):
         assert model.shape == reference.shape == (16, 24, 4) and model.dtype == np.float32
         np.testing.assert_allclose(error, model[..., :3] - reference[..., :3], atol=1e-5)
         assert 0.0 <= case.relative_l1 < 0.5 and case.noise_floor >= 0.0 and case.frame_ms > 0.0
-        assert case.reference_seconds > 0.0 and re.search(r"off|noise", case.verdict)
+        assert case.reference_seconds > 0.0 and re.search(r"% off|no significant difference", case.verdict)
     assert found.folder == tmp_path / "out" and (found.folder / "results.json").is_file() and found.report is None
     assert steps[-1].number == steps[-1].count == 4 and "conductor" in steps[-1].what
     assert found.results["command"].startswith("mesograin.compare(models=('lambert', 'conductor')")
@@ -85,6 +85,8 @@ def test_warnings_are_returned(sphere, compare):
     ({"size": (4, 4)}, ("8 to 16384",)),
     ({"samples": 0}, ("samples", "0 came")),
     ({"reference_samples": 2.5}, ("reference_samples", "2.5 came")),
+    ({"until": 2.0}, ("until", "2.0 came")),
+    ({"seeds": 0}, ("seeds", "0 came")),
     ({"settings": {"boundary": "dielectric"}}, ("sigma_a", "'boundary' came")),
     ({"settings": {"sigma_s": (1.0, 2.0)}}, ("one number or three",)),
     ({"settings": {"g": "much"}}, ("g takes one number", "'much' came")),

@@ -14,11 +14,13 @@ import pytest
 HERE = pathlib.Path(__file__).resolve().parent
 EMPTY_FOLDER = tempfile.mkdtemp(prefix="mesograin-no-native-")
 SMALL, TALL = (900, 640), (1100, 1000)
-LAUNCHES = {  # what is checked, in which environment, on a screen of which size
-    "viewport": ("checks_viewport", {}, SMALL),
-    "compare": ("checks_compare", {}, TALL),
-    "no_native_module": ("checks_unavailable", {"MESOGRAIN_NATIVE_DIR": EMPTY_FOLDER}, SMALL),
-    "no_device": ("checks_unavailable", {"MESOGRAIN_GL_DEVICE": "nonexistent"}, SMALL),
+SIMULATED = ["--enable-event-simulate"]
+LAUNCHES = {  # what is checked, in which environment, on a screen of which size, with which of Blender's options
+    "viewport": ("checks_viewport", {}, SMALL, SIMULATED),
+    "cancel": ("checks_cancel", {}, SMALL, []),
+    "compare": ("checks_compare", {}, TALL, SIMULATED),
+    "no_native_module": ("checks_unavailable", {"MESOGRAIN_NATIVE_DIR": EMPTY_FOLDER}, SMALL, SIMULATED),
+    "no_device": ("checks_unavailable", {"MESOGRAIN_GL_DEVICE": "nonexistent"}, SMALL, SIMULATED),
 }
 
 
@@ -27,7 +29,7 @@ def names_of_checks(module):
     return [node.name for node in tree.body if isinstance(node, ast.FunctionDef) and node.name.startswith("check_")]
 
 
-CASES = [(launch, name) for launch, (module, _, _) in LAUNCHES.items() for name in names_of_checks(module)]
+CASES = [(launch, name) for launch, (module, *_) in LAUNCHES.items() for name in names_of_checks(module)]
 
 
 @pytest.fixture(scope="session")
@@ -37,12 +39,12 @@ def launched(tmp_path_factory):
     @functools.lru_cache(maxsize=None)
     def launch(name):
         assert shutil.which("xvfb-run"), "the window tests need xvfb-run, of Debian's package xvfb"
-        module, environment, (width, height) = LAUNCHES[name]
+        module, environment, (width, height), options = LAUNCHES[name]
         folder = tmp_path_factory.mktemp(name)
         # The window fills the screen, and no mouse pointer hides a pixel of it.
         screen = f"-screen 0 {width}x{height}x24 -fbdir {folder} -nocursor"
         command = ["xvfb-run", "--auto-servernum", f"--server-args={screen}",
-                   os.environ.get("MESOGRAIN_BLENDER", "blender"), "--factory-startup", "--enable-event-simulate",
+                   os.environ.get("MESOGRAIN_BLENDER", "blender"), "--factory-startup", *options,
                    "--window-geometry", "0", "0", str(width), str(height), "--python-exit-code", "1",
                    "--python", str(HERE / "driver.py"), "--", str(folder), str(folder / "Xvfb_screen0"), module]
         # Installed as an artist has it, so that preferences find it.

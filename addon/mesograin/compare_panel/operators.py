@@ -6,6 +6,16 @@ from .. import native_module, scripting
 from . import pictures, session
 
 
+# What each of pictures.FILES is called on its button, and what it shows.
+PICTURES = {
+    "model": ("Model", "Our picture, linear"),
+    "reference": ("Reference", "The mean of Cycles' seeds, linear"),
+    "error": ("Error", "Our picture less the reference, linear; negative where ours is too dark"),
+    "error colours": ("Colours", "The relative error in false colours"),
+    "z-map": ("Z-map", "In colour where the two differ by more than their noise explains"),
+}
+
+
 class MESOGRAIN_OT_compare(bpy.types.Operator):
     bl_idname = "mesograin.compare"
     bl_label = "Compare with Cycles"
@@ -63,11 +73,11 @@ class MESOGRAIN_OT_show_picture(bpy.types.Operator):
 
     case: StringProperty(name="Case", description="MODEL.REFERENCE")
     picture: EnumProperty(name="Picture", items=tuple(
-        (name, name.capitalize(), description, number) for number, (name, description) in enumerate((
-            ("model", "Our picture, linear"),
-            ("reference", "The mean of Cycles' seeds, linear"),
-            ("error", "Our picture less the reference, linear; negative where ours is too dark"),
-            ("error colours", "The relative error in false colours")))))
+        (name, *PICTURES[name], number) for number, name in enumerate(pictures.FILES)))
+
+    @classmethod
+    def description(cls, _context, properties):
+        return f"{PICTURES[properties.picture][1]}; shown in an Image Editor"
 
     @classmethod
     def poll(cls, _context):

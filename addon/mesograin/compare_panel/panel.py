@@ -4,6 +4,7 @@ import bpy
 from .. import compat, panels, reference_cache
 from ..background import job as jobs
 from ..comparison.progress import duration
+from ..comparison.significance import NO_DIFFERENCE
 from ..comparison.verdict import verdict
 from ..properties import MODELS
 from . import operators, pictures, properties, session
@@ -65,10 +66,12 @@ def _draw_case(box, context, entry):
     for title, value in _numbers(entry):
         grid.label(text=title)
         grid.label(text=value)
-    panels.draw_sentence(box, context, verdict(entry).capitalize(), icon="CHECKMARK")
+    test = entry["significance"]
+    same = test is not None and test["verdict"] == NO_DIFFERENCE
+    panels.draw_sentence(box, context, _sentence(verdict(entry)), icon="CHECKMARK" if same else "INFO")
     row = box.row(align=True)
-    for picture in pictures.FILES:
-        button = row.operator(operators.MESOGRAIN_OT_show_picture.bl_idname, text=picture.capitalize())
+    for picture in pictures.pictures_of(entry):
+        button = row.operator(operators.MESOGRAIN_OT_show_picture.bl_idname, text=operators.PICTURES[picture][0])
         button.case, button.picture = entry["name"], picture
 
 
@@ -79,6 +82,10 @@ def _numbers(entry):
     yield "Frame, Mesograin", f"{entry['frame_ms']:.2f} ms"
     yield "Reference, Cycles", duration(entry["reference_seconds"]) if entry["reference_seconds"] >= 1.0 else (
         f"{1000.0 * entry['reference_seconds']:.0f} ms")
+
+
+def _sentence(words):
+    return words[:1].upper() + words[1:]
 
 
 def _share(value):

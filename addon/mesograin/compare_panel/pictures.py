@@ -7,8 +7,9 @@ from .. import compat
 
 KEY = "mesograin_picture"
 
-# Which file of a case is shown under which word. The EXR files are linear float, the false colours a PNG.
-FILES = {"model": "model", "reference": "reference", "error": "error", "error colours": "error_png"}
+# Which file of a case is shown under which word. The EXR files are linear float, the false colours PNGs.
+FILES = {"model": "model", "reference": "reference", "error": "error", "error colours": "error_png",
+         "z-map": "z_map_png"}
 
 
 def show(entry, picture, folder):
@@ -29,7 +30,14 @@ def show(entry, picture, folder):
     return image
 
 
+def pictures_of(entry):
+    """The words for the pictures that a case has; with one seed of the reference there is no z-map."""
+    return [picture for picture, file in FILES.items() if file in entry["files"]]
+
+
 def show_all(results, folder):
-    """Every picture of every case that succeeded; the images in order."""
-    return [show(entry, picture, folder) for entry in results["cases"] if entry["status"] == "done"
-            for picture in FILES]
+    """Brings every picture of every case that succeeded up to date."""
+    for entry in results["cases"]:
+        if entry["status"] == "done":
+            for picture in pictures_of(entry):
+                show(entry, picture, folder)

@@ -1,0 +1,46 @@
+# F12 ended by the Escape key, as the X server delivers it: Blender looks for that key before it looks at any event, and
+# takes none from the server where it is to simulate events.
+import subprocess
+
+import bpy
+import numpy as np
+from mesograin import status
+
+
+def press_escape():
+    """Without a window manager nobody but us gives Blender's window the focus."""
+    subprocess.run("xdotool search --onlyvisible --class Blender windowfocus --sync key Escape".split(), check=True,
+                   timeout=20)
+
+
+def start_endless_render(window, area):
+    """F12 with more samples than could ever end; waits until it renders."""
+    bpy.context.preferences.view.render_display_type = "NONE"
+    bpy.context.scene.mesograin.samples = 1 << 20
+    bpy.context.scene.render.resolution_x = bpy.context.scene.render.resolution_y = 64
+    status.clear()
+    with window.override(area):
+        assert bpy.ops.render.render("INVOKE_DEFAULT") == {"RUNNING_MODAL"}
+    yield from window.until(lambda: bpy.app.is_job_running("RENDER"))
+    yield from window.seconds(1.0)
+    assert bpy.app.is_job_running("RENDER") and status.get(status.RENDER) is None
+
+
+def check_escape_ends_a_render_at_once_and_keeps_what_it_has(window):
+    area = yield from window.open("sphere")
+    area.spaces.active.shading.type = "SOLID"
+    for _ in range(2):  # and the next one can be rendered, and ended, too
+        yield from start_endless_render(window, area)
+        press_escape()
+        yield from window.until(lambda: not bpy.app.is_job_running("RENDER"), timeout=5.0)
+        ended = status.get(status.RENDER)
+        assert ended is not None and ended.error == "" and 0 < ended.samples < 1 << 20, ended
+        result = bpy.data.images["Render Result"]
+        result.save_render(str(window.folder / "cancelled.png"))
+        kept = bpy.data.images.load(str(window.folder / "cancelled.png"))
+        assert tuple(kept.size) == (64, 64) and np.array(kept.pixels[:]).reshape(64, 64, 4)[..., :3].max() > 0.1
+        bpy.data.images.remove(kept)
+    area.spaces.active.shading.type = "RENDERED"
+    status.clear()
+    picture = yield from window.converged_picture(area)
+    window.assert_same(picture, window.expected_picture(area))
