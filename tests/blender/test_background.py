@@ -157,8 +157,8 @@ def test_cancel_ends_cycles_at_once(sphere, start, tmp_path):
 
 
 def test_an_add_on_from_the_zip_compares_and_a_blender_that_dies_takes_its_comparison_along(sphere, tmp_path):
-    """Unpacked inside other packages, as Blender 4.2 does with an extension; killed, as by a crash, while the background Blender
-    renders."""
+    """Unpacked inside other packages, as Blender 4.2 does with an extension; killed, as by a crash, while the
+    background Blender renders."""
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "grain.blend"), copy=True)
     subprocess.run([sys.executable, str(ROOT / ".launcher/package.py"), str(ROOT), str(tmp_path / "mesograin.zip")],
                    check=True, capture_output=True)

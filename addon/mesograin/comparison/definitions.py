@@ -46,8 +46,8 @@ OTHERS = {
     "our_noise": "the same of our picture: what it would score against itself, had it all samples that there are",
     "significance.verdict": (
         "whether some pixel or block of 8 x 8 pixels differs by more than the noise of both sides explains, and by"
-        " more than 0.2 %: t-tests of every masked pixel, block and channel, corrected after Sidak; an image without error is"
-        " called different with probability false_alarm_rate or less"
+        " more than 0.2 %: t-tests of every masked pixel, block and channel, corrected after Sidak; an image without"
+        " error is called different with probability false_alarm_rate or less"
     ),
     "significance.share": "significant pixels / pixels tested",
     "until": "seeds were added until noise_floor / metric_corrected was at most fraction, or most_seeds were there",
