@@ -2,11 +2,12 @@
 import pathlib
 
 import bpy
+import numpy as np
 import pytest
 from cycles_scenes import make_sphere
 
 from mesograin import reference_cache, scripting
-from mesograin.compare_panel import properties, session
+from mesograin.compare_panel import pictures, properties, session
 from mesograin.cycles.cache import DEFAULT_LIMIT
 
 
@@ -78,3 +79,45 @@ def test_the_button_empties_the_cache(preferences, tmp_path):
     (tmp_path / "mine.txt").write_text("mine")
     assert bpy.ops.mesograin.clear_references() == {"FINISHED"}
     assert [path.name for path in tmp_path.iterdir()] == ["mine.txt"]
+
+
+@pytest.fixture
+def entry():
+    return {"name": "lambert.diffuse", "files": {"model": "model.exr"}}
+
+
+def write(native, folder, value, side):
+    picture = np.full((side, side, 4), value, np.float32)
+    picture[0, :, 0] = 0.0  # the top row
+    native.write_exr(folder / "model.exr", picture)
+
+
+def test_a_picture_is_brought_up_to_date_and_never_doubled(entry, native, tmp_path):
+    write(native, tmp_path, 3.0, 4)
+    image = pictures.show(entry, "model", tmp_path)
+    assert image.name == "Mesograin lambert.diffuse model" and tuple(image.size) == (4, 4)
+    assert image.is_float and image.colorspace_settings.name.startswith("Linear")
+    rows = np.array(image.pixels[:]).reshape(4, 4, 4)
+    assert (rows[0, :, 0] == 3.0).all() and (rows[3, :, 0] == 0.0).all() and (rows[..., 1] == 3.0).all()
+    image.name = "Mine"
+    write(native, tmp_path, -2.0, 8)
+    assert pictures.show(entry, "model", tmp_path) == image and image.name == "Mine"
+    assert tuple(image.size) == (8, 8) and image.pixels[0] == -2.0
+    assert len(bpy.data.images) == 1
+    bpy.data.images.remove(image)
+    assert pictures.show(entry, "model", tmp_path).pixels[0] == -2.0
+    (tmp_path / "model.exr").unlink()
+    bpy.data.images.remove(bpy.data.images[0])
+    with pytest.raises(RuntimeError):
+        pictures.show(entry, "model", tmp_path)
+
+
+def test_a_picture_beside_the_file_moves_with_it(entry, native, tmp_path):
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "grain.blend"))
+    (tmp_path / "comparison").mkdir()
+    write(native, tmp_path / "comparison", 1.0, 4)
+    assert pictures.show(entry, "model", tmp_path / "comparison").filepath == "//comparison/model.exr"
+
+
+def test_only_pictures_that_a_case_has_are_offered(entry):
+    assert pictures.pictures_of(entry) == ["model"]

@@ -1,6 +1,8 @@
 # The pictures of a comparison as images in Blender, brought up to date by the next comparison and never doubled.
 """Each is found again by what it shows, not by a pointer or name: undo removes datablocks, and artists rename them."""
 
+from pathlib import Path
+
 import bpy
 
 from .. import compat
@@ -15,19 +17,24 @@ FILES = {"model": "model", "reference": "reference", "error": "error", "error co
 def show(entry, picture, folder):
     """The image of one picture of a case of results.json, made or brought up to date. Raises RuntimeError if its file
     cannot be read."""
-    path = str(folder / entry["files"][FILES[picture]])
+    path = folder / entry["files"][FILES[picture]]
     key = f"{entry['name']} {picture}"
     image = next((image for image in bpy.data.images if image.get(KEY) == key), None)
     if image is None:
-        image = bpy.data.images.load(path)
+        image = bpy.data.images.load(str(path))
         image.name = f"Mesograin {key}"
         image[KEY] = key
-    else:
-        image.filepath = path
-        image.reload()
-    if path.endswith(".exr"):
+    image.filepath = _relative(path)
+    image.reload()
+    if path.suffix == ".exr":
         compat.set_linear(image)
     return image
+
+
+def _relative(path):
+    """Relative to the .blend file if it lies beside, so that both can move together."""
+    home = Path(bpy.data.filepath).parent
+    return bpy.path.relpath(str(path)) if bpy.data.filepath and path.is_relative_to(home) else str(path)
 
 
 def pictures_of(entry):
