@@ -10,7 +10,7 @@ Mesograin renders granular materials in real time and compares every picture wit
   trade     error against time: every model and Cycles itself, the Pareto front drawn
   sweep     compare many cases listed in a file; resumable, on one machine or many
   render    render a scene described in JSON to EXR, without Blender
-  bake      bake a grain's surface to an EXR texture
+  bake      bake a grain's surface to an EXR texture, and Cycles' beside it
   test      run the tests
   bench     measure speed and accuracy
   build     build the native module, and nothing else
@@ -162,9 +162,12 @@ Bakes a grain's surface to an EXR texture at its UVs; for a scene in JSON needs 
   --size SIDE or WxH        texels (default: 1024; for JSON the scene's resolution)
   --samples N               samples per texel (default: 64)
   --view-from WHERE         what looks at the surface: above_surface, along its normal (default), or active_camera
-  --margin N                texels by which what is baked reaches beyond the UVs (default: 16; for JSON 0)
+  --margin N                texels by which what is baked reaches beyond the UVs (default: 16; for JSON and with --compare 0)
   --set NAME=VALUE          a material parameter; may be repeated
   --half                    16-bit instead of 32-bit floats
+  --compare                 also bakes with Cycles: OUT.cycles.exr, OUT.error.exr, a PNG of each, and numbers in OUT.json
+  --reference KIND          what Cycles solves: diffuse, glossy, volume_index_matched, subsurface (default: the model's)
+  --reference-samples N     Cycles samples per texel for each of two seeds (default: 64 for surfaces, 128 for volumes)
   --blender PATH            the Blender to use
 
 A scene in JSON takes --model, --size, --samples, --view-from and --margin. The texture's header tells how it was made. Files
@@ -173,6 +176,7 @@ Exit codes: 0 written; 1 the object could not be baked; 2 wrong arguments or sce
 output cannot be written; 130 interrupted.
 
   ./mesograin bake blend_files/grain.blend -o grain.exr
+  ./mesograin bake blend_files/sphere.blend --compare --model lambert --size 512x256 -o sphere.exr
   ./mesograin bake tests/data/sphere.json --size 512x256 -o sphere.exr
 TEXT
 }

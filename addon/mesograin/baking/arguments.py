@@ -5,8 +5,8 @@ import argparse
 import re
 from pathlib import Path
 
-from ..comparison.arguments import MODELS, SETTABLE, positive, setting
-from .choices import LARGEST_MARGIN, LARGEST_SIDE, VIEW_FROM
+from ..comparison.arguments import MODELS, REFERENCES, SETTABLE, positive, setting
+from .choices import DEFAULT_MARGIN, LARGEST_MARGIN, LARGEST_SIDE, VIEW_FROM
 
 
 class Parser(argparse.ArgumentParser):
@@ -21,7 +21,7 @@ def build():
     parser = Parser(
         prog="mesograin bake",
         usage="mesograin bake SCENE.blend -o OUT.exr [options]",
-        description="Bakes an object's surface to an EXR texture at its UVs.",
+        description="Bakes an object's surface to an EXR texture at its UVs, and Cycles' beside it with --compare.",
         epilog="Exit codes: 0 written, 1 it could not be baked, 2 bad arguments or scene, 3 the output cannot be"
         " written, 130 interrupted. Files appear complete or not at all.",
     )
@@ -36,12 +36,18 @@ def build():
     parser.add_argument("--samples", type=positive, default=64, metavar="N", help="samples a texel (default: 64)")
     parser.add_argument("--view-from", choices=VIEW_FROM, default=VIEW_FROM[0], metavar="WHERE",
                         help=f"what looks at the surface: {' or '.join(VIEW_FROM)} (default: the first)")
-    parser.add_argument("--margin", type=_margin, default=16, metavar="N",
-                        help="texels by which what is baked reaches beyond the UVs (default: 16)")
+    parser.add_argument("--margin", type=_margin, default=None, metavar="N",
+                        help="texels by which what is baked reaches beyond the UVs (default: 16; with --compare 0)")
     parser.add_argument("--half", action="store_true", help="16-bit instead of 32-bit floats")
     parser.add_argument("--set", action="append", type=setting, default=[], dest="settings", metavar="NAME=VALUE",
                         help=f"a material parameter: {', '.join(SETTABLE)}; RGB as one number or three with commas; may"
                         " be repeated")
+    parser.add_argument("--compare", action="store_true",
+                        help="also bakes with Cycles: OUT.cycles.exr, OUT.error.exr, PNGs, and numbers in OUT.json")
+    parser.add_argument("--reference", choices=REFERENCES, default=None, metavar="KIND",
+                        help=f"with --compare: what Cycles solves, of {', '.join(REFERENCES)} (default: the model's)")
+    parser.add_argument("--reference-samples", type=positive, default=None, metavar="N",
+                        help="with --compare: Cycles samples a texel for each of two seeds (default: 64, volumes 128)")
     return parser
 
 
@@ -52,6 +58,12 @@ def parse(words):
     chosen.settings = dict(chosen.settings)
     if not chosen.scene.is_file():
         parser.error(f"there is no scene '{chosen.scene}'")
+    if not chosen.compare and (chosen.reference or chosen.reference_samples):
+        parser.error("--reference and --reference-samples need --compare")
+    if chosen.compare and (chosen.half or chosen.margin):
+        parser.error("--compare writes 32-bit floats without a margin, so it goes neither with --half nor --margin")
+    if chosen.margin is None:
+        chosen.margin = 0 if chosen.compare else DEFAULT_MARGIN
     return chosen
 
 

@@ -8,3 +8,6 @@ LARGEST_SIDE = 16384
 
 LARGEST_MARGIN = 32767
 """Texels."""
+
+DEFAULT_MARGIN = 16
+"""Texels, as of Blender's own bake."""

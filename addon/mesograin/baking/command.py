@@ -47,6 +47,8 @@ def _run(chosen):
 
     from mesograin.baking import surface
     from mesograin.comparison.progress import Progress
+    from mesograin.cycles.reference import ReferenceError
+    from mesograin.cycles.stage import StageError
 
     progress = Progress()
     try:
@@ -54,7 +56,7 @@ def _run(chosen):
         return _bake(chosen, progress)
     except surface.OutputError as error:
         return _complain(error, NO_OUTPUT)
-    except (surface.BakeError, native.Error) as error:
+    except (surface.BakeError, ReferenceError, StageError, native.Error) as error:
         return _complain(error, NOT_BAKED)
     finally:
         progress.close()
@@ -68,9 +70,11 @@ def _bake(chosen, progress):
     depsgraph = bpy.context.evaluated_depsgraph_get()
     unit = depsgraph.scene.mesograin.millimetres_per_unit
     overrides = {parameter: export.per_unit(parameter, value, unit) for parameter, value in chosen.settings.items()}
+    name = surface.choose(depsgraph, chosen.object)
+    if chosen.compare:
+        return _compare(chosen, depsgraph, name, overrides, progress)
     if chosen.model:
         overrides["model"] = chosen.model
-    name = surface.choose(depsgraph, chosen.object)
     ours = surface.Surface(depsgraph, name, chosen.size, chosen.view_from, overrides)
     for warning in ours.warnings:
         progress.say(f"bake: {warning}")
@@ -85,6 +89,30 @@ def _bake(chosen, progress):
     print(f"{chosen.output}: {name}, {chosen.size[0]} x {chosen.size[1]} texels, {chosen.samples} samples by {models}",
           flush=True)
     return OK
+
+
+def _compare(chosen, depsgraph, name, overrides, progress):
+    from mesograin.baking import comparison
+    from mesograin.comparison.verdict import verdict
+    from mesograin.cycles.cache import Cache
+
+    ours, theirs, mask, results = comparison.compare(
+        depsgraph, name, chosen.size, chosen.samples, chosen.view_from, overrides, chosen.model, chosen.reference,
+        chosen.reference_samples, Cache(), progress)
+    progress.close()
+    written = comparison.write(chosen.output, ours, theirs, mask, results)
+    metrics, floor = results["metrics"], results["noise_floor"]
+    numbers = [f"{title} {_share(value)}" for title, value in (
+        ("relative L1", metrics["relative_l1"]), ("in blocks", metrics["relative_l1_blocks"]),
+        ("noise floor", floor["relative_l1"]), ("light in all", metrics["bias"]))]
+    print(f"{name}, {results['model']} beside {results['reference_title']}: {verdict({**results, 'status': 'done'})}")
+    print(f"{', '.join(numbers)}; {results['mask']['pixels']} texels; Cycles {results['reference_seconds']:.1f} s")
+    print(f"{chosen.output.absolute().parent}: {', '.join(written)}", flush=True)
+    return OK
+
+
+def _share(value):
+    return "unknown" if value is None else format(value, ".2%")
 
 
 def _complain(error, code):

@@ -10,12 +10,11 @@ from pathlib import Path
 import numpy
 
 from .. import __version__, export, meshes, native_module
+from ..comparison.results import OutputError
+from ..cycles.shot import PROVENANCE
 from .choices import VIEW_FROM
 
 CONVENTION = "u to the right, v up, (0, 0) at the lower left corner; row 0 is v = 1"
-
-PROVENANCE = "mesograin:provenance"
-"""The string attribute of an EXR file that holds where it comes from, as JSON."""
 
 
 PATIENCE_SECONDS = 0.1
@@ -45,6 +44,7 @@ class Surface:
         scene = dataclasses.replace(scene, instances=changed)
         self.name, self.size, self.view_from = name, tuple(size), view_from
         self.materials = {changed[index].material.name: dict(changed[index].material.values) for index in parts}
+        self.triangles = sum(changed[index].mesh.triangle_count for index in parts)
         self._view = native.View(*size)
         self._view.set_scene(scene.to_native())
         if view_from == "active_camera":
@@ -107,10 +107,6 @@ class Surface:
             "units": "coefficients per scene unit; texels are radiance",
             "device": native.device_info()["renderer"],
         }))
-
-
-class OutputError(Exception):
-    """A file cannot be written; one sentence."""
 
 
 def require_writable(path):

@@ -50,13 +50,15 @@ class Sampling:
     depsgraph: evaluated, of the scene with its `mesograin` properties. kind: a name in `kinds.KINDS`.
     size: (width, height) in pixels. samples: per pixel and seed; the kind's default if None.
     cache: a `Cache`, or None for none. overrides: {parameter: value} for every material, coefficients per scene unit.
+    unwrapping: an `unwrapping.Unwrapping` for a baked texture instead of a picture; alpha is then 1 where it was baked.
     Raises ReferenceError for what Cycles cannot render at all, before anything is rendered.
     """
 
-    def __init__(self, depsgraph, kind, size, samples=None, cache=None, overrides=None):
+    def __init__(self, depsgraph, kind, size, samples=None, cache=None, overrides=None, unwrapping=None):
         self.kind = kinds.KINDS[kind]
         self.samples = samples or self.kind.samples
         self._depsgraph, self._size, self._cache, self._overrides = depsgraph, size, cache, overrides or {}
+        self._unwrapping = unwrapping
         self.notes = _check(depsgraph, self.kind, self._overrides)
         self._coverage = None
         self._shots = {}
@@ -68,7 +70,7 @@ class Sampling:
         """
         tell = on_progress or (lambda fraction: None)
         missing = [seed for seed in dict.fromkeys(seeds) if seed not in self._shots]
-        first = self.kind.coverage_pass and self._coverage is None
+        first = self.kind.coverage_pass and not self._unwrapping and self._coverage is None
         steps = len(missing) + first
         for step, seed in enumerate(missing):
             self._shots[seed] = self._take(self.kind, self.samples, seed, _part(tell, step, steps))
@@ -93,9 +95,8 @@ class Sampling:
         )
 
     def _take(self, kind, samples, seed, on_progress):
-        return shot.take(
-            self._depsgraph, kind, self._size, samples, seed, self._cache, self._overrides, on_progress
-        )
+        given = (self._depsgraph, kind, self._size, samples, seed, self._cache, self._overrides)
+        return shot.take(*given, on_progress, self._unwrapping)
 
 
 def render(depsgraph, kind, size, samples=None, seeds=SEEDS, cache=None, overrides=None, on_progress=None):

@@ -39,10 +39,13 @@ def grain_values(depsgraph, overrides, material):
     return GrainValues.from_parameters({**parameters, **overrides})
 
 
-def take(depsgraph, kind, size, samples, seed, cache=None, overrides=None, on_progress=None):
+def take(
+    depsgraph, kind, size, samples, seed, cache=None, overrides=None, on_progress=None, unwrapping=None
+):
     """One image of one seed, from the cache or rendered into it: a Shot.
 
-    kind: kinds.Kind. The rest as in `reference.Sampling`. Raises ReferenceError, StageError or native.Error.
+    kind: kinds.Kind. unwrapping: `unwrapping.Unwrapping` for a baked texture instead of a picture. The rest as
+    in `reference.Sampling`. Raises ReferenceError, StageError or native.Error.
     """
     on_progress = on_progress or (lambda fraction: None)
     native = native_module.get()
@@ -58,13 +61,18 @@ def take(depsgraph, kind, size, samples, seed, cache=None, overrides=None, on_pr
 
     with Stage(depsgraph, description, build) as stage:
         determined_by = fingerprint.describe(stage.scene, used, description)
+        if unwrapping:
+            determined_by["unwrapping"] = unwrapping.describe(stage)
         key = fingerprint.key(determined_by)
         found = _read_cached(native, cache, key)
         if found:
             on_progress(1.0)
             return found
         started = time.monotonic()
-        pixels = render_stage(native, stage.scene, on_progress)
+        if unwrapping:
+            pixels = unwrapping.render(stage, size, on_progress)
+        else:
+            pixels = render_stage(native, stage.scene, on_progress)
         seconds = time.monotonic() - started
     provenance = {
         "made_by": f"Mesograin {native.__version__}",
@@ -79,6 +87,8 @@ def take(depsgraph, kind, size, samples, seed, cache=None, overrides=None, on_pr
         "materials": list(used.values()),
         "key": key,
     }
+    if unwrapping:
+        provenance.update(object=unwrapping.name, view_from=unwrapping.view_from)
     # As it will come back from a file.
     provenance = json.loads(json.dumps(provenance))
     if cache:

@@ -16,6 +16,7 @@ class Stage:
 
     depsgraph: evaluated; copied from, never kept. description: `settings.settings(...)`.
     build_material: makes the new Cycles material for a bpy.types.Material in use, or for None (faces without one).
+    placed: {name of an object: what stands for its first instance here}.
     Everything made here is removed on exit, whatever happened inside.
     """
 
@@ -26,6 +27,7 @@ class Stage:
         self._made = []
         self._materials = {}
         self._meshes = {}
+        self.placed = {}
 
     def __enter__(self):
         try:
@@ -104,6 +106,7 @@ class Stage:
             for material in materials:
                 mesh.materials.append(self._material(material))
         made = self._add("Mesograin grain", mesh, matrix)
+        self.placed.setdefault(source.name, made)
         # The smooth normals are ours and theirs; the facets' shadow on themselves is nobody's.
         made.cycles.shadow_terminator_offset = 0.0
         made.cycles.shadow_terminator_geometry_offset = 0.1

@@ -1,0 +1,131 @@
+# A grain's texture by Mesograin beside the one that Cycles bakes of the material that means the same.
+"""See `compare`."""
+
+import json
+import time
+
+from .. import native_module
+from ..comparison import definitions, measure, origin
+from ..comparison.results import Output
+from ..cycles import kinds, nodes, reference
+from ..cycles.unwrapping import Unwrapping
+from ..report import colours
+from .surface import BakeError, Surface
+
+FORMAT = "mesograin-bake"
+FORMAT_VERSION = 1
+TEXELS_A_TRIANGLE = 4
+"""With fewer, how Cycles samples a texel shows: all within the triangle under its middle. Measured on a sphere, against
+a noise floor of 0.04 to 0.12 %: 0.7 % off with one texel for two triangles, 0.2 % with two for one, 0.08 % with
+eight."""
+
+ERROR = "i - r: our texture less the mean of the reference's seeds, linear radiance"
+
+
+def compare(depsgraph, name, size, samples, view_from, overrides, model, kind, reference_samples, cache, progress):
+    """Bakes both; returns (Surface, Reference, mask, results), of which results is JSON-able.
+
+    name: of the object. size: (width, height) in texels. samples: a texel on our side, reference_samples: a texel and
+    seed on Cycles' (None: the kind's default). overrides: {parameter: value} for every material, coefficients per
+    scene unit. model: of ours, None for the material's. kind: of reference, None for the model's. cache:
+    `cycles.cache.Cache`.
+    progress: `comparison.progress.Progress`. Raises BakeError, ReferenceError, StageError or native.Error.
+    """
+    model = model or _only_model(depsgraph, name, size, overrides)
+    kind = kind or kinds.default_kind(model)
+    if model not in kinds.KINDS[kind].models:
+        raise BakeError(f"The reference {kind} does not answer {model}: choose another with --reference.")
+    chosen = {"model": model, **kinds.our_side(kind, nodes.features())}
+    ours = Surface(depsgraph, name, size, view_from, {**overrides, **chosen})
+    for warning in ours.warnings:
+        progress.say(f"bake: {warning}")
+    # Said before anything is rendered: what Cycles cannot bake at all, and what it can only approximate.
+    sampling = reference.Sampling(
+        depsgraph, kind, size, reference_samples, cache, overrides, Unwrapping(name, view_from))
+    notes = [*sampling.notes, *_coarse(ours)]
+    for note in notes:
+        progress.say(f"bake: {note}")
+    million = size[0] * size[1] * 1e-6
+    rendered = sampling.kind.cost * sampling.samples * len(reference.SEEDS) * million
+    progress.plan([(f"Cycles bakes {name} ({kind})", kind, rendered),
+                   (f"baking {name}", model, 0.3 * samples * million)])
+    progress.begin()
+    sampling.add(reference.SEEDS, progress.update)
+    theirs = sampling.result()
+    progress.end(learn=not theirs.cached)
+    progress.begin()
+    started = time.monotonic()
+    ours.render(samples, progress.update)
+    our_seconds = time.monotonic() - started
+    progress.end()
+
+    texture, mean = ours.texture(), theirs.mean
+    mask = native_module.get().default_mask(texture[..., 3], 0) & (mean[..., 3] == 1.0)
+    if not mask.any():
+        raise BakeError(f"No texel of '{name}' is covered on both sides: bake a larger texture.")
+    numbers = measure.compare(texture, theirs.images, mask)
+    results = {
+        "format": FORMAT,
+        "format_version": FORMAT_VERSION,
+        "scene": origin.scene_name(),
+        "object": name,
+        "model": model,
+        "reference": kind,
+        "reference_title": kinds.KINDS[kind].title,
+        "view_from": view_from,
+        "size": list(size),
+        **numbers,
+        "material": ours.materials,
+        "uv_use": ours.uv_use,
+        "samples": ours.samples,
+        "our_seconds": round(our_seconds, 4),
+        "passes_ms": dict(ours.timings()),
+        "reference_samples": sampling.samples,
+        "reference_seeds": list(theirs.seeds),
+        "reference_seconds": round(theirs.seconds, 3),
+        "reference_cached": theirs.cached,
+        "notes": notes,
+        "versions": origin.versions(),
+        "device": native_module.get().device_info(),
+        "definitions": definitions.all_definitions(sorted(numbers["metrics"])),
+    }
+    return ours, theirs, mask, json.loads(json.dumps(results))
+
+
+def write(path, ours, theirs, mask, results):
+    """Writes beside `path`, OUT.exr: OUT.cycles.exr, OUT.error.exr, a PNG of each, and OUT.json. Returns their names.
+    Raises OutputError."""
+    native = native_module.get()
+    output = Output(path.absolute().parent)
+    texture, mean = ours.texture(), theirs.mean
+    stops = colours.exposure_for(mean, mask)
+    shown = mask[..., None]
+    relative = colours.relative_error(texture, mean)
+    stem = path.name[: -len(path.suffix)]
+    error = native.error_image(texture, mean, metric="e")
+    written = [
+        output.write_exr(path.name, texture, ours.provenance()),
+        output.write_exr(f"{stem}.cycles.exr", mean, {"mean_of": theirs.provenance}),
+        output.write_exr(f"{stem}.error.exr", shown * error, {"definition": ERROR}),
+        output.write_png(f"{stem}.png", colours.expose(texture, stops)),
+        output.write_png(f"{stem}.cycles.png", colours.expose(mean, stops)),
+        output.write_png(f"{stem}.error.png", shown * colours.false_colour(relative)),
+    ]
+    output.write_text(f"{stem}.json", json.dumps(results, indent=1, allow_nan=False) + "\n")
+    return [*written, f"{stem}.json"]
+
+
+def _only_model(depsgraph, name, size, overrides):
+    models = {values["model"] for values in Surface(depsgraph, name, size, overrides=overrides).materials.values()}
+    if len(models) > 1:
+        raise BakeError(f"The materials of '{name}' have several models ({', '.join(sorted(models))}): choose one.")
+    return models.pop()
+
+
+def _coarse(ours):
+    texels = ours.uv_use["texels"]
+    if texels < TEXELS_A_TRIANGLE * ours.triangles:
+        yield (
+            f"'{ours.name}' has {ours.triangles} triangles for {texels} texels, and Cycles takes a texel's samples from"
+            " one triangle alone: a larger texture compares more exactly."
+        )

@@ -1,0 +1,100 @@
+# Cycles' bake beside ours: the same texels, the same light, kept in the cache, nothing left behind.
+import io
+import json
+
+import bpy
+import numpy as np
+import pytest
+from cycles_scenes import depsgraph, make_sphere
+
+from mesograin.baking import comparison
+from mesograin.baking.surface import PROVENANCE, BakeError
+from mesograin.comparison.progress import Progress
+from mesograin.cycles import nodes, reference
+from mesograin.cycles.cache import Cache
+from mesograin.cycles.unwrapping import Unwrapping
+
+SUNS = [((1.0, 1.0, 1.0), 20.0), ((-1.0, -1.0, -1.6), 10.0)]
+
+
+def compare(size=(128, 64), samples=16, view_from="above_surface", model=None, kind=None, theirs=4, cache=None, **more):
+    return comparison.compare(depsgraph(), "Sphere", size, samples, view_from, more, model, kind, theirs, cache,
+                              Progress(io.StringIO()))
+
+
+def counts():
+    return {name: len(getattr(bpy.data, name)) for name in ("scenes", "objects", "meshes", "materials", "images")}
+
+
+def test_lambert_agrees_and_nothing_is_left_behind(tmp_path, native):
+    make_sphere(SUNS, segments=64, rings=32, model="lambert", reflectance=(0.8, 0.5, 0.2))
+    before = counts()
+    found = compare(size=(256, 128))
+    assert counts() == before
+    results = found[-1]
+    assert results["metrics"]["relative_l1"] < 5e-3 and abs(results["metrics"]["bias"] - 1.0) < 2e-3
+    assert results["mask"]["pixels"] > 0.95 * 256 * 128 and results["notes"] == []
+    comparison.write(tmp_path / "a.exr", *found)
+    names = ["a.cycles.exr", "a.cycles.png", "a.error.exr", "a.error.png", "a.exr", "a.json", "a.png"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == names
+    assert json.loads((tmp_path / "a.json").read_text()) == results
+    pixels, _, attributes = native.read_exr(tmp_path / "a.cycles.exr")
+    origin = json.loads(attributes[PROVENANCE])["mean_of"]
+    assert [shot["object"] for shot in origin] == ["Sphere", "Sphere"] and origin[0]["view_from"] == "above_surface"
+    np.testing.assert_array_equal(pixels, found[1].mean)
+
+
+def test_the_view_from_the_camera_is_bent_as_cycles_bends_it():
+    make_sphere(SUNS, model="conductor", roughness=0.6, reflectance=(0.9,) * 3, segments=64, rings=32)
+    camera = compare(size=(256, 128), view_from="active_camera")[-1]
+    above = compare(size=(256, 128))[-1]
+    assert camera["metrics"]["relative_l1"] < 0.02 and above["metrics"]["relative_l1"] < 0.02
+    assert camera["reference"] == "glossy"
+
+
+def test_a_thick_translucent_grain_agrees_with_the_subsurface_node():
+    make_sphere([((0.0, 0.0, 1.0), np.pi)], model="model_1", sigma_s=(0.8,) * 3, sigma_a=(0.2,) * 3, scale=50.0,
+                segments=64, rings=32)
+    results = compare(size=(64, 32), kind="subsurface", theirs=32)[-1]
+    if not nodes.features().subsurface_refracts:
+        assert {values["boundary"] for values in results["material"].values()} == {"lambert_lambert"}
+    assert abs(results["metrics"]["bias"] - 1.0) < 0.05
+    assert results["metrics"]["relative_l1"] < 2.0 * results["noise_floor"]["relative_l1"] + 0.05
+
+
+def test_texels_that_cycles_does_not_bake_are_not_compared():
+    make_sphere(SUNS, model="lambert", segments=64, rings=32)
+    for uv in bpy.context.object.data.uv_layers[0].data:
+        uv.uv = (0.5 * uv.uv[0], 0.5 + 0.5 * uv.uv[1])
+    _, theirs, mask, results = compare()
+    assert theirs.mean[:30, :62, 3].min() == 1.0 and theirs.mean[34:, :, 3].max() == 0.0
+    assert not mask[32:].any() and not mask[:, 64:].any() and mask[2:30, 2:62].all()
+    assert results["metrics"]["relative_l1"] < 0.02
+
+
+def test_bakes_are_kept_by_what_determines_them(tmp_path):
+    make_sphere(SUNS, model="lambert", segments=32, rings=16)
+    cache = Cache(tmp_path)
+    assert not compare(size=(16, 8), theirs=1, cache=cache)[1].cached
+    assert compare(size=(16, 8), theirs=1, cache=cache)[1].cached
+    assert not compare(size=(16, 8), theirs=1, cache=cache, view_from="active_camera")[1].cached
+    bpy.context.object.data.uv_layers[0].data[0].uv[0] += 0.01
+    assert not compare(size=(16, 8), theirs=1, cache=cache)[1].cached
+    # A picture of the camera is no texture.
+    assert not reference.render(depsgraph(), "diffuse", (16, 8), samples=1, cache=cache).cached
+
+
+def test_sentences():
+    material = make_sphere(SUNS, model="model_1", g=-0.5, sigma_s=(0.9,) * 3, sigma_a=(0.1,) * 3)
+    with pytest.raises(reference.ReferenceError, match="'Sand'.*allows g between 0"):
+        compare(kind="subsurface")
+    with pytest.raises(BakeError, match="The reference glossy does not answer model_1"):
+        compare(kind="glossy")
+    material.mesograin.model = "lambert"
+    with pytest.raises(BakeError, match="There is no object 'Foo'"):
+        comparison.compare(depsgraph(), "Foo", (8, 8), 1, "above_surface", {}, None, None, 1, None,
+                           Progress(io.StringIO()))
+    with pytest.raises(reference.ReferenceError, match="no object 'Foo' to bake with Cycles"):
+        reference.Sampling(depsgraph(), "diffuse", (8, 8), 1, unwrapping=Unwrapping("Foo", "above_surface")).add((1,))
+    coarse = compare(size=(8, 4), theirs=1)[-1]
+    assert len(coarse["notes"]) == 1 and "one triangle alone" in coarse["notes"][0]
