@@ -36,6 +36,8 @@ def write_case(folder, name, model, reference, **changes):
     for picture, pixels in (("model", model), ("reference", reference), ("error", model - reference)):
         files[picture] = f"{name}/{picture}.exr"
         native.write_exr(folder / files[picture], pixels[..., :3] if picture == "error" else pixels)
+    files["mask"] = f"{name}/mask.exr"
+    native.write_exr(folder / files["mask"], native.default_mask(reference[..., 3]).astype(np.float32)[..., None])
     for picture in ("model_png", "reference_png", "error_png", "signed_error_png"):
         import matplotlib.image
 
@@ -74,7 +76,10 @@ def write_folder(tmp_path):
     reference = disc()
     cases = [
         write_case(tmp_path, "lambert.diffuse", 1.003 * reference, reference),
-        write_case(tmp_path, "model_1.volume", 1.4 * reference, reference, notes=["Cycles <cannot> do this."]),
+        write_significance(
+            tmp_path,
+            write_case(tmp_path, "model_1.volume", 1.4 * reference, reference, notes=["Cycles <cannot> do this."]),
+        ),
         {
             "name": "model_2.volume",
             "model": "model_2",
@@ -100,12 +105,32 @@ def write_folder(tmp_path):
         "definitions": {
             "relative_l1": "sum |i - r| / sum r",
             "noise_floor": "what noise scores",
+            "significance.verdict": "whether <noise> explains it",
             "mask.pixels": "pixels compared",
         },
         "cases": cases,
     }
     (tmp_path / "results.json").write_text(json.dumps(results))
     return tmp_path
+
+
+SIGNIFICANCE = {"verdict": "differs", "pixels": 900, "tests": 2700, "significant_pixels": 90, "share": 0.1,
+                "threshold": 1e-5, "score_threshold": 4.4, "false_alarm_rate": 0.01, "relative_tolerance": 0.002,
+                "reference_seeds": 4, "our_seeds": 2, "blocks": 20, "significant_blocks": 5, "share_blocks": 0.25,
+                "threshold_blocks": 1e-4}
+
+
+def write_significance(folder, case):
+    """Noise, scores and verdict of a case, as a comparison with several seeds writes them."""
+    scores = np.zeros((48, 48, 3), np.float32)
+    scores[20, 30] = 1.0, -9.0, 2.0
+    for name, pixels in (("noise", np.full((48, 48, 3), 0.01, np.float32)), ("z_map", scores)):
+        case["files"][name] = f"{case['name']}/{name}.exr"
+        native.write_exr(folder / case["files"][name], pixels)
+    case["significance"] = SIGNIFICANCE
+    case["our_noise"] = {"relative_l1": 0.0123}
+    case["until"] = {"fraction": 0.2, "metric": "relative_l1", "ratio": 0.31, "reached": False, "most_seeds": 4}
+    return case
 
 
 @pytest.fixture(scope="module")
@@ -170,7 +195,27 @@ def test_live_pictures_are_the_exr_files(built):
     np.testing.assert_array_equal(unpack(texts[live[1]["model"]], 48, 48), expected.astype(np.float16))
     mask = unpack(texts[live[1]["mask"]], 48, 48)[..., 0]
     np.testing.assert_array_equal(mask, native.default_mask(disc()[..., 3]))
-    assert live[0]["reference"] == live[1]["reference"] and len(texts) == 4, "shared pictures are there once"
+    assert live[0]["reference"] == live[1]["reference"] and len(texts) == 5, "shared pictures are there once"
+
+
+def test_significance_is_shown_where_it_was_tested(built):
+    page = (built / "report.html").read_text()
+    first, second = page.split('<section class="case"')[1:3]
+    assert 'data-mode="scores"' not in first and "scores-legend" not in first
+    assert 'data-mode="scores"' in second and "4.4" in second and 'popovertarget="define-verdict"' in second
+    text = " ".join(html.unescape(re.sub(r"<[^>]*>", " ", second)).split())
+    assert "Differs significantly in 10.0 % of 900 pixels and 25.0 % of 20 blocks of 8×8" in text
+    assert "noise was 0.200 of the error in relative_l1: it is 0.310 of it; 4 seeds were not enough." in text
+    assert "1.23 %" in text and "whether <noise> explains it" in html.unescape(page)
+    live = json.loads(re.search(r'class="live">(.*?)</script>', second)[1])
+    scores = unpack(dict(re.findall(r'id="(\w+)">(.*?)</script>', page))[live["scores"]], 48, 48)[..., 0]
+    assert live["threshold"] == 4.4 and scores[20, 30] == -9.0 and np.count_nonzero(scores) == 1
+
+
+def test_what_the_mask_took_away_is_counted(built):
+    page = (built / "report.html").read_text()
+    kept = int(native.default_mask(disc()[..., 3]).sum())
+    assert f"{kept} of 2304; taken away: {2304 - kept} by the mask (reference coverage)" in page
 
 
 def unpack(text, width, height):

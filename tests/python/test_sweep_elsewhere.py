@@ -74,8 +74,8 @@ def slurm(tmp_path):
     )
     environment = {**os.environ, "SLURM_CONF": str(folder / "slurm.conf"), "PATH": f"{os.environ['PATH']}:/usr/sbin"}
     munge = [which("munged"), "--foreground", "--force"]
-    munge += [f"--{name}={folder / 'munge'}{ending}" for name, ending in (
-        ("socket", ".socket"), ("key-file", ".key"), ("pid-file", ".pid"), ("log-file", ".log"), ("seed-file", ".seed"))]
+    munge += [f"--{name}={folder / 'munge'}.{name.removesuffix('-file')}"
+              for name in ("socket", "key-file", "pid-file", "log-file", "seed-file")]
     with contextlib.ExitStack() as stack:
         for words in (munge, [which("slurmctld"), "-D"], [which("slurmd"), "-D"]):
             stack.enter_context(daemon(words, environment, folder))

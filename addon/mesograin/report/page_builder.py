@@ -10,7 +10,7 @@ import numpy
 from markupsafe import Markup
 
 from . import colours, payload, plots
-from .wording import form, parameters, verdict
+from .wording import compared, form, parameters, significance, until, verdict
 
 PAGE = Path(__file__).resolve().parent / "page"
 PLOTS = "plots"
@@ -25,6 +25,8 @@ LEADING = (
     ("noise_floor.relative_l1", "noise floor", "percent"),
     ("metrics.relative_l1_corrected", "L1, noise taken off", "percent"),
     ("metrics.relative_l1_blocks", "L1 in 8×8 blocks", "percent"),
+    ("our_noise.relative_l1", "our own noise", "percent"),
+    ("significance.share", "significant pixels", "percent"),
     ("metrics.bias", "bias", "ratio"),
     ("metrics.rse_mean", "mean RSE", "number"),
     ("metrics.rse_max", "max RSE", "number"),
@@ -56,6 +58,7 @@ def build(results, cases, folder):
         colour_tables=Markup(_colour_tables()),
         sequential=_gradient(colours.SEQUENTIAL),
         diverging=_gradient(colours.DIVERGING),
+        scores=_gradient(colours.score_colour(numpy.linspace(-2.5, 2.5, 601), 1.0)),
         not_finite="rgb({:.0f} {:.0f} {:.0f})".format(*(255.0 * part for part in colours.NOT_FINITE)),
     )
 
@@ -123,6 +126,10 @@ def _view(of, definitions, pictures, folder):
         "mask": pictures.add(of.mask[..., None]),
     }
     size = {"width": width, "height": height, "stops": case["exposure_stops"]}
+    view["scored"] = of.scores is not None
+    if view["scored"]:
+        live["scores"] = pictures.add(of.scores[..., None])
+        size["threshold"] = case["significance"]["score_threshold"]
     view["live"] = None if None in live.values() else Markup(json.dumps({**size, **live}))
     relative = colours.relative_error(of.model, of.reference)
     view["plots"] = [
@@ -130,7 +137,7 @@ def _view(of, definitions, pictures, folder):
         for title, made in (
             (
                 "Radiance along the steepest line",
-                plot(plots.profile(of.model, of.reference), folder, f"{case['name']}.profile"),
+                plot(plots.profile(of.model, of.reference, of.noise), folder, f"{case['name']}.profile"),
             ),
             (
                 "Distribution of the relative error",
@@ -158,6 +165,9 @@ def _view(of, definitions, pictures, folder):
         for name, value in case["metrics"].items()
     ]
     view["verdict"] = verdict(case)
+    view["significance"] = significance(case)
+    view["compared"] = compared(case["mask"], of.mask.size)
+    view["until"] = until(case)
     return view
 
 
@@ -171,8 +181,8 @@ def look_up(case, key):
 
 def _definition(definitions, key):
     group, _, name = key.rpartition(".")
-    if group == "noise_floor":
-        return f"{definitions['noise_floor']}; here for {name}: {definitions.get(name, '')}"
+    if group in ("noise_floor", "our_noise") and group in definitions:
+        return f"{definitions[group]}; here for {name}: {definitions.get(name, '')}"
     return definitions.get(name) or definitions.get(key, "")
 
 

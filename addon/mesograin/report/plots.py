@@ -133,21 +133,26 @@ def cost(cases):
     return draw
 
 
-def profile(model, reference):
+def profile(model, reference, noise):
     """A plot of radiance along the line across the picture on which the reference changes most, averaged over a band of
-    5 pixels; the reference's band of one standard error comes from the scatter of those 5."""
+    5 pixels, with the standard error of the reference. noise: (h, w, 3) of single pixels, or None if it is not known.
+    """
 
     def draw(palette):
         line = _steepest_line(reference)
         if line is None:
             return None
         theirs, ours = (_sample_band(pixels, line) for pixels in (reference, model))
-        middle, spread = theirs.mean(axis=0), theirs.std(axis=0, ddof=1) / numpy.sqrt(len(theirs))
+        middle = theirs.mean(axis=0)
         along = numpy.linspace(0.0, numpy.hypot(*(line[1] - line[0])), middle.size)
         figure, axes = new_figure(4.4, 2.3)
-        axes.fill_between(along, middle - spread, middle + spread, color=palette.theirs, alpha=0.3, linewidth=0)
-        axes.plot(along, middle, color=palette.theirs, linewidth=2.6, alpha=0.6, solid_capstyle="round",
-                  label="reference ± standard error")
+        label = "reference"
+        if noise is not None:
+            # Pixels are independent, the channels of one are not: they see the same paths.
+            spread = numpy.sqrt((_sample_band(noise, line) ** 2).sum(axis=0)) / len(theirs)
+            axes.fill_between(along, middle - spread, middle + spread, color=palette.theirs, alpha=0.3, linewidth=0)
+            label = "reference ± standard error"
+        axes.plot(along, middle, color=palette.theirs, linewidth=2.6, alpha=0.6, solid_capstyle="round", label=label)
         axes.plot(along, ours.mean(axis=0), color=palette.ours, linewidth=1.2, label="model")
         axes.set_xlabel("distance from the dark end, pixels")
         axes.set_ylabel("radiance, W m⁻² sr⁻¹")

@@ -21,12 +21,16 @@ class UnreadableError(Exception):
 @dataclass(frozen=True)
 class CasePictures:
     """A case with its pictures. case: its entry in results.json. model, reference: (h, w, 4) float32, linear; mask: (h,
-    w) bool, the pixels compared; None if it failed. png: {name in `files`: data URI}."""
+    w) bool, the pixels compared; noise: (h, w, 3), the reference's standard error; scores: (h, w), of the significance
+    test the score farthest from 0 of a pixel's channels; None if it failed, or where there is one seed only.
+    png: {name in `files`: data URI}."""
 
     case: dict
     model: numpy.ndarray = None
     reference: numpy.ndarray = None
     mask: numpy.ndarray = None
+    noise: numpy.ndarray = None
+    scores: numpy.ndarray = None
     png: dict = None
 
 
@@ -75,14 +79,23 @@ def _pictures(native, folder, case):
         return CasePictures(case)
     files = case["files"]
     try:
-        model, reference = (native.read_exr(folder / files[name])[0] for name in ("model", "reference"))
+        pixels = {
+            name: native.read_exr(folder / files[name])[0]
+            for name in ("model", "reference", "mask", "noise", "z_map")
+            if name in files
+        }
     except native.Error as error:
         raise UnreadableError(str(error)) from error
     try:
         png = {name: _data_uri(folder / path) for name, path in files.items() if path.endswith(".png")}
     except OSError as error:
         raise UnreadableError(f"{error.filename} cannot be read ({error.strerror}).") from error
-    return CasePictures(case, model, reference, native.default_mask(reference[..., 3]), png)
+    scores = pixels.get("z_map")
+    if scores is not None:
+        farthest = numpy.abs(scores).argmax(axis=-1)[..., None]
+        scores = numpy.take_along_axis(scores, farthest, axis=-1)[..., 0]
+    mask = pixels["mask"][..., 0] > 0.5 if "mask" in pixels else native.default_mask(pixels["reference"][..., 3])
+    return CasePictures(case, pixels["model"], pixels["reference"], mask, pixels.get("noise"), scores, png)
 
 
 def _data_uri(path):

@@ -36,6 +36,41 @@ def verdict(case):
     return f"Within the reference's noise of {noise} in a pixel; {off} off in 8×8 blocks, where the noise is low."
 
 
+def significance(case):
+    """What the significance test says, in a sentence; "" where there was none."""
+    found = case.get("significance")
+    if not found:
+        return ""
+    seeds = f"{found['reference_seeds']} seeds of the reference and {found['our_seeds']} of ours"
+    if found["verdict"] != "differs":
+        rate = form(found["false_alarm_rate"], "percent")
+        return f"No significant difference in {found['pixels']} pixels, false-alarm rate {rate}; {seeds}."
+    places = f"{form(found['share'], 'percent')} of {found['pixels']} pixels"
+    if found.get("blocks"):
+        places += f" and {form(found['share_blocks'], 'percent')} of {found['blocks']} blocks of 8×8"
+    return f"Differs significantly in {places}; {seeds}."
+
+
+def compared(mask, pixels):
+    """How many pixels were compared, and what took the others away. mask: of results.json, pixels: of the picture."""
+    away = [f"{pixels - mask['pixels']} by the mask ({mask['source']})"]
+    away += [f"{mask[name]} by {title}" for name, title in (("nan", "NaN"), ("inf", "Inf")) if mask[name]]
+    return f"{mask['pixels'] - mask['nan'] - mask['inf']} of {pixels}; taken away: {', '.join(away)}"
+
+
+def until(case):
+    """What adding seeds until the noise was small came to, in a sentence; "" if that was not asked for."""
+    found = case.get("until")
+    if not found:
+        return ""
+    ratio = "not known" if found["ratio"] is None else form(found["ratio"], "number")
+    end = "" if found["reached"] else f"; {found['most_seeds']} seeds were not enough"
+    return (
+        f"Seeds were added until noise was {form(found['fraction'], 'number')} of the error in {found['metric']}: it is"
+        f" {ratio} of it{end}."
+    )
+
+
 def form(value, how):
     """A number as a reader wants it: three significant digits."""
     if value is None:

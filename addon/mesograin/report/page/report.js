@@ -69,6 +69,11 @@
   const [low, high] = tables.errorRange.map(Math.log10);
   const logarithmic = (value) => (Math.log10(Math.max(value, 1e-30)) - low) / (high - low);
   const signed = (value) => 0.5 + 0.5 * value / tables.signedRange;
+  // Strong from the test's threshold up, pale below it; colours.score_colour is the same.
+  const significant = (threshold) => (score) => {
+    const relative = score / threshold;
+    return 0.5 + 0.5 * (Math.abs(relative) >= 1 ? Math.sign(relative) * (0.5 + 0.2 * Math.abs(relative)) : 0.2 * relative);
+  };
   const number = (value) => (value === 0 ? "0" : Math.abs(value) < 0.001 || Math.abs(value) >= 1e4 ? value.toExponential(2) : value.toPrecision(4));
 
   class Viewer {
@@ -86,11 +91,13 @@
       const { live, count, root } = this;
       [this.model, this.reference, this.mask] = await Promise.all(
         [unpack(live.model, 3 * count), unpack(live.reference, 3 * count), unpack(live.mask, count)]);
+      this.scores = live.scores ? await unpack(live.scores, count) : null;
       this.relative = relativeError(this.model, this.reference, count);
       this.shown = {
         error: this.image(colour(this.relative.size, this.mask, count, tables.sequential, logarithmic)),
         signed: this.image(colour(this.relative.signed, this.mask, count, tables.diverging, signed)),
       };
+      if (this.scores) this.shown.scores = this.image(colour(this.scores, this.mask, count, tables.diverging, significant(live.threshold)));
       this.setExposure(Number(root.querySelector(".exposure input").value));
       this.root.querySelector(".still").hidden = true;
       this.canvas.hidden = false;
@@ -118,11 +125,13 @@
       this.divider.hidden = !isSplit;
       this.divider.style.left = `${100 * this.split}%`;
       const [left, right] = this.root.querySelectorAll(".tag");
-      left.hidden = mode === "error" || mode === "signed";
+      left.hidden = mode !== "split" && mode !== "flip";
       left.textContent = mode === "flip" && this.flipped ? "reference" : "model";
       right.hidden = !isSplit;
-      this.root.querySelector(".error-legend").hidden = mode !== "error";
-      this.root.querySelector(".signed-legend").hidden = mode !== "signed";
+      for (const legend of ["error", "signed", "scores"]) {
+        const bar = this.root.querySelector(`.${legend}-legend`);
+        if (bar) bar.hidden = mode !== legend;
+      }
       this.stage.style.cursor = isSplit ? "ew-resize" : "crosshair";
     }
 
@@ -143,7 +152,7 @@
       const i = y * width + x;
       const rgb = (pixels) => [0, 1, 2].map((c) => number(pixels[c * this.count + i]).padStart(9)).join(" ");
       this.root.querySelector(".readout").textContent =
-        `x ${x}, y ${y}\nmodel     ${rgb(this.model)}\nreference ${rgb(this.reference)}\nerror     ${(100 * this.relative.signed[i]).toFixed(2).padStart(9)} %${this.mask[i] > 0 ? "" : "  not compared"}`;
+        `x ${x}, y ${y}\nmodel     ${rgb(this.model)}\nreference ${rgb(this.reference)}\nerror     ${(100 * this.relative.signed[i]).toFixed(2).padStart(9)} %${this.mask[i] > 0 ? this.scores ? `  ${this.scores[i].toFixed(1)} σ` : "" : "  not compared"}`;
     }
 
     listen() {
