@@ -151,7 +151,7 @@ def read_scene(depsgraph, cache):
 def _parameters(grain, millimetres_per_unit):
     for parameter in properties.MATERIAL_PARAMETERS:
         value = per_unit(parameter, getattr(grain, parameter), millimetres_per_unit)
-        if not isinstance(value, (str, float)):
+        if not isinstance(value, (str, float, bool)):
             value = tuple(value)
         yield parameter, value
 

@@ -97,6 +97,10 @@ class MESOGRAIN_PT_material(MesograinPanel, bpy.types.Panel):
         column.active = grain.model == "conductor" or grain.boundary in ("dielectric", "lambert_refracted")
         column.prop(grain, "roughness")
         column.prop(grain, "masking")
+        if grain.model not in presets.OPAQUE_MODELS:
+            row = layout.row()
+            row.active = grain.boundary == "dielectric"
+            row.prop(grain, "specular")
 
 
 class MESOGRAIN_PT_light(MesograinPanel, bpy.types.Panel):

@@ -1,6 +1,6 @@
 # What a file remembers: the grain of each material and the render settings of each scene.
 import bpy
-from bpy.props import EnumProperty, FloatProperty, FloatVectorProperty, IntProperty, PointerProperty
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, FloatVectorProperty, IntProperty, PointerProperty
 
 # Numbered, so that files keep their meaning when an item is added; names and order are the native module's.
 MODELS = (
@@ -64,6 +64,10 @@ class MaterialProperties(bpy.types.PropertyGroup):
     scale: FloatProperty(
         name="Scale", default=1.0, min=0.0, max=1e12, soft_max=100.0, precision=3, update=_tag,
         description="Multiplies sigma_a and sigma_s, without unit; a larger one is a denser grain")
+    specular: BoolProperty(
+        name="Specular", default=True, update=_tag,
+        description="Show what a dielectric surface reflects. What enters is the rest, shown or not. A roughness of 0 "
+        "is a mirror, in which only a sun with an angle shows")
     boundary: EnumProperty(name="Boundary", items=BOUNDARIES, default="dielectric", update=_tag,
                            description="What light meets at the grain's surface")
     masking: EnumProperty(name="Masking", items=MASKINGS, default="correlated", update=_tag,
@@ -84,8 +88,8 @@ class SceneProperties(bpy.types.PropertyGroup):
         update=_tag, description="Length of one Blender unit in mm; coefficients in 1/mm are multiplied by it")
 
 
-MATERIAL_PARAMETERS = ("model", "reflectance", "sigma_a", "sigma_s", "g", "eta", "roughness", "scale", "boundary",
-                       "masking", "profile")
+MATERIAL_PARAMETERS = ("model", "reflectance", "sigma_a", "sigma_s", "g", "eta", "roughness", "scale", "specular",
+                       "boundary", "masking", "profile")
 
 _register_classes, _unregister_classes = bpy.utils.register_classes_factory((MaterialProperties, SceneProperties))
 

@@ -1,8 +1,10 @@
 // The same solver as behind model 1's tables, asked for fluxes.
 #include "physics/half_space_albedo.h"
 
+#include "physics/dielectric_surface.h"
 #include "physics/half_space.h"
 #include "physics/medium.h"
+#include "physics/physics.h"
 #include "physics/quadrature.h"
 #include "physics/refracted_view.h"
 #include "scene/error.h"
@@ -35,8 +37,12 @@ double channel_albedo(const scene::Material& material, int channel, std::optiona
     }
     default: {
       const HalfSpace half_space(medium, material.boundary == Boundary::dielectric ? material.eta : 1.0);
-      if (cosine) return half_space.albedo(*cosine);
-      return hemispherical([&](double mu) { return half_space.albedo(mu); });
+      const auto albedo = [&](double mu) {
+        if (!has_rough_surface(material)) return half_space.albedo(mu);
+        return RoughDielectric(material.eta, material.roughness, material.masking).entering(mu) *
+               half_space.albedo_inside(refracted_cosine(mu, material.eta));
+      };
+      return cosine ? albedo(*cosine) : hemispherical(albedo);
     }
   }
 }

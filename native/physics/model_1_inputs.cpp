@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "physics/channels.h"
+#include "physics/dielectric_inputs.h"
 #include "physics/fresnel_moments.h"
 #include "physics/half_space.h"
 #include "physics/medium.h"
@@ -86,6 +87,7 @@ MaterialInputs interface_inputs(const Material& material) {
     inputs.defines.emplace_back("REFRACTION");
     inputs.uniforms["material.eta"] = static_cast<float>(eta);
   }
+  add_dielectric(material, inputs);
   inputs.uniforms["material.inverse_eta_squared"] = static_cast<float>(1.0 / (eta * eta));
   if (material.profile == Profile::half_space)
     add_half_space(material, eta, inputs);

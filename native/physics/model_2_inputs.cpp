@@ -6,6 +6,7 @@
 
 #include "physics/body_medium.h"
 #include "physics/channels.h"
+#include "physics/dielectric_surface.h"
 #include "physics/model_1_inputs.h"
 #include "physics/sphere_exitance.h"
 
@@ -86,7 +87,9 @@ MaterialInputs model_2_inputs(const scene::Material& material, double grain_radi
   inputs.uniforms["body.radius"] = static_cast<float>(grain_radius);
   const ExitLobe lobe = exit_lobe(surface);
   inputs.uniforms["body.exit_slope"] = static_cast<float>(lobe.slope);
-  inputs.uniforms["body.exit_factor"] = static_cast<float>(lobe.factor);
+  // The sphere was solved for a smooth surface; all that a rough one changes about what it takes in is how much.
+  const double taken_in = has_rough_surface(material) ? rough_passage(material).entering_ratio : 1.0;
+  inputs.uniforms["body.exit_factor"] = static_cast<float>(lobe.factor * taken_in);
   return inputs;
 }
 

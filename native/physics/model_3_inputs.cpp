@@ -7,6 +7,7 @@
 
 #include "physics/body_medium.h"
 #include "physics/channels.h"
+#include "physics/dielectric_inputs.h"
 #include "physics/kernel_tables.h"
 #include "physics/physics.h"
 #include "physics/sphere_refraction.h"
@@ -106,6 +107,7 @@ MaterialInputs model_3_inputs(const Material& material, double grain_radius) {
   const std::array<BodyMedium, 3> media{body_medium(material, 0, grain_radius), body_medium(material, 1, grain_radius),
                                         body_medium(material, 2, grain_radius)};
   if (surface.eta != 1.0) inputs.defines.emplace_back("REFRACTION");
+  add_dielectric(material, inputs);
   inputs.uniforms["body.radius"] = static_cast<float>(grain_radius);
   const ExitLobe lobe = exit_lobe(surface);
   inputs.uniforms["body.even_factor"] = static_cast<float>(1.0 / (PI * surface.diffusion.exit_transmittance));

@@ -31,6 +31,7 @@ using glm::sqrt;
 #define OUT(type) type&
 
 // Includes the elementary functions, which it calls.
+#include "physics/dielectric.glsl"
 #include "physics/diffusion.glsl"
 #include "physics/fresnel.glsl"
 #include "physics/ggx.glsl"

@@ -1,4 +1,4 @@
-// Heitz' hemisphere-projection sampling of visible normals, with quadrature nodes in place of random numbers.
+// The visible normals by quadrature nodes, in place of random numbers.
 #include "physics/refracted_view.h"
 
 #include <algorithm>
@@ -6,6 +6,7 @@
 
 #include "physics/physics.h"
 #include "physics/quadrature.h"
+#include "physics/visible_normals.h"
 
 namespace mesograin::physics {
 namespace {
@@ -13,19 +14,6 @@ namespace {
 constexpr int radial_nodes = 24;
 constexpr int azimuthal_nodes = 48;
 constexpr int table_intervals = 256;
-
-// The visible normal for a point of the unit disk (Heitz 2018, listing 1), view = (sin, 0, cos).
-glm::dvec3 visible_normal(const glm::dvec3& view, double alpha, double radius, double azimuth) {
-  const glm::dvec3 stretched = glm::normalize(glm::dvec3(alpha * view.x, 0.0, view.z));
-  const glm::dvec3 tangent(0.0, 1.0, 0.0);
-  const glm::dvec3 bitangent = glm::cross(stretched, tangent);
-  const double t1 = radius * std::cos(azimuth);
-  const double blend = 0.5 * (1.0 + stretched.z);
-  const double t2 = (1.0 - blend) * sine_of_cosine(t1) + blend * radius * std::sin(azimuth);
-  const glm::dvec3 normal =
-      t1 * tangent + t2 * bitangent + std::sqrt(std::max(0.0, 1.0 - t1 * t1 - t2 * t2)) * stretched;
-  return glm::normalize(glm::dvec3(alpha * normal.x, alpha * normal.y, std::max(1e-12, normal.z)));
-}
 
 }  // namespace
 

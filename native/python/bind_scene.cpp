@@ -60,7 +60,8 @@ scene::Mesh make_mesh(const Array<float>& positions, const std::optional<Array<f
 
 scene::Material make_material(const std::string& model, const Triple& reflectance, const Triple& sigma_a,
                               const Triple& sigma_s, double g, double eta, double roughness, double scale,
-                              const std::string& boundary, const std::string& masking, const std::string& profile) {
+                              bool specular, const std::string& boundary, const std::string& masking,
+                              const std::string& profile) {
   scene::Material material;
   material.model = scene::parse_model(model);
   material.reflectance = to_vector(reflectance);
@@ -70,6 +71,7 @@ scene::Material make_material(const std::string& model, const Triple& reflectanc
   material.eta = eta;
   material.roughness = roughness;
   material.scale = scale;
+  material.specular = specular;
   material.boundary = scene::parse_boundary(boundary);
   material.masking = scene::parse_masking(masking);
   material.profile = scene::parse_profile(profile);
@@ -82,12 +84,13 @@ void bind_material(py::module_& module) {
   py::class_<scene::Material>(
       module, "Material",
       "A grain's material, read-only. sigma_a and sigma_s are per scene unit, linear RGB; scale "
-      "multiplies both; roughness is the GGX alpha.")
+      "multiplies both; roughness is the GGX alpha; specular shows what a dielectric boundary reflects.")
       .def(py::init(&make_material), py::kw_only(), py::arg("model") = "lambert",
            py::arg("reflectance") = to_triple(standard.reflectance), py::arg("sigma_a") = to_triple(standard.sigma_a),
            py::arg("sigma_s") = to_triple(standard.sigma_s), py::arg("g") = standard.g, py::arg("eta") = standard.eta,
            py::arg("roughness") = standard.roughness, py::arg("scale") = standard.scale,
-           py::arg("boundary") = "dielectric", py::arg("masking") = "correlated", py::arg("profile") = "half_space",
+           py::arg("specular") = standard.specular, py::arg("boundary") = "dielectric",
+           py::arg("masking") = "correlated", py::arg("profile") = "half_space",
            "Raises Error naming the parameter, what came and what is allowed.")
       .def_property_readonly(
           "model", [](const scene::Material& m) { return scene::model_names[static_cast<std::size_t>(m.model)]; })
@@ -98,6 +101,7 @@ void bind_material(py::module_& module) {
       .def_readonly("eta", &scene::Material::eta)
       .def_readonly("roughness", &scene::Material::roughness)
       .def_readonly("scale", &scene::Material::scale)
+      .def_readonly("specular", &scene::Material::specular)
       .def_property_readonly(
           "boundary",
           [](const scene::Material& m) { return scene::boundary_names[static_cast<std::size_t>(m.boundary)]; })

@@ -236,7 +236,7 @@ void Frame::shade(const std::vector<glm::dvec3>& to_light) {
   const glm::vec2 jitter((2.0 * point - 1.0) / glm::dvec2(width_, height_));
   std::vector<DeviceLight> device_lights;
   for (std::size_t i = 0; i < lights_.size(); ++i)
-    device_lights.push_back({glm::vec4(to_light[i], 0.0), glm::vec4(lights_[i].irradiance, 0.0)});
+    device_lights.push_back({glm::vec4(to_light[i], lights_[i].angle), glm::vec4(lights_[i].irradiance, 0.0)});
   const gl::Buffer lights(device_lights);
   lights.bind_storage(0);
 

@@ -31,6 +31,7 @@ struct Material {
   double eta = 1.3;             ///< relative index of refraction, in [0.5, 4]
   double roughness = 0.0;       ///< GGX alpha, in [0, 1]
   double scale = 1.0;           ///< dimensionless, multiplies sigma_a and sigma_s
+  bool specular = true;         ///< light that a dielectric boundary reflects is seen
   Boundary boundary = Boundary::dielectric;
   Masking masking = Masking::correlated;
   Profile profile = Profile::half_space;

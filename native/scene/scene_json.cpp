@@ -270,15 +270,16 @@ void require_product(const Node& node, const char* key, const glm::dvec3& produc
 }
 
 void read_translucent(const Node& node, Material& material) {
-  node.require_object(std::array<std::string_view, 14>{"kind", "sigma_s", "sigma_a", "g", "eta", "scale", "roughness",
+  node.require_object(std::array<std::string_view, 15>{"kind", "sigma_s", "sigma_a", "g", "eta", "scale", "roughness",
                                                        "interface", "boundary", "masking", "profile", "remaproughness",
-                                                       "sigma_s_times_scale", "sigma_a_times_scale"},
+                                                       "specular", "sigma_s_times_scale", "sigma_a_times_scale"},
                       provenance_keys);
   material.sigma_s = node["sigma_s"].rgb();
   material.sigma_a = node["sigma_a"].rgb();
   if (node.has("g")) material.g = node["g"].number();
   if (node.has("eta")) material.eta = node["eta"].number();
   if (node.has("scale")) material.scale = node["scale"].number();
+  if (node.has("specular")) material.specular = node["specular"].boolean();
   if (node.has("profile"))
     material.profile = at(node["profile"], [&] { return parse_profile(node["profile"].text()); });
   material.boundary = read_boundary(node);
@@ -406,6 +407,7 @@ std::string to_json(const Material& material) {
               {"eta", material.eta},
               {"roughness", material.roughness},
               {"scale", material.scale},
+              {"specular", material.specular},
               {"boundary", boundary_names[static_cast<std::size_t>(material.boundary)]},
               {"masking", masking_names[static_cast<std::size_t>(material.masking)]},
               {"profile", profile_names[static_cast<std::size_t>(material.profile)]}}

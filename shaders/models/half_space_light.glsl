@@ -1,4 +1,4 @@
-// The light that a half-space of the grain's medium sends back, as a BRDF. A rough interface is taken as smooth.
+// The light that a half-space of the grain's medium sends back, as a BRDF.
 //
 // What is chosen at compile time (physics::material_inputs):
 //   REFRACTION           a dielectric interface: Fresnel on both ways, refracted directions, 1/eta^2
@@ -6,6 +6,7 @@
 //   MULTIPLE_CONSTANT    `material.diffuse`: a constant radiance per irradiance
 //   VIEW_TABLE           `multiple_scattering`: as MULTIPLE_TABLE, over the viewer's direction alone
 //   SINGLE_SCATTERING    first-order scattering in closed form, where the table does not hold it already
+#include "models/dielectric.glsl"
 #include "models/interface.glsl"
 #include "physics/prelude.glsl"
 #include "physics/fresnel.glsl"
@@ -53,8 +54,7 @@ HalfSpaceLight half_space_light(SurfacePoint point, LightSample light) {
 #ifdef REFRACTION
   float mu_i_refracted = refracted_cosine(mu_i, material.eta);
   float mu_o_refracted = refracted_cosine(mu_o, material.eta);
-  float transmittance = fresnel_transmittance(mu_i, mu_i_refracted, material.eta) *
-                        fresnel_transmittance(mu_o, mu_o_refracted, material.eta);
+  float transmittance = surface_transmittance(mu_i, mu_i_refracted) * surface_transmittance(mu_o, mu_o_refracted);
 #else
   float mu_i_refracted = mu_i;
   float mu_o_refracted = mu_o;

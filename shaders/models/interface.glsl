@@ -11,6 +11,7 @@ struct LightSample {
   vec3 to_light;    // unit length
   vec3 irradiance;  // linear RGB, on a plane that faces the light
   int index;        // which light this is, for its light map
+  float angle;      // of the disc that to_light is drawn from, edge to edge, in radians
 };
 
 uniform int light_count;

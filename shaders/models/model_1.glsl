@@ -1,9 +1,13 @@
 // Model 1: a grain so thick that it answers like a half-space of its medium, which makes a BRDF of the BSSRDF. No light map.
-// Not physical: no light passes through or around a grain, so its unlit side is black; a rough interface is taken as smooth.
+// Not physical: no light passes through or around a grain, so its unlit side is black.
 #include "models/half_space_light.glsl"
 #include "models/interface.glsl"
 
 vec3 evaluate_model(SurfacePoint point, LightSample light) {
   HalfSpaceLight result = half_space_light(point, light);
-  return result.single + result.multiple;
+  vec3 radiance = result.single + result.multiple;
+#ifdef SPECULAR
+  radiance += specular_reflection(point, light);
+#endif
+  return radiance;
 }

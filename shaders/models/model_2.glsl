@@ -40,10 +40,9 @@ vec3 evaluate_model(SurfacePoint point, LightSample light) {
   float cosine = dot(point.normal, light.to_light);
   LightMapTexel entry = light_map_at(light.index, position.xy);
 
-  // Another part of the grain may stand in the light. The map holds one tangent plane a texel, so a point is its own occluder by as much.
   float above = entry.lit ? max(entry.position.z - position.z, 0.0) : 0.0;
   float own = light_map_tolerance(light.index, entry.normal);
-  float visible = cosine > 0.0 ? 1.0 - smoothstep(own, 2.0 * own, above) : 0.0;
+  float visible = light_map_visibility(light.index, entry, position, cosine);
   float way_in = mix(above, max(position.z - entry.exit_depth, 0.0), entry.lit ? visible : 0.0);
 
   // A sphere of radius r has chords 2 r |cosine|. Where both vanish, and where the map is too coarse to tell, the grain's own radius stands in.
@@ -55,7 +54,7 @@ vec3 evaluate_model(SurfacePoint point, LightSample light) {
   float mu_o = clamp(dot(point.normal, point.to_viewer), 0.0, 1.0);
 #ifdef REFRACTION
   float mu_o_refracted = refracted_cosine(mu_o, material.eta);
-  float transmittance = fresnel_transmittance(mu_o, mu_o_refracted, material.eta);
+  float transmittance = surface_transmittance(mu_o, mu_o_refracted);
 #else
   float mu_o_refracted = mu_o;
   const float transmittance = 1.0;
@@ -70,6 +69,9 @@ vec3 evaluate_model(SurfacePoint point, LightSample light) {
   float versine = 0.5 * dot(sum, sum);
   float phase = 4.0 * PI * henyey_greenstein(versine, material.absolute_g, material.one_minus_absolute_g);
   radiance += corrected(visible * half_space.single, look_up(single_difference, coordinate), phase * lobe);
+#endif
+#ifdef SPECULAR
+  radiance += visible * specular_reflection(point, light);
 #endif
   return radiance;
 }

@@ -6,6 +6,7 @@
 //   REFRACTION           a dielectric interface: Fresnel on both ways, refracted directions
 //   BEAM_SHIFT           the kernel depends on the cosine at which light enters, and acts from below the point that it reaches
 //   SINGLE_SCATTERING    `refracted_light`: first-order scattering is not in the kernel
+#include "models/dielectric.glsl"
 #include "models/interface.glsl"
 #include "models/light_map.glsl"
 #include "models/pixel_random.glsl"
@@ -151,7 +152,7 @@ vec3 multiple_scattering(int light, vec3 position, vec3 normal, float near_lobe,
     float mu = entry.normal.z;
     float mu_refracted = refracted_cosine(mu, body.eta);
 #ifdef REFRACTION
-    float transmittance = fresnel_transmittance(mu, mu_refracted, body.eta);
+    float transmittance = surface_transmittance(mu, mu_refracted);
 #else
     const float transmittance = 1.0;
 #endif
@@ -221,7 +222,7 @@ vec3 evaluate_model(SurfacePoint point, LightSample light) {
   float mu_o = clamp(dot(normal, to_viewer), 0.0, 1.0);
   float mu_o_refracted = refracted_cosine(mu_o, body.eta);
 #ifdef REFRACTION
-  float transmittance = fresnel_transmittance(mu_o, mu_o_refracted, body.eta);
+  float transmittance = surface_transmittance(mu_o, mu_o_refracted);
 #else
   const float transmittance = 1.0;
 #endif
@@ -243,5 +244,10 @@ vec3 evaluate_model(SurfacePoint point, LightSample light) {
   vec3 inside = single_scattering(light.index, position, normal, to_viewer, mu_o, single_share, uint(sample_index * single_share), offset.zw);
   radiance += transmittance / (body.eta * body.eta) * inside;
 #endif
-  return radiance * light.irradiance;
+  radiance *= light.irradiance;
+#ifdef SPECULAR
+  LightMapTexel lit = light_map_at(light.index, position.xy * body.radius);
+  radiance += light_map_visibility(light.index, lit, position * body.radius, normal.z) * specular_reflection(point, light);
+#endif
+  return radiance;
 }

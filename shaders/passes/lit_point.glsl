@@ -4,7 +4,7 @@
 #include "models/interface.glsl"
 
 struct DirectionalLight {
-  vec4 to_light;    // xyz
+  vec4 to_light;    // xyz; w: angle of the disc it is drawn from
   vec4 irradiance;  // rgb
 };
 
@@ -17,6 +17,6 @@ vec3 direction_to_viewer(vec3 position) { return normalize(viewer.xyz - viewer.w
 vec3 lit_point(SurfacePoint point) {
   vec3 sum = vec3(0.0);
   for (int i = 0; i < light_count; ++i)
-    sum += evaluate_model(point, LightSample(lights[i].to_light.xyz, lights[i].irradiance.rgb, i));
+    sum += evaluate_model(point, LightSample(lights[i].to_light.xyz, lights[i].irradiance.rgb, i, lights[i].to_light.w));
   return sum;
 }

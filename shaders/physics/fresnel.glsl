@@ -15,8 +15,8 @@ pure real fresnel_transmittance(real mu, real mu_refracted, real eta) {
 
 // The fraction of unpolarised flux that is reflected; 1 under total internal reflection.
 pure real fresnel_reflectance(real mu, real eta) {
-  real mu_refracted = refracted_cosine(mu, eta);
-  real s = (mu - eta * mu_refracted) / max(mu + eta * mu_refracted, 1e-18);
-  real p = (eta * mu - mu_refracted) / max(eta * mu + mu_refracted, 1e-18);
+  real refracted = sqrt(max(0.0, mu * mu + (eta - 1.0) * (eta + 1.0)));  // eta times the refracted cosine
+  real s = (mu - refracted) / max(mu + refracted, 1e-18);
+  real p = (eta * eta * mu - refracted) / max(eta * eta * mu + refracted, 1e-18);
   return mu <= 0.0 ? 1.0 : 0.5 * (s * s + p * p);
 }

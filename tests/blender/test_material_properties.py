@@ -24,7 +24,7 @@ def test_coefficients_are_per_blender_unit(millimetres_per_unit, native):
 def test_every_parameter_reaches_the_native_module(native):
     material = bpy.data.materials.new("Grain")
     wanted = {"model": "conductor", "reflectance": (0.25, 0.5, 0.75), "sigma_a": (0.5, 0.25, 0.125),
-              "sigma_s": (1.5, 2.5, 3.5), "g": -0.5, "eta": 1.75, "roughness": 0.375, "scale": 2.5,
+              "sigma_s": (1.5, 2.5, 3.5), "g": -0.5, "eta": 1.75, "roughness": 0.375, "scale": 2.5, "specular": False,
               "boundary": "lambert_refracted", "masking": "separable", "profile": "dipole"}
     for parameter, value in wanted.items():
         setattr(material.mesograin, parameter, value)
@@ -102,7 +102,7 @@ def test_undo_takes_a_preset_back():
 def test_files_remember(tmp_path):
     material = bpy.data.materials.new("Grain")
     material.use_fake_user = True
-    wanted = {"model": "model_3", "g": 0.5, "eta": 1.5, "roughness": 0.25, "scale": 6.0,
+    wanted = {"model": "model_3", "g": 0.5, "eta": 1.5, "roughness": 0.25, "scale": 6.0, "specular": False,
               "boundary": "lambert_lambert", "masking": "separable", "profile": "photon_beam"}
     for parameter, value in wanted.items():
         setattr(material.mesograin, parameter, value)

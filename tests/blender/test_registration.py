@@ -65,7 +65,7 @@ def test_enums_are_numbered_as_the_native_module_has_them(native):
 
 def test_defaults_are_the_native_module_s(native):
     standard, grain = native.Material(), bpy.data.materials.new("Grain").mesograin
-    for parameter in ("model", "g", "eta", "roughness", "scale", "boundary", "masking", "profile"):
+    for parameter in ("model", "g", "eta", "roughness", "scale", "specular", "boundary", "masking", "profile"):
         assert getattr(grain, parameter) == pytest.approx(getattr(standard, parameter))
     for parameter in ("reflectance", "sigma_a", "sigma_s"):
         assert tuple(getattr(grain, parameter)) == pytest.approx(getattr(standard, parameter))

@@ -54,8 +54,9 @@ std::vector<scene::Material> every_choice() {
     for (std::size_t boundary = 0; boundary < scene::boundary_names.size(); ++boundary)
       for (std::size_t masking = 0; masking < scene::masking_names.size(); ++masking)
         for (std::size_t profile = 0; profile < scene::profile_names.size(); ++profile)
-          for (const double roughness : {0.0, 0.3}) {
+          for (const auto& [roughness, specular] : {std::pair{0.0, true}, {0.3, true}, {0.3, false}}) {
             scene::Material material;
+            material.specular = specular;
             material.model = static_cast<scene::Model>(model);
             material.boundary = static_cast<scene::Boundary>(boundary);
             material.masking = static_cast<scene::Masking>(masking);

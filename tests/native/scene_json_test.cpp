@@ -30,7 +30,7 @@ Json sphere_scene() {
     "resolution": [40, 30],
     "material": {"kind": "smooth_mc", "sigma_s": [0.9, 0.8, 0.7], "sigma_a": 0.1, "eta": 1.5, "scale": 20,
                  "roughness": 0.0, "g": 0.25, "sigma_s_times_scale": [18, 16, 14], "interface": "smooth",
-                 "remaproughness": false},
+                 "remaproughness": false, "specular": false},
     "seconds_each_render": [1, 2]})");
 }
 
@@ -49,6 +49,7 @@ TEST(SceneJson, EveryKeyArrives) {
   EXPECT_EQ(sphere.material.sigma_a, glm::dvec3(0.1));
   EXPECT_EQ(sphere.material.eta, 1.5);
   EXPECT_EQ(sphere.material.g, 0.25);
+  EXPECT_FALSE(sphere.material.specular);
   EXPECT_EQ(sphere.material.scale, 20.0);
   EXPECT_EQ(sphere.material.boundary, Boundary::dielectric);
   ASSERT_EQ(file.scene.lights.size(), 1U);
@@ -162,6 +163,7 @@ TEST(SceneJson, MistakesAreNamedWithTheirPlace) {
       {"/material/g", "1.5", "material: g must lie between -1 and 1; got 1.5"},
       {"/material/eta", "0", "material: eta must lie between"},
       {"/material/roughness", "true", "material.roughness must be a number; got true"},
+      {"/material/specular", "1", "material.specular must be true or false; got 1"},
       {"/material/remaproughness", "true", "material.remaproughness must be false"},
       {"/material/remaproughness", "0", "material.remaproughness must be true or false; got 0"},
       {"/material/interface", "\"rough\"", "material.interface must be \"smooth\", \"GGX alpha <roughness>\""},
@@ -200,7 +202,8 @@ TEST(SceneJson, AMaterialTellsAllItsParameters) {
   EXPECT_EQ(json["model"], "model_2");
   EXPECT_EQ(json["boundary"], "dielectric");
   EXPECT_EQ(json["sigma_s"], (Json{0.9, 0.8, 0.7}));
-  EXPECT_EQ(json.size(), 11U);
+  EXPECT_FALSE(json["specular"].get<bool>());
+  EXPECT_EQ(json.size(), 12U);
 }
 
 }  // namespace

@@ -160,6 +160,24 @@ TEST(FloatGgx, Visibility) {
   expect_close(MESOGRAIN_EXPRESSION(ggx_visibility_separable(x[0], x[1], x[2])), inputs, 1e-5);
 }
 
+TEST(FloatDielectric, Reflection) {
+  // Directions in a plane at angles x[0] and x[1] either side of the normal, at roughnesses that float half vectors
+  // resolve.
+  const auto expression = MESOGRAIN_EXPRESSION(dielectric_reflection(
+      real3(0.0, 0.0, 1.0), real3(x[0], 0.0, x[1]), x[1], real3(x[2], 0.0, x[3]), x[3], x[4], x[5], x[6] > 0.5));
+  std::vector<ProbeInput> inputs;
+  for (const double a : even(0.0, 1.57, 20))
+    for (const double b : even(-1.57, 1.57, 41))
+      for (const double eta : {0.6, 1.1, 1.3, 4.0})
+        for (const double alpha : {0.01, 0.1, 0.5, 1.0})
+          for (const double correlated : {0.0, 1.0})
+            inputs.push_back({static_cast<float>(std::sin(a)), static_cast<float>(std::cos(a)),
+                              static_cast<float>(std::sin(b)), static_cast<float>(std::cos(b)), static_cast<float>(eta),
+                              static_cast<float>(alpha), static_cast<float>(correlated)});
+  // The half vector is a sum of rounded directions: 6e-8 of a radian, over the highlight's width.
+  expect_close(expression, inputs, 1e-4, 1e-6);
+}
+
 TEST(FloatHenyeyGreenstein, PhaseFunction) {
   std::vector<ProbeInput> inputs;
   for (const double g : std::vector<double>{0.0, 1e-6, 0.3, 0.9, 0.99, 0.999, 0.9999})

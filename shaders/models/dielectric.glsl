@@ -1,0 +1,48 @@
+// A grain's dielectric surface: what it reflects, and what it lets in and out. What enters is what was not reflected.
+// Not physical: light that meets a second facet counts as not reflected, so it enters; what has entered goes on as below a
+// smooth surface. A smooth surface is a mirror, in which a light without extent shows nothing.
+//
+// What is chosen at compile time (physics::add_dielectric):
+//   ROUGH_SURFACE        `passage`: what a rough surface lets through, by the cosine outside
+//   SPECULAR             what the surface reflects is seen
+//   MASKING_SEPARABLE    masking and shadowing of facets are independent
+#include "models/interface.glsl"
+#include "physics/prelude.glsl"
+#include "physics/dielectric.glsl"
+
+struct Surface {
+  float eta;
+  float roughness;
+};
+uniform Surface surface;
+
+#ifdef ROUGH_SURFACE
+uniform sampler2D passage;
+#endif
+
+// What light at this cosine outside is multiplied by as it passes the surface, one way or the other.
+float surface_transmittance(float mu, float mu_refracted) {
+#ifdef ROUGH_SURFACE
+  float last = float(textureSize(passage, 0).x - 1);
+  return texture(passage, vec2((sqrt(mu) * last + 0.5) / (last + 1.0), 0.5)).x;
+#else
+  return fresnel_transmittance(mu, mu_refracted, surface.eta);
+#endif
+}
+
+#ifdef SPECULAR
+// Radiance to the viewer that the surface reflects.
+vec3 specular_reflection(SurfacePoint point, LightSample light) {
+  float mu_i = dot(point.normal, light.to_light);
+  float alpha = dielectric_alpha(surface.roughness, light.angle);
+  if (mu_i <= 0.0 || alpha <= 0.0) return vec3(0.0);
+  float mu_o = max(dot(point.normal, point.to_viewer), 0.0);
+#ifdef MASKING_SEPARABLE
+  const bool correlated = false;
+#else
+  const bool correlated = true;
+#endif
+  return light.irradiance * (mu_i * dielectric_reflection(point.normal, light.to_light, mu_i, point.to_viewer, mu_o, surface.eta,
+                                                          max(alpha, GGX_SMALLEST_ALPHA), correlated));
+}
+#endif
