@@ -2,6 +2,7 @@
 import time
 
 import bpy
+import mesograin
 import numpy as np
 from mesograin import status
 from mesograin.background import job as jobs
@@ -120,6 +121,17 @@ def compare_again(window, properties):
     assert 0.0 < lambert["metrics"]["rmse"] < first and "raise the roughness" in conductor["error"]
     assert "Mine" in bpy.data.images and "Mesograin lambert.diffuse reference" in bpy.data.images
     assert_pictures(window, ("lambert.diffuse", "conductor.glossy"))
+
+
+def check_the_console_compares_too(window):
+    yield from window.open("sphere")
+    window_before = len(bpy.context.window_manager.windows)
+    found = mesograin.compare(models="lambert", size=(32, 32), samples=4, reference_samples=4, frames=1, report=False,
+                              out=window.folder / "console", cache=window.folder / "cache")
+    [case] = found.cases
+    assert case.error == "" and case.image("model").shape == (32, 32, 4) and case.relative_l1 < 0.05
+    yield from window.seconds(0.5)
+    assert len(bpy.context.window_manager.windows) == window_before and len(bpy.data.scenes) == 1
 
 
 def check_undo_goes_on_and_cancel_is_at_once(window):

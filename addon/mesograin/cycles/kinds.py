@@ -38,6 +38,7 @@ class Kind:
 
 
 # The opaque kinds see direct light alone, as the models that they answer do; inside a medium everything counts.
+# New kinds are added at the end: Blender files remember a choice of kinds by their numbers.
 KINDS = {
     kind.name: kind
     for kind in (
