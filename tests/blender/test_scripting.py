@@ -44,12 +44,6 @@ def test_it_returns_pictures_and_numbers(sphere, compare, tmp_path):
     assert found.results["command"].startswith("mesograin.compare(models=('lambert', 'conductor')")
 
 
-def test_it_writes_the_report(sphere, compare, tmp_path):
-    found = compare(report=True)
-    assert found.warnings == ()
-    assert found.report == tmp_path / "out" / "report.html" and "lambert" in found.report.read_text()
-
-
 def test_a_failing_case_has_its_sentence_and_no_pictures(sphere, compare):
     found = compare(models=("conductor", "lambert"), settings={"roughness": 0.0})
     [failed] = found.failed
