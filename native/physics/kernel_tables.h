@@ -9,10 +9,10 @@
 
 namespace mesograin::physics {
 
-/// Rows are entry cosines inside, evenly from `least_mu` to 1 (one row if the kernel does not depend on them).
 struct KernelTables {
-  /// Columns are distances s_j = shortest * (exp(j step) - 1). RGB: the kernel. Alpha: -log of the share of light that
-  /// goes farther than s_j (of the mean over the channels).
+  /// Columns are distances s_j = shortest * (exp(j step) - 1); rows are cosines of entry outside, evenly from 0 to 1.
+  /// RGB: the kernel times the transmittance at entry. Alpha: -log of the share of light that goes farther than s_j (of
+  /// the mean over the channels).
   Table profile;
   /// Columns k are shares exp(-largest_depth (k/(n-1))^2) of the light that goes farther. x: the distance; y: the mean
   /// kernel there over its integral over the plane, the density to divide by.
@@ -20,12 +20,11 @@ struct KernelTables {
   double shortest = 0.0;
   double step = 0.0;
   double largest_depth = 0.0;
-  double least_mu = 0.0;
 };
 
 /// `kernels` for red, green and blue; `resolution` is the distance that must be told from none, all in grain radii.
-/// Distances end at `largest`, beyond which nothing is worth sampling.
-KernelTables kernel_tables(const std::array<const SurfaceKernel*, 3>& kernels, double resolution, double largest,
-                           double least_mu, int rows);
+/// Distances end at `largest`, beyond which nothing is worth sampling. `by_cosine`: the kernels depend on the cosine.
+KernelTables kernel_tables(const std::array<const SurfaceKernel*, 3>& kernels, const BodySurface& surface,
+                           double resolution, double largest, bool by_cosine);
 
 }  // namespace mesograin::physics

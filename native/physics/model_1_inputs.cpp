@@ -52,16 +52,17 @@ void add_single_scattering(const Material& material, MaterialInputs& inputs) {
   inputs.uniforms["material.sign_g"] = g < 0.0 ? -1.0F : 1.0F;
 }
 
-void add_half_space(const Material& material, double eta, MaterialInputs& inputs) {
+void add_half_space(const Material& material, double eta, bool first_order, MaterialInputs& inputs) {
   // Isotropic first-order scattering is as smooth as the rest and rides in the table.
   const bool isotropic = material.g == 0.0;
   const std::vector<double> mu = table_cosines(eta);
   inputs.defines.emplace_back("MULTIPLE_TABLE");
-  inputs.tables["multiple_scattering"] =
-      pack(for_each_channel(half_space_media(material),
-                            [&](const Medium& medium) { return HalfSpace(medium, eta).interior_table(mu, isotropic); }),
-           half_space_table_size, half_space_table_size);
-  if (!isotropic) add_single_scattering(material, inputs);
+  inputs.tables["multiple_scattering"] = pack(
+      for_each_channel(
+          half_space_media(material),
+          [&](const Medium& medium) { return HalfSpace(medium, eta).interior_table(mu, first_order && isotropic); }),
+      half_space_table_size, half_space_table_size);
+  if (first_order && !isotropic) add_single_scattering(material, inputs);
 }
 
 void add_closed_form(const Material& material, double eta, MaterialInputs& inputs) {
@@ -80,7 +81,7 @@ void add_closed_form(const Material& material, double eta, MaterialInputs& input
   if (material.profile == Profile::better_dipole) add_single_scattering(material, inputs);
 }
 
-MaterialInputs interface_inputs(const Material& material) {
+MaterialInputs interface_inputs(const Material& material, bool first_order) {
   MaterialInputs inputs;
   const double eta = material.boundary == Boundary::dielectric ? material.eta : 1.0;
   if (eta != 1.0) {
@@ -90,7 +91,7 @@ MaterialInputs interface_inputs(const Material& material) {
   add_dielectric(material, inputs);
   inputs.uniforms["material.inverse_eta_squared"] = static_cast<float>(1.0 / (eta * eta));
   if (material.profile == Profile::half_space)
-    add_half_space(material, eta, inputs);
+    add_half_space(material, eta, first_order, inputs);
   else
     add_closed_form(material, eta, inputs);
   return inputs;
@@ -125,7 +126,7 @@ MaterialInputs lambert_refracted_inputs(const Material& material) {
 
 }  // namespace
 
-MaterialInputs model_1_inputs(const Material& material) {
+MaterialInputs model_1_inputs(const Material& material, bool first_order) {
   if (material.profile == Profile::photon_beam)
     throw Error(
         "profile for model_1 must be half_space, better_dipole or dipole; got 'photon_beam', which only model_3 "
@@ -136,7 +137,7 @@ MaterialInputs model_1_inputs(const Material& material) {
     case Boundary::lambert_refracted:
       return lambert_refracted_inputs(material);
     default:
-      return interface_inputs(material);
+      return interface_inputs(material, first_order);
   }
 }
 

@@ -5,7 +5,8 @@
 
 namespace mesograin::physics {
 
-/// Throws Error for a profile that has no closed form or table here.
-MaterialInputs model_1_inputs(const scene::Material& material);
+/// Throws Error for a profile that has no closed form or table here. Without `first_order`, light that scatters once is
+/// left out, unless it enters by a cosine lobe.
+MaterialInputs model_1_inputs(const scene::Material& material, bool first_order = true);
 
 }  // namespace mesograin::physics

@@ -5,11 +5,15 @@
 #include <cmath>
 #include <memory>
 
+#include "physics/body_inputs.h"
 #include "physics/body_medium.h"
 #include "physics/channels.h"
 #include "physics/dielectric_inputs.h"
+#include "physics/half_space.h"
 #include "physics/kernel_tables.h"
+#include "physics/model_1_inputs.h"
 #include "physics/physics.h"
+#include "physics/sphere_exitance.h"
 #include "physics/sphere_refraction.h"
 #include "physics/surface_kernel.h"
 
@@ -19,13 +23,11 @@ namespace {
 using scene::Material;
 using scene::Profile;
 
-// The table's shortest step, in mean free paths, and its rows over the cosine inside.
+// The tables' shortest step, in mean free paths.
 constexpr double resolution_in_mean_free_paths = 0.05;
-constexpr int cosine_rows = 8;
 
-// Over how many mean free paths light loses the evenness of its last scatterings. Compared with Monte Carlo on spheres:
-// thick ones ask for more, thin ones for less.
-constexpr double diffused_mean_free_paths = 3.0;
+// How soon samples take an edge that faces the light into account, in mean free paths.
+constexpr double turn_in_mean_free_paths = 1.5;
 
 // In grain radii. Samples are drawn on a plane at the lit surface's height, whose rim is farther off than any point of
 // the grain.
@@ -37,44 +39,42 @@ PlanarProfile planar_profile(Profile profile) {
   return PlanarProfile::better_dipole;
 }
 
+// What the half-space sends back of light that enters straight down, as far as the kernel answers for it: what beam
+// diffusion, whose shape is good and whose sum is not, is rescaled to. The similar isotropic medium stands for all.
+double half_space_total(const BodyMedium& body, const BodySurface& surface) {
+  const double sigma_t = body.reduced_sigma_t();
+  const Medium medium{body.reduced_sigma_s() / sigma_t, body.sigma_a / sigma_t, 0.0};
+  if (surface.cosine_entry) return HalfSpaceInterior(medium).spherical_albedo();
+  const double transmittance = surface.eta == 1.0 ? 1.0 : fresnel_transmittance(1.0, 1.0, surface.eta);
+  const double single = medium.albedo * half_space_single_exitance(surface.eta, {1.0}).front() / transmittance;
+  return HalfSpace(medium, surface.eta).albedo_inside(1.0) - single;
+}
+
 std::shared_ptr<const SurfaceKernel> make_kernel(const BodyMedium& medium, const BodySurface& surface,
                                                  Profile profile) {
   if (profile == Profile::half_space) return std::make_shared<SphereKernel>(medium, surface);
-  return std::make_shared<PlanarKernel>(planar_profile(profile), medium, surface);
+  const bool rescaled = profile == Profile::photon_beam && medium.reduced_sigma_s() > 0.0;
+  return std::make_shared<PlanarKernel>(planar_profile(profile), medium, surface,
+                                        rescaled ? half_space_total(medium, surface) : 0.0);
 }
 
 void add_kernel(const std::array<BodyMedium, 3>& media, const BodySurface& surface, Profile profile,
                 MaterialInputs& inputs) {
   const auto kernels =
       for_each_channel(media, [&](const BodyMedium& medium) { return make_kernel(medium, surface, profile); });
+  const std::array<const SurfaceKernel*, 3> channels{kernels[0].get(), kernels[1].get(), kernels[2].get()};
   double thickest = 1e-3;
   for (const BodyMedium& medium : media) thickest = std::max(thickest, medium.reduced_sigma_t());
-  inputs.uniforms["sampling.diffused"] = static_cast<float>(diffused_mean_free_paths / thickest);
+  const double resolution = resolution_in_mean_free_paths / thickest;
   const bool by_cosine = profile == Profile::half_space && !surface.cosine_entry;
-  // Light that enters nearer to grazing is taken as this: it is little, and its kernel vanishes with its chord.
-  const double least_mu = surface.eta > 1.0 ? std::max(refracted_cosine(0.0, surface.eta), 0.1) : 0.1;
-  const KernelTables tables =
-      kernel_tables({kernels[0].get(), kernels[1].get(), kernels[2].get()}, resolution_in_mean_free_paths / thickest,
-                    largest_distance, by_cosine ? least_mu : 0.0, by_cosine ? cosine_rows : 1);
+  const KernelTables tables = kernel_tables(channels, surface, resolution, largest_distance, by_cosine);
   inputs.tables["kernel"] = tables.profile;
   inputs.tables["kernel_inverse"] = tables.inverse;
-  inputs.uniforms["sampling.shortest"] = static_cast<float>(tables.shortest);
-  inputs.uniforms["sampling.step"] = static_cast<float>(tables.step);
+  inputs.uniforms["sampling.inverse_shortest"] = static_cast<float>(1.0 / tables.shortest);
+  inputs.uniforms["sampling.columns_per_octave"] = static_cast<float>(std::log(2.0) / tables.step);
+  inputs.uniforms["sampling.turn"] = static_cast<float>(turn_in_mean_free_paths / thickest);
   inputs.uniforms["sampling.largest_depth"] = static_cast<float>(tables.largest_depth);
-  inputs.uniforms["sampling.least_mu"] = static_cast<float>(tables.least_mu);
-  if (!by_cosine) return;
-  // The mean way of a beam before it scatters or leaves; one for all channels, for it moves the point that is looked
-  // up.
-  inputs.defines.emplace_back("BEAM_SHIFT");
-  double mean_way = 0.0;
-  for (const BodyMedium& medium : media) {
-    // Attenuated exponentially, and at most the mean chord.
-    constexpr double mean_chord = 4.0 / 3.0;
-    const double sigma_t = std::max(medium.reduced_sigma_t(), 1e-3);
-    const double passed = std::exp(-sigma_t * mean_chord);
-    mean_way += (1.0 / sigma_t - mean_chord * passed / (1.0 - passed)) / 3.0;
-  }
-  inputs.uniforms["sampling.beam"] = static_cast<float>(mean_way);
+  if (profile != Profile::half_space) add_planar_body(channels, surface, resolution, inputs);
 }
 
 void add_single_scattering(const std::array<BodyMedium, 3>& media, double eta, MaterialInputs& inputs) {
@@ -82,7 +82,7 @@ void add_single_scattering(const std::array<BodyMedium, 3>& media, double eta, M
   Table table{SphereRefraction::size, SphereRefraction::size, {}};
   for (const RefractedLight& light : refraction.nodes())
     table.texels.emplace_back(glm::dvec4(light.irradiance, light.path_ratio, light.sideways, 1.0));
-  inputs.defines.emplace_back("SINGLE_SCATTERING");
+  inputs.defines.emplace_back("SINGLE_MARCHED");
   inputs.tables["refracted_light"] = std::move(table);
   glm::dvec3 sigma_s;
   glm::dvec3 sigma_t;
@@ -91,29 +91,29 @@ void add_single_scattering(const std::array<BodyMedium, 3>& media, double eta, M
     sigma_t[channel] = media[channel].sigma_t();
   }
   const double g = media[0].g;
-  inputs.uniforms["body.sigma_s"] = glm::vec3(sigma_s);
-  inputs.uniforms["body.sigma_t"] = glm::vec3(sigma_t);
-  inputs.uniforms["body.absolute_g"] = static_cast<float>(std::abs(g));
-  inputs.uniforms["body.one_minus_absolute_g"] = static_cast<float>(1.0 - std::abs(g));
-  inputs.uniforms["body.sign_g"] = g < 0.0 ? -1.0F : 1.0F;
+  inputs.uniforms["single.sigma_s"] = glm::vec3(sigma_s);
+  inputs.uniforms["single.sigma_t"] = glm::vec3(sigma_t);
+  inputs.uniforms["single.absolute_g"] = static_cast<float>(std::abs(g));
+  inputs.uniforms["single.one_minus_absolute_g"] = static_cast<float>(1.0 - std::abs(g));
+  inputs.uniforms["single.sign_g"] = g < 0.0 ? -1.0F : 1.0F;
 }
 
 }  // namespace
 
 MaterialInputs model_3_inputs(const Material& material, double grain_radius) {
-  MaterialInputs inputs;
+  const bool half_space = material.profile == Profile::half_space;
+  MaterialInputs inputs = half_space ? model_1_inputs(material, false) : MaterialInputs{};
   inputs.light_maps = true;
   const BodySurface surface = body_surface(material);
   const std::array<BodyMedium, 3> media{body_medium(material, 0, grain_radius), body_medium(material, 1, grain_radius),
                                         body_medium(material, 2, grain_radius)};
-  if (surface.eta != 1.0) inputs.defines.emplace_back("REFRACTION");
-  add_dielectric(material, inputs);
-  inputs.uniforms["body.radius"] = static_cast<float>(grain_radius);
-  const ExitLobe lobe = exit_lobe(surface);
-  inputs.uniforms["body.even_factor"] = static_cast<float>(1.0 / (PI * surface.diffusion.exit_transmittance));
-  inputs.uniforms["body.exit_slope"] = static_cast<float>(lobe.slope);
-  inputs.uniforms["body.exit_factor"] = static_cast<float>(lobe.factor);
-  inputs.uniforms["body.eta"] = static_cast<float>(surface.eta);
+  add_body_uniforms(material, grain_radius, inputs);
+  if (half_space) {
+    add_body_difference("body_table", material, grain_radius, {.single = false, .multiple = true}, inputs);
+  } else {
+    if (surface.eta != 1.0) inputs.defines.emplace_back("REFRACTION");
+    add_dielectric(material, inputs);
+  }
   add_kernel(media, surface, material.profile, inputs);
   // Jensen's dipole stands for all orders, and so does a kernel that light enters by a cosine lobe.
   if (!surface.cosine_entry && material.profile != Profile::dipole) add_single_scattering(media, surface.eta, inputs);

@@ -143,9 +143,9 @@ std::vector<float> LightMaps::read(int light) const {
 }
 
 int light_map_resolution(double pixels_across, double mean_free_paths_across) {
-  constexpr double least = 64.0;
+  constexpr double least = 256.0;
   constexpr double most = 1024.0;
-  const double wanted = std::clamp(std::max(0.5 * pixels_across, mean_free_paths_across), least, most);
+  const double wanted = std::clamp(std::max(pixels_across, 4.0 * mean_free_paths_across), least, most);
   return static_cast<int>(std::bit_ceil(static_cast<unsigned>(std::ceil(wanted))));
 }
 

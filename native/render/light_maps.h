@@ -51,8 +51,8 @@ class LightMaps {
   std::optional<gl::Buffer> frames_;
 };
 
-/// The resolution that a grain deserves: a texel for every second pixel across it and for every reduced mean free path
-/// across it, whichever is finer, as a power of two between 64 and 1024.
+/// The resolution that a grain deserves: a texel for every pixel across it and four for every reduced mean free path
+/// across it, whichever is finer, as a power of two between 256 and 1024.
 int light_map_resolution(double pixels_across, double mean_free_paths_across);
 
 }  // namespace mesograin::render

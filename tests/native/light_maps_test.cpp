@@ -104,9 +104,9 @@ TEST(LightMaps, CoveredAreaIsTheProjectedArea) {
 }
 
 TEST(LightMaps, ResolutionFollowsScreenAndOpticalThickness) {
-  EXPECT_EQ(light_map_resolution(1.0, 1.0), 64);
-  EXPECT_EQ(light_map_resolution(400.0, 1.0), 256);
-  EXPECT_EQ(light_map_resolution(1.0, 500.0), 512);
+  EXPECT_EQ(light_map_resolution(1.0, 1.0), 256);
+  EXPECT_EQ(light_map_resolution(400.0, 1.0), 512);
+  EXPECT_EQ(light_map_resolution(1.0, 100.0), 512);
   EXPECT_EQ(light_map_resolution(1e9, 1e9), 1024);
 }
 

@@ -99,7 +99,7 @@ TEST(SphereKernel, SendsNothingWithoutScattering) {
 TEST(KernelTables, SampleWhatTheyHold) {
   for (double radius : {0.5, 5.0, 100.0}) {
     const PlanarKernel kernel(PlanarProfile::better_dipole, {0.1 * radius, 0.9 * radius, 0.0}, surface_of(1.3));
-    const KernelTables tables = kernel_tables({&kernel, &kernel, &kernel}, 0.05 / radius, 6.0, 0.0, 1);
+    const KernelTables tables = kernel_tables({&kernel, &kernel, &kernel}, surface_of(1.3), 0.05 / radius, 6.0, false);
     double sum = 0.0;
     constexpr int samples = 20000;
     for (int i = 0; i < samples; ++i) {

@@ -1,0 +1,168 @@
+// The same theory solves sphere and half-space, so its own error cancels where they meet and a thick grain is model
+// 1's.
+#include "physics/body_inputs.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "physics/channels.h"
+#include "physics/dielectric_surface.h"
+#include "physics/physics.h"
+#include "physics/quadrature.h"
+#include "physics/sphere_exitance.h"
+
+namespace mesograin::physics {
+namespace {
+
+constexpr int cosine_count = 33;
+
+// Radii from an eighth of the grain's to its double, two to an octave; the shader's look_up_body says the same.
+constexpr int radius_count = 9;
+
+double table_radius(int row) { return std::exp2(0.5 * row - 3.0); }
+
+// Light that fades faster than this along a surface is no longer diffused.
+constexpr double largest_flow = 0.7;
+
+// Below 0, what a body keeps of the half-space's light, less 1; above 0, the exitance it has beyond the half-space's.
+double difference(double body, double half_space) {
+  return body < half_space ? body / half_space - 1.0 : body - half_space;
+}
+
+// How fast exitance fades along the surface, away from the light, per mean free path.
+double fading(const std::vector<double>& cosines, const std::vector<double>& exitance, std::size_t i,
+              double optical_radius) {
+  const std::size_t before = i > 0 ? i - 1 : 0;
+  const std::size_t after = std::min(i + 1, cosines.size() - 1);
+  if (exitance[before] <= 0.0 || exitance[after] <= 0.0 || optical_radius <= 0.0) return 0.0;
+  const double slope = std::log(exitance[after] / exitance[before]) / (cosines[after] - cosines[before]);
+  return std::clamp(slope * sine_of_cosine(cosines[i]) / optical_radius, 0.0, largest_flow);
+}
+
+struct Answer {
+  std::vector<double> differences;
+  std::vector<double> exitance;
+  std::vector<double> fading;
+};
+
+Answer answer(const BodyMedium& medium, const BodySurface& surface, const SphereSingleScattering& single,
+              const Orders& orders) {
+  const std::vector<double> cosines = body_cosines();
+  const double albedo = medium.sigma_t() > 0.0 ? medium.sigma_s / medium.sigma_t() : 0.0;
+  std::vector<double> half_space(cosine_count, 0.0);
+  const auto add = [](std::vector<double>& sum, const std::vector<double>& term, double factor) {
+    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += factor * term[i];
+  };
+  if (orders.multiple) add(half_space, half_space_multiple_exitance(medium, surface, cosines), 1.0);
+  if (orders.single) add(half_space, half_space_single_exitance(surface.eta, cosines), albedo);
+
+  Answer result;
+  for (int row = 0; row < radius_count; ++row) {
+    const double radius = table_radius(row);
+    const BodyMedium scaled{medium.sigma_a * radius, medium.sigma_s * radius, medium.g};
+    std::vector<double> body(cosine_count, 0.0);
+    if (orders.multiple) add(body, sphere_multiple_exitance(scaled, surface, cosines), 1.0);
+    if (orders.single && albedo > 0.0) add(body, single.exitance(scaled.sigma_t()), albedo);
+    for (std::size_t i = 0; i < body.size(); ++i) {
+      result.differences.push_back(difference(body[i], half_space[i]));
+      result.exitance.push_back(body[i]);
+      result.fading.push_back(fading(cosines, body, i, scaled.reduced_sigma_t()));
+    }
+  }
+  return result;
+}
+
+// What enters the unit sphere, per irradiance on a plane that faces the light, on a ring about a point: integral over
+// the ring's azimuth. `cosine` at the point, `ring_cosine` between the point's normal and the ring's.
+double entering_ring(const BodySurface& surface, double cosine, double ring_cosine) {
+  const double axial = cosine * ring_cosine;
+  const double lateral = sine_of_cosine(cosine) * sine_of_cosine(ring_cosine);
+  if (axial + lateral <= 0.0) return 0.0;
+  const double lit = axial >= lateral ? PI : std::acos(std::clamp(-axial / lateral, -1.0, 1.0));
+  double sum = 0.0;
+  for (const QuadratureNode& node : gauss_legendre(8)) {
+    const double mu = std::clamp(axial + lateral * std::cos(lit * node.x), 0.0, 1.0);
+    const double transmittance =
+        surface.eta == 1.0 ? 1.0 : fresnel_transmittance(mu, refracted_cosine(mu, surface.eta), surface.eta);
+    sum += 2.0 * lit * node.weight * mu * transmittance;
+  }
+  return sum;
+}
+
+}  // namespace
+
+std::vector<double> body_cosines() {
+  std::vector<double> cosines;
+  for (int i = 0; i < cosine_count; ++i) {
+    const double u = 2.0 * i / (cosine_count - 1.0) - 1.0;
+    cosines.push_back(u * std::abs(u));
+  }
+  return cosines;
+}
+
+void add_body_difference(const char* name, const scene::Material& material, double grain_radius, const Orders& orders,
+                         MaterialInputs& inputs) {
+  const BodySurface surface = body_surface(material);
+  const SphereSingleScattering single(surface.eta, body_cosines());
+  const std::array<BodyMedium, 3> media{body_medium(material, 0, grain_radius), body_medium(material, 1, grain_radius),
+                                        body_medium(material, 2, grain_radius)};
+  const auto answers =
+      for_each_channel(media, [&](const BodyMedium& medium) { return answer(medium, surface, single, orders); });
+  Table table =
+      pack({answers[0].differences, answers[1].differences, answers[2].differences}, cosine_count, radius_count);
+  // One flow for three channels: that of the light there is.
+  for (std::size_t i = 0; i < table.texels.size(); ++i) {
+    double flow = 0.0;
+    double all = 1e-300;
+    for (const Answer& channel : answers) {
+      flow += channel.exitance[i] * channel.fading[i];
+      all += channel.exitance[i];
+    }
+    table.texels[i].a = static_cast<float>(flow / all);
+  }
+  inputs.tables[name] = std::move(table);
+}
+
+void add_planar_body(const std::array<const SurfaceKernel*, 3>& kernels, const BodySurface& surface, double resolution,
+                     MaterialInputs& inputs) {
+  constexpr int distance_count = 200;
+  const std::vector<double> cosines = body_cosines();
+  Table table{cosine_count, radius_count, {}};
+  for (int row = 0; row < radius_count; ++row) {
+    const double radius = table_radius(row);
+    std::vector<double> distances;
+    distances.reserve(static_cast<std::size_t>(distance_count));
+    for (int j = 0; j < distance_count; ++j)
+      distances.push_back(resolution * std::expm1(std::log1p(2.0 * radius / resolution) * j / (distance_count - 1.0)));
+    std::array<std::vector<double>, 3> values;
+    for (int channel = 0; channel < 3; ++channel) values[channel] = kernels[channel]->evaluate(distances, 1.0);
+    for (double cosine : cosines) {
+      glm::dvec3 exitance(0.0);
+      glm::dvec3 before(0.0);
+      for (std::size_t j = 0; j < distances.size(); ++j) {
+        const double s = distances[j] / radius;
+        const double ring = distances[j] * entering_ring(surface, cosine, std::max(-1.0, 1.0 - 0.5 * s * s));
+        const glm::dvec3 here = ring * glm::dvec3(values[0][j], values[1][j], values[2][j]);
+        if (j > 0) exitance += 0.5 * (distances[j] - distances[j - 1]) * (before + here);
+        before = here;
+      }
+      table.texels.emplace_back(glm::dvec4(exitance, 0.0));
+    }
+  }
+  inputs.defines.emplace_back("PLANAR_PROFILE");
+  inputs.tables["body_table"] = std::move(table);
+}
+
+void add_body_uniforms(const scene::Material& material, double grain_radius, MaterialInputs& inputs) {
+  const BodySurface surface = body_surface(material);
+  // The sphere was solved for a smooth surface; all that a rough one changes about what it takes in is how much.
+  const double taken_in = has_rough_surface(material) ? rough_passage(material).entering_ratio : 1.0;
+  inputs.uniforms["body.radius"] = static_cast<float>(grain_radius);
+  inputs.uniforms["body.eta"] = static_cast<float>(surface.eta);
+  const ExitLobe lobe = exit_lobe(surface);
+  inputs.uniforms["body.exit_slope"] = static_cast<float>(lobe.slope);
+  inputs.uniforms["body.exit_factor"] = static_cast<float>(lobe.factor * taken_in);
+  inputs.uniforms["body.even_factor"] = static_cast<float>(taken_in / (PI * surface.diffusion.exit_transmittance));
+}
+
+}  // namespace mesograin::physics
