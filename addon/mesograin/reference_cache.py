@@ -41,12 +41,17 @@ def draw(layout):
         return
     if time.monotonic() - _seen["at"] > LOOK_SECONDS:
         _seen.update(at=time.monotonic(), bytes=chosen.size())
-    row.label(text=f"References: {_megabytes(_seen['bytes'])} of {_megabytes(chosen.limit)}", icon="DISK_DRIVE")
+    row.label(text=f"References: {_readable(_seen['bytes'])} of {_readable(chosen.limit)}", icon="DISK_DRIVE")
     row.operator(MESOGRAIN_OT_clear_references.bl_idname, text="Clear", icon="TRASH")
 
 
-def _megabytes(size):
-    return f"{size / 1024**2:.1f} MiB" if size < 1024**3 else f"{size / 1024**3:.1f} GiB"
+def _readable(size):
+    """Bytes as '12.3 MiB'."""
+    for unit in ("KiB", "MiB"):
+        size /= 1024.0
+        if size < 1024.0:
+            return f"{size:.1f} {unit}"
+    return f"{size / 1024.0:.1f} GiB"
 
 
 class MESOGRAIN_OT_clear_references(bpy.types.Operator):
@@ -64,7 +69,7 @@ class MESOGRAIN_OT_clear_references(bpy.types.Operator):
             self.report({"ERROR"}, f"The reference cache cannot be emptied: {error}")
             return {"CANCELLED"}
         look_again()
-        self.report({"INFO"}, f"{count} references removed, {_megabytes(size)}.")
+        self.report({"INFO"}, f"{count} references removed, {_readable(size)}.")
         return {"FINISHED"}
 
 

@@ -77,12 +77,12 @@ class Job:
         return True
 
     def _kill(self):
+        # The second signal is for what the process started itself, also where the first one was enough for it.
         for number, patience in ((signal.SIGTERM, PATIENCE_SECONDS), (signal.SIGKILL, None)):
             with contextlib.suppress(ProcessLookupError):
                 os.killpg(self._process.pid, number)
             with contextlib.suppress(subprocess.TimeoutExpired):
                 self._process.wait(patience)
-        # Whatever it had started goes with it, also if it ended in time itself.
 
     def _watch(self):
         for line in self._process.stdout:
