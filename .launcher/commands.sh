@@ -72,6 +72,9 @@ run_sweep() {
   ensure_blender
   ensure_lists report
   ensure_product product
+  # shellcheck disable=SC2046 # the kinds of reference are separate words
+  ensure_referee $(grep -hos 'photon' "$@" | head -n 1)
+  ensure_referee "$@"
   exec "$python" "$source_folder/addon/mesograin/sweep/command.py" "$@" --blender "$blender"
 }
 

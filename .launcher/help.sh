@@ -40,17 +40,20 @@ Renders every model and the Cycles reference that means the same, and writes pic
 
   SCENE.blend               default: blend_files/sphere.blend
   --models MODEL ...        models to compare: lambert, conductor, model_1, model_2, model_3 (default: all)
-  --references KIND ...     kinds of reference: diffuse, glossy, volume_index_matched, subsurface; each model is compared
-                            with those that answer it (default: diffuse for lambert, glossy for conductor,
-                            volume_index_matched for the others)
+  --references KIND ...     kinds of reference: diffuse, glossy, volume_index_matched, subsurface, subsurface_burley,
+                            volume_dielectric, photon; each model is compared with those that answer it (default: diffuse
+                            for lambert, glossy for conductor, volume_index_matched for the others)
   --out DIR                 folder for results (default: comparison)
   --size WxH                picture size in pixels (default: the scene's)
   --samples N               samples per pixel on our side (default: 64)
-  --reference-samples N     Cycles samples per pixel for each seed (default: 64 for surfaces, 128 for volumes)
+  --reference-samples N     samples per pixel for each seed of the reference (default: 64 for surfaces, 128 for
+                            volumes, 1024 for volume_dielectric, 256 for photon)
   --seeds K                 independent renders of each reference, whose spread tells its noise; more are added to those
                             in the cache (default: 2)
   --until FRACTION          adds seeds until the reference's noise is at most this fraction of the measured error
   --most-seeds K            how many seeds --until may lead to (default: 64)
+  --mask NAME ...           leaves pixels out of the numbers, one mask after another: silhouette:PIXELS,
+                            crop:LEFT,TOP,RIGHT,BOTTOM, mean_deviation[:DEVIATIONS], otsu[:MEDIAN_SIZE]
   --set NAME=VALUE          a material parameter for every material, on both sides: reflectance, sigma_a, sigma_s, g, eta,
                             roughness, scale, profile; RGB as one number or three with commas; may be repeated
   --frames N                frames timed for frame_ms (default: 9)

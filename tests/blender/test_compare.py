@@ -194,6 +194,77 @@ def test_doubled_sigma_is_flagged_and_the_same_grain_is_not(tmp_path):
     assert scores[mask].mean() < -0.5 and not scores[~mask].any()
 
 
+def test_masks_say_what_they_took_away(tmp_path, native, noisy_cycles):
+    make_sphere(SUNS, segments=32, rings=16)
+    masks = (("silhouette", (4,)), ("crop", (0, 0, 20, 32)), ("mean_deviation", ()), ("otsu", ()))
+    case = compare(tmp_path, models=("lambert",), masks=masks)["cases"][0]
+    steps = case["mask_steps"]
+    assert [step["name"] for step in steps] == ["silhouette:4", "crop:0,0,20,32", "mean_deviation", "otsu"]
+    assert all(before["pixels"] - step["removed"] == step["pixels"] for before, step in zip(steps, steps[1:]))
+    assert steps[-1]["pixels"] == case["mask"]["pixels"] < case["unfiltered"]["mask"]["pixels"] == steps[0]["pixels"]
+    assert case["metrics"]["rse_mean"] < case["unfiltered"]["metrics"]["rse_mean"]
+    shown = native.read_exr(tmp_path / "out" / case["files"]["mask"])[0]
+    assert shown.sum() == case["mask"]["pixels"] and not shown[:, 20:].any()
+
+
+def test_a_crop_outside_the_picture_fails_its_case(tmp_path, noisy_cycles):
+    make_sphere(SUNS, segments=16, rings=8)
+    case = compare(tmp_path, models=("lambert",), masks=(("crop", (0, 0, 99, 9)),))["cases"][0]
+    assert case["status"] == "failed" and "40 x 32" in case["error"]
+
+
+def test_glass_with_a_volume_is_the_dielectric_grain(tmp_path):
+    """Noise leaves totals: 20 degrees of sun on both sides, the sun's mirror image masked."""
+    make_sphere(SUNS[:1], sigma_s=(0.9,) * 3, sigma_a=(0.1,) * 3, eta=1.3)
+    done = {"size": (24, 24), "samples": 32, "reference_samples": 384}
+    case = compare(tmp_path, models=("model_3",), references=("volume_dielectric",), **done)["cases"][0]
+    assert case["status"] == "done" and "20 degrees wide" in case["notes"][0]
+    assert case["metrics"]["bias"] == pytest.approx(1.0, abs=0.07)
+    assert [step["name"] for step in case["mask_steps"]] == ["silhouette:2", "mirror"]
+    assert 3 < case["mask_steps"][1]["removed"] < 60
+    shape = case["profile"]
+    assert shape["direction_to_light"] == pytest.approx([3**-0.5] * 3, abs=1e-5)
+    assert sum(shape["pixels"]) == case["mask"]["used"] and case["judged_by"] == "relative_l1_blocks"
+    bright, dark = shape["cosine"].index(0.65), 0
+    assert shape["ours"][bright][0] == pytest.approx(shape["reference"][bright][0], rel=0.25)
+    assert shape["reference"][bright][0] > 3.0 * shape["reference"][dark][0] > 0.0
+
+
+def test_burley_agrees_with_a_thick_grain(tmp_path):
+    make_sphere(SUNS, sigma_s=(0.9,) * 3, sigma_a=(0.1,) * 3, scale=100.0)
+    done = {"size": (40, 40), "samples": 16, "reference_samples": 32}
+    case = compare(tmp_path, models=("model_1",), references=("subsurface_burley",), **done)["cases"][0]
+    assert case["boundary"] == "lambert_lambert" and case["metrics"]["bias"] == pytest.approx(1.0, abs=0.015)
+
+
+REFEREE = pathlib.Path(os.environ.get("MESOGRAIN_BUILD") or COMMAND.parents[3] / "build/release")
+
+
+@pytest.mark.skipif(
+    not (REFEREE / "tests/referee/mesograin-referee").exists(), reason="mesograin-referee is built with the native tests"
+)
+def test_photons_agree_with_model_3(tmp_path, monkeypatch):
+    monkeypatch.setenv("MESOGRAIN_REFEREE", str(REFEREE / "tests/referee/mesograin-referee"))
+    make_sphere(SUNS, sigma_s=(0.9,) * 3, sigma_a=(0.1,) * 3, eta=1.3)
+    bpy.data.objects["Sphere"].location = (0.1, -0.2, 0.3)
+    done = {"size": (40, 32), "samples": 32, "reference_samples": 64, "models": ("model_3",)}
+    for cached in (False, True):
+        case = compare(tmp_path, references=("photon",), **done)["cases"][0]
+        assert case["status"] == "done" and case["reference_cached"] is cached
+    assert case["metrics"]["bias"] == pytest.approx(1.0, abs=0.03)
+    assert case["metrics"]["relative_l1_blocks"] < 0.1
+
+
+def test_photons_need_their_program_and_a_sphere(tmp_path, monkeypatch):
+    make_sphere(SUNS)
+    monkeypatch.setenv("MESOGRAIN_REFEREE", str(tmp_path / "nothing"))
+    failed = compare(tmp_path, models=("model_1",), references=("photon",))["cases"][0]["error"]
+    assert "mesograin-referee, which is not at" in failed
+    bpy.data.objects["Sphere"].scale = (1.0, 1.0, 1.1)
+    failed = compare(tmp_path, models=("model_1",), references=("photon",))["cases"][0]["error"]
+    assert "needs a single sphere" in failed
+
+
 def test_cases_pair_models_with_references_that_answer_them():
     names = [case.name for case in run.cases(("lambert", "model_1"), ("subsurface", "diffuse", "volume_index_matched"))]
     assert names == ["lambert.diffuse", "model_1.subsurface", "model_1.volume_index_matched"]

@@ -31,6 +31,16 @@ def test_settings():
     )
 
 
+def test_a_sweep_knows_what_a_comparison_knows():
+    plan = room("sweep.plan")
+    assert (plan.MODELS, plan.REFERENCES) == (arguments.MODELS, arguments.REFERENCES)
+
+
+def test_masks():
+    chosen = arguments.parse(["--mask", "silhouette:4", "crop:0,1,20,30", "mean_deviation", "otsu:3"])
+    assert chosen.masks == [("silhouette", (4,)), ("crop", (0, 1, 20, 30)), ("mean_deviation", ()), ("otsu", (3,))]
+
+
 @pytest.mark.parametrize(
     "words, needed",
     [
@@ -40,6 +50,10 @@ def test_settings():
         (["--samples", "0"], "from 1 to"),
         (["--reference-samples", "-3"], "from 1 to"),
         (["--seeds", "0"], "from 1 to"),
+        (["--mask", "circle"], "a mask is one of"),
+        (["--mask", "crop:1,2,3"], "four whole numbers"),
+        (["--mask", "silhouette"], "one number"),
+        (["--mask", "otsu:-1"], "not negative"),
         (["--until", "0"], "above 0 and up to 1"),
         (["--until", "little"], "above 0 and up to 1"),
         (["--set", "sigma=1"], "NAME=VALUE"),

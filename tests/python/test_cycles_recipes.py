@@ -8,8 +8,8 @@ kinds = room("cycles.kinds")
 limits = room("cycles.limits")
 recipes = room("cycles.recipes")
 
-BLENDER_3 = kinds.NodeFeatures("ShaderNodeBsdfGlossy", "separable", "RANDOM_WALK_FIXED_RADIUS", False, False)
-BLENDER_4 = kinds.NodeFeatures("ShaderNodeBsdfAnisotropic", "correlated", "RANDOM_WALK", True, True)
+BLENDER_3 = kinds.NodeFeatures("ShaderNodeBsdfGlossy", "separable", "RANDOM_WALK_FIXED_RADIUS", False, "SHARP", False)
+BLENDER_4 = kinds.NodeFeatures("ShaderNodeBsdfAnisotropic", "correlated", "RANDOM_WALK", True, "GGX", True)
 
 
 def grain(**parameters):
@@ -73,6 +73,24 @@ def test_subsurface_sockets():
     assert (sockets["Scale"], sockets["Anisotropy"], sockets["IOR"]) == (1.0, 0.0, 1.3)
 
 
+def test_glass_is_sharp_and_holds_the_medium():
+    values = grain(sigma_a=(0.1, 0.2, 0.3), sigma_s=(0.9, 0.5, 0.1), eta=1.45, roughness=0.2)
+    glass = recipes.recipe("volume_dielectric", values, BLENDER_4)
+    assert glass["nodes"]["Glass"]["inputs"] == {"Color": (1.0, 1.0, 1.0), "Roughness": 0.0, "IOR": 1.45}
+    bare = recipes.recipe("volume_index_matched", values, BLENDER_4)
+    assert all(glass["nodes"][name] == bare["nodes"][name] for name in ("Scatter", "Absorption"))
+    assert ["Glass", "BSDF", "Output", "Surface"] in glass["links"]
+
+
+def test_burley_takes_the_reduced_medium():
+    # sigma_s (1 - g) = 0.9: the same as without g.
+    skewed = inputs("subsurface_burley", grain(sigma_a=(0.1,) * 3, sigma_s=(1.8,) * 3, g=0.5), "Subsurface")
+    plain = inputs("subsurface_burley", grain(sigma_a=(0.1,) * 3, sigma_s=(0.9,) * 3), "Subsurface")
+    assert skewed["Color"] == pytest.approx(plain["Color"])
+    assert plain["Color"] == pytest.approx((0.47334,) * 3, abs=1e-5)
+    assert skewed["Radius"] == pytest.approx((12.566371,) * 3) and skewed["Anisotropy"] == 0.0
+
+
 def test_subsurface_takes_alpha_itself():
     node = recipes.recipe("subsurface", grain(roughness=0.25), BLENDER_4)["nodes"]["Subsurface"]
     assert node["optional"]["Roughness"] == 0.25
@@ -82,6 +100,9 @@ def test_our_side_solves_what_cycles_solves():
     assert kinds.our_side("subsurface", BLENDER_3) == {"boundary": "lambert_lambert"}
     assert kinds.our_side("subsurface", BLENDER_4) == {"boundary": "lambert_refracted"}
     assert kinds.our_side("volume_index_matched", BLENDER_4) == {"boundary": "index_matched"}
+    assert kinds.our_side("subsurface_burley", BLENDER_4) == {"boundary": "lambert_lambert"}
+    for kind in ("volume_dielectric", "photon"):
+        assert kinds.our_side(kind, BLENDER_3) == {"boundary": "dielectric", "roughness": 0.0}
     assert kinds.our_side("glossy", BLENDER_3) == {"masking": "separable"}
     assert kinds.our_side("glossy", BLENDER_4) == {"masking": "correlated"}
     assert [kinds.default_kind(model) for model in ("lambert", "conductor", "model_3")] == [
@@ -101,6 +122,11 @@ def test_our_side_solves_what_cycles_solves():
         ("subsurface", {"sigma_a": (1e-3,) * 3, "sigma_s": (1.0,) * 3}, "256 bounces", False),
         ("volume_index_matched", {"sigma_a": (0.0,) * 3, "sigma_s": (0.0,) * 3}, "invisible", True),
         ("volume_index_matched", {"g": 1.0}, "0.999", False),
+        ("volume_index_matched", {"sigma_a": (1e-5,) * 3, "sigma_s": (1.0,) * 3}, "1024 bounces", False),
+        ("volume_dielectric", {"roughness": 0.3}, "left out on both sides", False),
+        ("photon", {"g": 1.0}, "g inside (-1, 1)", True),
+        ("subsurface_burley", {"g": -0.4}, "similarity", False),
+        ("subsurface_burley", {"sigma_a": (0.0, 1.0, 1.0), "sigma_s": (0.0, 1.0, 1.0)}, "positive", True),
         ("glossy", {"roughness": 0.0}, "mirror", True),
     ],
 )
@@ -112,4 +138,5 @@ def test_limits_are_said(kind, parameters, words, fatal):
 
 def test_ordinary_grains_have_no_limits():
     for kind in kinds.KINDS:
-        assert limits.limits(grain(roughness=0.3), kind) == []
+        roughness = 0.0 if kind in ("volume_dielectric", "photon") else 0.3
+        assert limits.limits(grain(roughness=roughness), kind) == []

@@ -31,8 +31,8 @@ def test_every_command_has_help(command, tmp_path):
 
 
 def test_help_of_compare_names_the_options_there_are():
-    command = [sys.executable, str(SOURCE / "addon/mesograin/comparison/arguments.py")]
-    from_argparse = subprocess.run(command, check=True, capture_output=True, text=True).stdout
+    command = [sys.executable, "-m", "mesograin.comparison.arguments"]
+    from_argparse = subprocess.run(command, check=True, capture_output=True, text=True, cwd=SOURCE / "addon").stdout
     assert options_in(launcher("compare", "--help").stdout) == options_in(from_argparse) | {"--blender"}
 
 

@@ -5,8 +5,11 @@ import argparse
 import re
 from pathlib import Path
 
+from ..cycles import kinds
+from . import mask_names
+
 MODELS = ("lambert", "conductor", "model_1", "model_2", "model_3")
-REFERENCES = ("diffuse", "glossy", "volume_index_matched", "subsurface")
+REFERENCES = tuple(kinds.KINDS)
 DEFAULT_MODELS = ("lambert", "conductor", "model_1", "model_2", "model_3")
 SETTABLE = {
     "reflectance": 3,
@@ -82,7 +85,8 @@ def build():
         type=positive,
         default=None,
         metavar="N",
-        help="Cycles samples a pixel for each seed (default: 64 for surfaces, 128 for volumes)",
+        help="samples a pixel for each seed of the reference (default: 64 for surfaces, 128 for volumes, 1024 for"
+        " volume_dielectric, 256 for photon)",
     )
     parser.add_argument(
         "--seeds",
@@ -105,6 +109,19 @@ def build():
         default=MOST_SEEDS,
         metavar="K",
         help=f"how many seeds --until may lead to (default: {MOST_SEEDS})",
+    )
+    parser.add_argument(
+        "--mask",
+        nargs="+",
+        type=_mask,
+        default=[],
+        dest="masks",
+        metavar="NAME",
+        help=(
+            "leave pixels out of the numbers, one mask after another: silhouette:PIXELS (shrunk by so many, default 2),"
+            " crop:LEFT,TOP,RIGHT,BOTTOM, mean_deviation[:DEVIATIONS], otsu[:MEDIAN_SIZE]; what each took away and the"
+            " unfiltered numbers stand beside"
+        ),
     )
     parser.add_argument(
         "--set",
@@ -155,6 +172,13 @@ def positive(text):
     if not text.isdigit() or not 1 <= int(text) <= 1 << 20:
         raise argparse.ArgumentTypeError(f"a whole number from 1 to {1 << 20} is needed, '{text}' came")
     return int(text)
+
+
+def _mask(text):
+    try:
+        return mask_names.parse(text)
+    except mask_names.MaskError as error:
+        raise argparse.ArgumentTypeError(str(error)) from error
 
 
 def _fraction(text):

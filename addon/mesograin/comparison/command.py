@@ -76,6 +76,7 @@ def _run(chosen, words):
         seeds=chosen.seeds,
         until=chosen.until,
         most_seeds=chosen.most_seeds,
+        masks=tuple(chosen.masks),
         settings=chosen.settings,
         frames=chosen.frames,
         cache=cache,

@@ -52,8 +52,13 @@ OTHERS = {
     "significance.share": "significant pixels / pixels tested",
     "until": "seeds were added until noise_floor / metric_corrected was at most fraction, or most_seeds were there",
     "mask.pixels": (
-        "pixels compared: coverage 1 in the reference, less those within 2 pixels of one whose coverage is not"
+        "pixels compared: coverage 1 in the reference, less those within 2 pixels (or as many as asked for) of one whose"
+        " coverage is not, less those that the masks of mask_steps took away"
     ),
+    "mask_steps": "what each mask kept (pixels) and took away (removed), in order",
+    "unfiltered": "the numbers of the silhouette alone, before any other mask",
+    "judged_by": "the metric to read first; in blocks where the reference's single pixels are too noisy",
+    "profile": "means over the masked pixels in 20 equal bins of cos(normal, direction to the strongest sun); radiance",
     "mask.nan": "masked pixels with a NaN in our image or the reference; they are in no sum",
     "mask.inf": "masked pixels with an Inf and no NaN; they are in no sum",
     "frame_ms": (

@@ -10,7 +10,7 @@ import numpy
 
 from .. import native_module
 from ..cycles import kinds, reference
-from . import significance
+from . import masks, profile, significance
 
 
 @dataclass(frozen=True)
@@ -61,19 +61,30 @@ def measure(case, chosen, request, depsgraph, size, overrides, ours, progress):
     progress.end(learn=not theirs.cached)
     progress.begin()
     started = time.monotonic()
-    images = ours.render(chosen, request.samples)
+    images = ours.render(chosen, request.samples, sampling.kind.least_sun)
     our_seconds = time.monotonic() - started
     frame_ms, passes = ours.time_frames(request.frames)
     progress.end()
     image = numpy.mean(images, axis=0, dtype=numpy.float64).astype(numpy.float32)
+    suns = ours.suns(sampling.kind.least_sun)
+    mirror = shape = None
+    if sampling.kind.smooth_interface:
+        normals, mirrored = sampling.geometry()
+        mirror = masks.mirror_patch(mirrored, [(direction, angle) for direction, angle, _ in suns])
     until = None
     if request.until is not None:
-        theirs, until = _until(case, request, size, sampling, image, progress)
+        theirs, until = _until(case, request, size, sampling, image, mirror, progress)
 
-    mask = native_module.get().default_mask(theirs.mean[..., 3])
+    mask, whole, mask_steps = masks.select(request.masks, image, theirs, mirror)
     verdict, scores = significance.test(images, theirs.images, mask)
+    if sampling.kind.smooth_interface:
+        shape = profile.profile(image, theirs.images, mask, normals, suns[0][0])
     numbers = {
         **compare(image, theirs.images, mask),
+        "mask_steps": mask_steps,
+        "unfiltered": compare(image, theirs.images, whole) if len(mask_steps) > 1 else None,
+        "judged_by": sampling.kind.judged_by,
+        "profile": shape,
         "our_noise": compare(theirs.mean, images, mask)["noise_floor"],
         "significance": verdict,
         "until": until,
@@ -100,12 +111,12 @@ def compare(image, references, mask):
     return {"metrics": metrics, **apart}
 
 
-def _until(case, request, size, sampling, image, progress):
+def _until(case, request, size, sampling, image, mirror, progress):
     """Adds seeds until the reference's noise is small beside the error; (the reference, entry of results.json)."""
     metric = sampling.kind.judged_by
     while True:
         theirs = sampling.result()
-        numbers = compare(image, theirs.images, native_module.get().default_mask(theirs.mean[..., 3]))
+        numbers = compare(image, theirs.images, masks.select(request.masks, image, theirs, mirror)[0])
         noise, error = numbers["noise_floor"][metric], numbers["metrics"][f"{metric}_corrected"]
         ratio = noise / error if noise and error else None
         count = len(theirs.seeds)

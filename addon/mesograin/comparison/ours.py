@@ -39,9 +39,20 @@ class Ours:
         parts = min(SEEDS, samples)
         return -(-samples // parts) * parts
 
-    def render(self, chosen, samples):
+    def suns(self, least_sun=0.0):
+        """[(direction to the light, full angle in radians, irradiance)] as `render` takes them, the strongest first."""
+        lights = sorted(self._lights(least_sun), key=lambda light: -sum(light.irradiance))
+        return [(light.direction_to_light, light.angle, light.irradiance) for light in lights]
+
+    def _lights(self, least_sun):
+        return tuple(
+            dataclasses.replace(light, angle=max(light.angle, least_sun)) for light in self._scene.lights
+        )
+
+    def render(self, chosen, samples, least_sun=0.0):
         """The scene with the case's choice of parameters, as parts of independent noise whose mean is the picture:
-        a list of (h, w, 4) float32. samples: of each pixel, over all parts."""
+        a list of (h, w, 4) float32. samples: of each pixel, over all parts. least_sun: radians; narrower suns are
+        widened to this."""
         parameters = self.parameters(chosen)
         instances = tuple(
             dataclasses.replace(
@@ -52,7 +63,7 @@ class Ours:
             )
             for instance in self._scene.instances
         )
-        scene = dataclasses.replace(self._scene, instances=instances).to_native()
+        scene = dataclasses.replace(self._scene, instances=instances, lights=self._lights(least_sun)).to_native()
         views = self._views[: min(SEEDS, samples)]
         parts = []
         for view in views:

@@ -54,6 +54,7 @@ def compare(request, progress):
             "samples": request.samples,
             "seeds": request.seeds,
             "until": request.until,
+            "masks": [[name, *numbers] for name, numbers in request.masks],
             "pixel_filter": "box, one pixel, on both sides",
             "colour_space": "linear, scene-referred",
             "material_settings": _plain(request.settings),

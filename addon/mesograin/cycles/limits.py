@@ -17,6 +17,9 @@ IOR_RANGE = (1.01, 3.8)
 LOSSY_ALBEDO = 0.99
 """Above this albedo a thick random walk notably outlives Cycles' 256 bounces."""
 
+LONG_PATHS_ALBEDO = 0.9995
+"""Above this albedo light in a thick volume notably outlives 1024 bounces."""
+
 
 @dataclass(frozen=True)
 class Limit:
@@ -34,6 +37,12 @@ def limits(values, kind):
         return _volume(values)
     if kind == "subsurface":
         return _subsurface(values)
+    if kind == "subsurface_burley":
+        return _subsurface_burley(values)
+    if kind == "volume_dielectric":
+        return [*_volume(values), *_smooth(values)]
+    if kind == "photon":
+        return [*_photon(values), *_smooth(values)]
     return []
 
 
@@ -59,6 +68,51 @@ def _volume(values):
         found.append(
             Limit(
                 f"Cycles limits the g of a volume to {PHASE_LIMIT:g}; got {values.g:g}: the reference uses the limit.",
+                False,
+            )
+        )
+    largest = max(values.albedo)
+    if largest > LONG_PATHS_ALBEDO:
+        found.append(
+            Limit(
+                (
+                    f"Cycles ends paths after 1024 bounces, which darkens a thick grain at an albedo of {largest:.7g}."
+                ),
+                False,
+            )
+        )
+    return found
+
+
+def _smooth(values):
+    if values.roughness == 0.0:
+        return []
+    return [
+        Limit(f"The reference's interface is smooth; the roughness {values.roughness:g} is left out on both sides.", False)
+    ]
+
+
+def _photon(values):
+    if abs(values.g) < 1.0:
+        return []
+    return [Limit(f"The photon reference needs g inside (-1, 1); got {values.g:g}: choose another g.", True)]
+
+
+def _subsurface_burley(values):
+    found = []
+    if min(a + (1.0 - values.g) * s for a, s in zip(values.sigma_a, values.sigma_s)) <= 0.0:
+        found.append(
+            Limit(
+                "Christensen and Burley's profile needs a positive sigma_a + (1 - g) sigma_s in every channel: choose the"
+                " reference volume_index_matched.",
+                True,
+            )
+        )
+    if values.g != 0.0:
+        found.append(
+            Limit(
+                f"Christensen and Burley's profile knows g by similarity alone; got {values.g:g}: the reference uses"
+                " sigma_s (1 - g).",
                 False,
             )
         )

@@ -61,9 +61,9 @@ def _set(socket, value):
 def _check_sockets(node, description):
     """Sockets without a value of their own (normal, tangent, an absent shader) and disabled ones need none."""
     known = {**description["inputs"], **description["optional"]}
-    for socket in node.inputs:
+    for number, socket in enumerate(node.inputs):
         valueless = socket.hide_value or socket.type == "SHADER" or not socket.enabled
-        if not (valueless or socket.is_linked or socket.name in known):
+        if not (valueless or socket.is_linked or socket.name in known or number in known):
             raise RuntimeError(
                 f"Blender {bpy.app.version_string} has a socket '{socket.name}' on {node.bl_idname} that Mesograin does"
                 " not know: the reference would depend on its default."
@@ -79,12 +79,14 @@ def features():
         subsurface = tree.nodes.new("ShaderNodeSubsurfaceScattering")
         methods = {item.identifier for item in subsurface.bl_rna.properties["falloff"].enum_items}
         fixed = "RANDOM_WALK_FIXED_RADIUS"
+        glass = tree.nodes.new("ShaderNodeBsdfGlass").bl_rna.properties["distribution"].enum_items
         return kinds.NodeFeatures(
             glossy_type=glossy_type,
             # The two glossy nodes became one when Cycles' microfacet code went over to height-correlated masking.
             glossy_masking="correlated" if merged else "separable",
             subsurface_method=fixed if fixed in methods else "RANDOM_WALK",
             subsurface_refracts="Roughness" in subsurface.inputs,
+            glass_distribution="SHARP" if "SHARP" in glass else "GGX",
             has_phase_choice=hasattr(tree.nodes.new("ShaderNodeVolumeScatter"), "phase"),
         )
     finally:

@@ -3,7 +3,7 @@
 """A recipe is {"nodes": {name: {"type", "properties", "inputs"}}, "links": [[from, from socket, to, to socket]],
 "material": {property of `material.cycles`}}.
 
-`inputs` maps socket names to values. Names in `optional` are sockets that only some Blenders have; they are set where
+`inputs` maps socket names, or numbers where names repeat, to values. Names in `optional` are sockets that only some Blenders have; they are set where
 they are.
 Tuples are linear RGB.
 """
@@ -59,7 +59,8 @@ def _coefficients(sigma):
     return density, tuple(value / density for value in sigma) if density > 0.0 else (1.0, 1.0, 1.0)
 
 
-def _volume_index_matched(values, features):
+def _medium(values, features):
+    """The two volume shaders, by name."""
     # sigma_s = density * colour of the scatter node; sigma_a = density * (1 - colour) of the absorption node.
     scatter_density, scatter_colour = _coefficients(values.sigma_s)
     absorption_density, absorption_colour = _coefficients(values.sigma_a)
@@ -77,11 +78,27 @@ def _volume_index_matched(values, features):
         "inputs": {"Color": tuple(1.0 - value for value in absorption_colour), "Density": absorption_density},
         "optional": {},
     }
-    return _recipe(
-        {"Scatter": scatter, "Absorption": absorption},
-        volume=("Scatter", "Absorption"),
-        material={"homogeneous_volume": True, "volume_sampling": "DISTANCE", "volume_interpolation": "LINEAR"},
-    )
+    return {"Scatter": scatter, "Absorption": absorption}
+
+
+_VOLUME = ("Scatter", "Absorption")
+_VOLUME_SETTINGS = {"homogeneous_volume": True, "volume_sampling": "DISTANCE", "volume_interpolation": "LINEAR"}
+
+
+def _volume_index_matched(values, features):
+    return _recipe(_medium(values, features), volume=_VOLUME, material=_VOLUME_SETTINGS)
+
+
+def _volume_dielectric(values, features):
+    # Not the Refraction BSDF, which has no Fresnel reflection.
+    glass = {
+        "type": "ShaderNodeBsdfGlass",
+        "properties": {"distribution": features.glass_distribution},
+        "inputs": {"Color": (1.0, 1.0, 1.0), "Roughness": 0.0, "IOR": values.eta},
+        "optional": {"Thin Film Thickness": 0.0, "Thin Film IOR": 1.33},
+    }
+    nodes = {"Glass": glass, **_medium(values, features)}
+    return _recipe(nodes, surface=("Glass", "BSDF"), volume=_VOLUME, material=_VOLUME_SETTINGS)
 
 
 def _subsurface(values, features):
@@ -104,14 +121,79 @@ def _subsurface(values, features):
     return _recipe({"Subsurface": node}, surface=("Subsurface", "BSSRDF"))
 
 
-def _coverage(values, features):
+def _subsurface_burley(values, features):
+    """Christensen and Burley's profile takes the diffuse reflectance itself as colour and 1 / sigma_t' as radius, and
+    knows g by similarity alone ("Approximate Reflectance Profiles for Efficient Subsurface Scattering", Pixar 2015)."""
+    reduced = tuple((a, (1.0 - values.g) * s) for a, s in zip(values.sigma_a, values.sigma_s))
     node = {
+        "type": "ShaderNodeSubsurfaceScattering",
+        "properties": {"falloff": "BURLEY"},
+        "inputs": {
+            # The reflectance of a half-space, by the fit that the random walk inverts.
+            "Color": tuple(inversion.colour_of_albedo(s / (a + s)) for a, s in reduced),
+            "Scale": 1.0,
+            "Radius": tuple(inversion.radius_of_extinction(a + s) for a, s in reduced),
+            "IOR": 1.4,
+            "Anisotropy": 0.0,
+        },
+        "optional": {"Roughness": 1.0},
+    }
+    return _recipe({"Subsurface": node}, surface=("Subsurface", "BSSRDF"))
+
+
+def _emission():
+    return {
         "type": "ShaderNodeEmission",
         "properties": {},
         "inputs": {"Color": (1.0, 1.0, 1.0), "Strength": 1.0},
         "optional": {},
     }
-    return _recipe({"Emission": node}, surface=("Emission", "Emission"))
+
+
+def _coverage(values, features):
+    return _recipe({"Emission": _emission()}, surface=("Emission", "Emission"))
+
+
+def _vector_math(operation, *vectors):
+    """Vectors by the number of their socket; those that are left out are linked or not used by the operation."""
+    inputs = dict(zip((0, 1, 2), (*vectors, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))))
+    properties = {"operation": operation}
+    return {"type": "ShaderNodeVectorMath", "properties": properties, "inputs": inputs, "optional": {"Scale": 1.0}}
+
+
+def _shown(nodes, links, vector):
+    """A recipe that shows a unit vector v as the colour 0.5 + 0.5 v. vector: (node, socket)."""
+    half = (0.5, 0.5, 0.5)
+    made = _recipe(
+        {**nodes, "Half": _vector_math("MULTIPLY_ADD", half, half, half), "Emission": _emission()},
+        surface=("Emission", "Emission"),
+    )
+    made["links"] += [*links, [*vector, "Half", 0], ["Half", "Vector", "Emission", "Color"]]
+    return made
+
+
+_GEOMETRY = {"Geometry": {"type": "ShaderNodeNewGeometry", "properties": {}, "inputs": {}, "optional": {}}}
+
+
+def _normal(values, features):
+    return _shown(_GEOMETRY, [], ("Geometry", "Normal"))
+
+
+def _mirrored(values, features):
+    """REFLECT sends a vector on as light goes, so the way to the viewer comes out as its mirror image, reversed."""
+    none = (0.0, 0.0, 0.0)
+    nodes = {
+        **_GEOMETRY,
+        "Reflect": _vector_math("REFLECT", none, none),
+        "Reverse": _vector_math("SCALE", none),
+    }
+    nodes["Reverse"]["optional"] = {"Scale": -1.0}
+    links = [
+        ["Geometry", "Incoming", "Reflect", 0],
+        ["Geometry", "Normal", "Reflect", 1],
+        ["Reflect", "Vector", "Reverse", 0],
+    ]
+    return _shown(nodes, links, ("Reverse", "Vector"))
 
 
 _RECIPES = {
@@ -119,5 +201,9 @@ _RECIPES = {
     "glossy": _glossy,
     "volume_index_matched": _volume_index_matched,
     "subsurface": _subsurface,
+    "subsurface_burley": _subsurface_burley,
+    "volume_dielectric": _volume_dielectric,
     "coverage": _coverage,
+    "normal": _normal,
+    "mirrored": _mirrored,
 }

@@ -1,11 +1,12 @@
 # A reference: images of independent seeds by Cycles, rendered or found in the cache, and what is common to them.
 """See `Sampling` and `render`."""
 
+import math
 from dataclasses import dataclass
 
 import numpy
 
-from . import kinds, shot
+from . import kinds, photon, shot
 from .limits import limits
 from .shot import PROVENANCE, ReferenceError
 
@@ -95,8 +96,17 @@ class Sampling:
         )
 
     def _take(self, kind, samples, seed, on_progress):
-        given = (self._depsgraph, kind, self._size, samples, seed, self._cache, self._overrides)
-        return shot.take(*given, on_progress, self._unwrapping)
+        given = (self._depsgraph, kind, self._size, samples, seed, self._cache, self._overrides, on_progress)
+        if not kind.referee:
+            return shot.take(*given, self._unwrapping)
+        if self._unwrapping:
+            raise ReferenceError(f"The {kind.name} reference is a picture and has no texture: choose another reference.")
+        return photon.take(*given)
+
+    def geometry(self):
+        """(normal, way to the viewer mirrored at it), each (h, w, 3) float32 in world space, means over the pixel."""
+        shots = [self._take(kind, kind.samples, 0, None) for kind in (kinds.NORMAL, kinds.MIRRORED)]
+        return tuple(2.0 * each.pixels[..., :3] - 1.0 for each in shots)
 
 
 def render(depsgraph, kind, size, samples=None, seeds=SEEDS, cache=None, overrides=None, on_progress=None):
@@ -122,6 +132,12 @@ def _check(depsgraph, kind, overrides):
             if slot.material:
                 materials[slot.material.name] = slot.material.original
     notes = []
+    if kind.least_sun and any(
+        instance.object.type == "LIGHT" and instance.object.data.angle < kind.least_sun
+        for instance in depsgraph.object_instances
+    ):
+        degrees = math.degrees(kind.least_sun)
+        notes.append(f"Suns are taken {degrees:.0f} degrees wide on both sides, since Cycles cannot find smaller ones.")
     for name, material in sorted(materials.items()):
         for limit in limits(shot.grain_values(depsgraph, overrides, material), kind.name):
             sentence = f"Material '{name}': {limit.sentence}"

@@ -59,12 +59,12 @@ def take(
         used[made.name] = recipe
         return made
 
-    with Stage(depsgraph, description, build) as stage:
+    with Stage(depsgraph, description, build, kind.least_sun) as stage:
         determined_by = fingerprint.describe(stage.scene, used, description)
         if unwrapping:
             determined_by["unwrapping"] = unwrapping.describe(stage)
         key = fingerprint.key(determined_by)
-        found = _read_cached(native, cache, key)
+        found = read_cached(native, cache, key)
         if found:
             on_progress(1.0)
             return found
@@ -91,17 +91,26 @@ def take(
         provenance.update(object=unwrapping.name, view_from=unwrapping.view_from)
     # As it will come back from a file.
     provenance = json.loads(json.dumps(provenance))
+    return keep(native, cache, key, Shot(pixels, provenance, cached=False))
+
+
+def keep(native, cache, key, shot):
+    """Puts a Shot into the cache, if there is one and it can be written; returns it."""
     if cache:
         try:
             cache.store(
-                key, lambda path: native.write_exr(path, pixels, attributes={PROVENANCE: json.dumps(provenance)})
+                key,
+                lambda path: native.write_exr(
+                    path, shot.pixels, attributes={PROVENANCE: json.dumps(shot.provenance)}
+                ),
             )
         except (OSError, native.Error) as error:
             print(f"The reference is not kept: {error}")
-    return Shot(pixels, provenance, cached=False)
+    return shot
 
 
-def _read_cached(native, cache, key):
+def read_cached(native, cache, key):
+    """The Shot under this key, or None."""
     path = cache.find(key) if cache else None
     if not path:
         return None

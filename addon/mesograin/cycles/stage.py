@@ -17,13 +17,15 @@ class Stage:
     depsgraph: evaluated; copied from, never kept. description: `settings.settings(...)`.
     build_material: makes the new Cycles material for a bpy.types.Material in use, or for None (faces without one).
     placed: {name of an object: what stands for its first instance here}.
+    least_sun: radians; narrower suns are widened to this, of the same irradiance.
     Everything made here is removed on exit, whatever happened inside.
     """
 
-    def __init__(self, depsgraph, description, build_material):
+    def __init__(self, depsgraph, description, build_material, least_sun=0.0):
         self._depsgraph = depsgraph
         self._description = description
         self._build_material = build_material
+        self._least_sun = least_sun
         self._made = []
         self._materials = {}
         self._meshes = {}
@@ -87,7 +89,7 @@ class Stage:
         light = self._own(bpy.data.lights.new("Mesograin sun", "SUN"))
         light.color = source.color
         light.energy = source.energy
-        light.angle = source.angle
+        light.angle = max(source.angle, self._least_sun)
         light.cycles.max_bounces = 1024
         self._add("Mesograin sun", light, matrix)
 
