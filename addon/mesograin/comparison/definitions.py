@@ -52,8 +52,8 @@ OTHERS = {
     "significance.share": "significant pixels / pixels tested",
     "until": "seeds were added until noise_floor / metric_corrected was at most fraction, or most_seeds were there",
     "mask.pixels": (
-        "pixels compared: coverage 1 in the reference, less those within 2 pixels (or as many as asked for) of one whose"
-        " coverage is not, less those that the masks of mask_steps took away"
+        "pixels compared: coverage 1 in the reference, less those within 2 pixels (or as many as asked for) of one"
+        " whose coverage is not, less those that the masks of mask_steps took away"
     ),
     "mask_steps": "what each mask kept (pixels) and took away (removed), in order",
     "unfiltered": "the numbers of the silhouette alone, before any other mask",

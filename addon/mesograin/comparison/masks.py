@@ -13,7 +13,7 @@ MIRROR_MARGIN = 0.05
 
 
 def silhouette(coverage, masks=()):
-    """(h, w) bool: covered wholly, less a rim of 2 pixels, or of as many as a mask 'silhouette:n' among `masks` says."""
+    """(h, w) bool: covered wholly, less a rim of 2 pixels, or of n if 'silhouette:n' is among `masks`."""
     rims = [numbers[0] for name, numbers in masks if name == "silhouette"]
     return native_module.get().default_mask(coverage, erode=rims[-1] if rims else SILHOUETTE_RIM)
 

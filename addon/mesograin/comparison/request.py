@@ -27,7 +27,8 @@ class Request:
     size: (width, height), or None for the scene's. reference_samples: per pixel and seed, None for the kind's default.
     references: names in `kinds.KINDS`, or None for each model's default. seeds: of the reference, independent of each
     other. until: adds seeds until the reference's noise is at most this fraction of the measured error, but no more
-    than `most_seeds` in all; None for `seeds` as they are. masks: of `mask_names.parse`, applied in this order. command: the line that repeats it."""
+    than `most_seeds` in all; None for `seeds` as they are. masks: of `mask_names.parse`, applied in this order.
+    command: the line that repeats it."""
 
     models: tuple
     out: Path

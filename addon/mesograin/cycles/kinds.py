@@ -27,8 +27,8 @@ class Kind:
     bounces: Cycles' limit on path length. samples: per pixel and seed by default. coverage_pass: its alpha is not the
     coverage, so the coverage is rendered apart. cost: guessed seconds for a million samples on one core, for the first
     estimate of the time left. judged_by: the metric that says how far a model is off, pixel by pixel or in blocks.
-    least_sun: radians; on both sides suns are taken at least as wide. smooth_interface: the sun's mirror image is masked,
-    and the error is told over the angle to the sun. referee: rendered by mesograin-referee, not by Cycles.
+    least_sun: radians; on both sides suns are taken at least as wide. smooth_interface: the sun's mirror image is
+    masked, and the error is told over the angle to the sun. referee: rendered by mesograin-referee, not by Cycles.
     """
 
     name: str

@@ -87,9 +87,8 @@ def _volume(values):
 def _smooth(values):
     if values.roughness == 0.0:
         return []
-    return [
-        Limit(f"The reference's interface is smooth; the roughness {values.roughness:g} is left out on both sides.", False)
-    ]
+    sentence = f"The reference's interface is smooth; the roughness {values.roughness:g} is left out on both sides."
+    return [Limit(sentence, False)]
 
 
 def _photon(values):
@@ -103,8 +102,8 @@ def _subsurface_burley(values):
     if min(a + (1.0 - values.g) * s for a, s in zip(values.sigma_a, values.sigma_s)) <= 0.0:
         found.append(
             Limit(
-                "Christensen and Burley's profile needs a positive sigma_a + (1 - g) sigma_s in every channel: choose the"
-                " reference volume_index_matched.",
+                "Christensen and Burley's profile needs a positive sigma_a + (1 - g) sigma_s in every channel: choose"
+                " the reference volume_index_matched.",
                 True,
             )
         )

@@ -25,7 +25,7 @@ _ROWS = re.compile(r"(\d+) of (\d+) rows")
 
 
 def take(depsgraph, kind, size, samples, seed, cache=None, overrides=None, on_progress=None):
-    """One image of one seed, as `shot.take`. Raises ReferenceError if the scene is not a sphere or the program lacks."""
+    """One image of one seed, as `shot.take`. Raises ReferenceError without a sphere or without the program."""
     native = native_module.get()
     tell = on_progress or (lambda fraction: None)
     scene = _scene(depsgraph, size, overrides or {})
@@ -63,8 +63,8 @@ def _program():
     path = Path(chosen or Path(__file__).resolve().parents[3] / "build/release/tests/referee" / PROGRAM)
     if not os.access(path, os.X_OK):
         raise ReferenceError(
-            f"The photon reference is rendered by {PROGRAM}, which is not at {path}: run ./mesograin compare in a checkout,"
-            " which builds it, or name it in MESOGRAIN_REFEREE."
+            f"The photon reference is rendered by {PROGRAM}, which is not at {path}: run ./mesograin compare in a"
+            " checkout, which builds it, or name it in MESOGRAIN_REFEREE."
         )
     return path
 

@@ -3,9 +3,8 @@
 """A recipe is {"nodes": {name: {"type", "properties", "inputs"}}, "links": [[from, from socket, to, to socket]],
 "material": {property of `material.cycles`}}.
 
-`inputs` maps socket names, or numbers where names repeat, to values. Names in `optional` are sockets that only some Blenders have; they are set where
-they are.
-Tuples are linear RGB.
+`inputs` maps socket names, or numbers where names repeat, to values. Names in `optional` are sockets that only some
+Blenders have; they are set where they are. Tuples are linear RGB.
 """
 
 from . import inversion, limits
@@ -115,7 +114,7 @@ def _subsurface(values, features):
             "IOR": min(max(values.eta, low), high),
             "Anisotropy": values.g,
         },
-        # GGX's alpha itself, unlike the other nodes' roughness: measured,.
+        # GGX's alpha itself, unlike the other nodes' roughness: measured.
         "optional": {"Roughness": values.roughness},
     }
     return _recipe({"Subsurface": node}, surface=("Subsurface", "BSSRDF"))

@@ -60,6 +60,8 @@ class Sampling:
         self.samples = samples or self.kind.samples
         self._depsgraph, self._size, self._cache, self._overrides = depsgraph, size, cache, overrides or {}
         self._unwrapping = unwrapping
+        if unwrapping and (self.kind.referee or self.kind.smooth_interface):
+            raise ReferenceError(f"The reference {kind} is a picture and has no texture: choose another.")
         self.notes = _check(depsgraph, self.kind, self._overrides)
         self._coverage = None
         self._shots = {}
@@ -97,11 +99,7 @@ class Sampling:
 
     def _take(self, kind, samples, seed, on_progress):
         given = (self._depsgraph, kind, self._size, samples, seed, self._cache, self._overrides, on_progress)
-        if not kind.referee:
-            return shot.take(*given, self._unwrapping)
-        if self._unwrapping:
-            raise ReferenceError(f"The {kind.name} reference is a picture and has no texture: choose another reference.")
-        return photon.take(*given)
+        return photon.take(*given) if kind.referee else shot.take(*given, self._unwrapping)
 
     def geometry(self):
         """(normal, way to the viewer mirrored at it), each (h, w, 3) float32 in world space, means over the pixel."""
