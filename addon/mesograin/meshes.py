@@ -5,7 +5,7 @@ import weakref
 
 import numpy as np
 
-from . import compat, native_module
+from . import compat, native_module, smooth_normals
 
 DRAWABLE_TYPES = ("MESH", "CURVE", "SURFACE", "FONT", "META")
 
@@ -90,7 +90,7 @@ def _corners(mesh):
     if layer is not None:
         uvs = np.empty((len(mesh.loops), 2), dtype=np.float32)
         layer.data.foreach_get("uv", uvs.ravel())
-    return positions[vertex_of_corner], compat.corner_normals(mesh), uvs
+    return positions[vertex_of_corner], smooth_normals.settle(mesh, compat.corner_normals(mesh)), uvs
 
 
 def _native_mesh(name, corners, triangles):

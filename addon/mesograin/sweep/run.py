@@ -110,7 +110,8 @@ def _run_case(case, folder, blender, processes):
 
 
 def _last_line(log):
-    lines = [line.strip() for line in log.splitlines() if line.strip() and not line.startswith("Blender quit")]
+    said_by_blender = ("Blender quit", "Error: script failed")
+    lines = [line.strip() for line in log.splitlines() if line.strip() and not line.startswith(said_by_blender)]
     return lines[-1] if lines else ""
 
 

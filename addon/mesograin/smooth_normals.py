@@ -1,0 +1,49 @@
+# Normals of smooth vertices, summed in one order: Blender sums them in threads, so that its last digit comes and goes.
+"""See `settle`."""
+import numpy as np
+
+SAME = 1e-4
+"""A corner's normal this near to its vertex' is the vertex'. Blender's threads move it by some 1e-7."""
+
+
+def settle(mesh, normals):
+    """The corner normals of a mesh with those of smooth vertices replaced by equal ones that are the same every time;
+    normals of flat faces, of sharp edges and the user's own stay. normals: (loops, 3) float32."""
+    if not len(mesh.loops):
+        return normals
+    settled = _of_vertices(mesh)
+    same = np.abs(settled - normals).max(axis=1) < SAME
+    return np.where(same[:, None], settled, normals)
+
+
+def _of_vertices(mesh):
+    """(loops, 3) float32: for each corner the normal of its vertex, the mean of the faces' weighted by their angles
+    there, as Blender defines it."""
+    positions = _read(mesh.vertices, "co", (len(mesh.vertices), 3), np.float32).astype(np.float64)
+    vertex = _read(mesh.loops, "vertex_index", len(mesh.loops), np.int32)
+    first = _read(mesh.polygons, "loop_start", len(mesh.polygons), np.int32)
+    count = _read(mesh.polygons, "loop_total", len(mesh.polygons), np.int32)
+    face_normals = _read(mesh.polygons, "normal", (len(mesh.polygons), 3), np.float32)
+
+    # Faces in the order of their corners, so that corners can be counted on.
+    face = np.repeat(np.arange(len(first)), count)
+    corner = np.arange(len(face)) - np.repeat(np.cumsum(count) - count, count)
+    loop, size = first[face] + corner, count[face]
+    here = positions[vertex[loop]]
+    after = positions[vertex[first[face] + (corner + 1) % size]] - here
+    before = positions[vertex[first[face] + (corner - 1) % size]] - here
+    sine = np.linalg.norm(np.cross(after, before), axis=1)
+    angle = np.arctan2(sine, np.einsum("ij,ij->i", after, before))
+
+    at = vertex[loop]
+    sums = np.stack(
+        [np.bincount(at, angle * face_normals[face, axis], len(positions)) for axis in range(3)], axis=1
+    )
+    length = np.linalg.norm(sums, axis=1, keepdims=True)
+    return (sums / np.where(length > 0.0, length, 1.0))[vertex].astype(np.float32)
+
+
+def _read(collection, attribute, shape, dtype):
+    values = np.empty(shape, dtype=dtype)
+    collection.foreach_get(attribute, values.ravel())
+    return values
