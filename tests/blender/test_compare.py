@@ -1,9 +1,11 @@
 # The comparison as a whole: files complete and consistent, failures recorded, interruption clean.
 import csv
+import errno
 import io
 import json
 import os
 import pathlib
+import resource
 import signal
 import subprocess
 import time
@@ -247,7 +249,7 @@ def test_photons_agree_with_model_3(tmp_path, monkeypatch):
     monkeypatch.setenv("MESOGRAIN_REFEREE", str(REFEREE / "tests/referee/mesograin-referee"))
     make_sphere(SUNS, sigma_s=(0.9,) * 3, sigma_a=(0.1,) * 3, eta=1.3)
     bpy.data.objects["Sphere"].location = (0.1, -0.2, 0.3)
-    done = {"size": (40, 32), "samples": 32, "reference_samples": 64, "models": ("model_3",)}
+    done = {"size": (32, 24), "samples": 32, "reference_samples": 64, "models": ("model_3",)}
     for cached in (False, True):
         case = compare(tmp_path, references=("photon",), **done)["cases"][0]
         assert case["status"] == "done" and case["reference_cached"] is cached
@@ -277,13 +279,33 @@ def test_an_output_that_cannot_be_written_is_said_before_anything_is_rendered(tm
         compare(tmp_path, out=tmp_path / "file" / "out")
 
 
+def test_a_disk_that_fills_is_said_and_leaves_no_part(tmp_path, monkeypatch):
+    folder = results.Output(tmp_path / "out")
+    folder.write_png("first.png", np.zeros((8, 8, 3)))
+
+    def full(_):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(os, "fsync", full)
+    for write in (
+        lambda: folder.write_png("second.png", np.zeros((8, 8, 3))),
+        lambda: folder.write_results({"cases": []}),
+    ):
+        with pytest.raises(results.OutputError, match="No space left on device.*free some space"):
+            write()
+    assert [path.name for path in (tmp_path / "out").iterdir()] == ["first.png"]
+    monkeypatch.setattr(results, "PNG_END", b"never")
+    with pytest.raises(results.OutputError, match="whole picture"):
+        folder.write_png("third.png", np.zeros((8, 8, 3)))
+
+
 @pytest.fixture
 def start(tmp_path):
     """Starts the command in a Blender of its own on the current scene; ends what is left of it."""
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "scene.blend"), copy=True)
     started = []
 
-    def do(*words):
+    def do(*words, **how):
         command = [
             bpy.app.binary_path,
             "-b",
@@ -303,7 +325,8 @@ def start(tmp_path):
         ]
         environment = {**os.environ, "TMPDIR": str(tmp_path / "temporary")}
         (tmp_path / "temporary").mkdir(exist_ok=True)
-        process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment)
+        pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True, "env": environment}
+        process = subprocess.Popen(command, **pipes, **how)
         started.append(process)
         return process
 
@@ -352,6 +375,25 @@ def test_second_run_finds_its_references(scene, start, tmp_path):
         assert case["reference_cached"] is cached
     process = start("--clear-cache")
     assert "2 references removed" in process.communicate(timeout=120)[0] and process.returncode == 0
+
+
+def test_a_file_that_cannot_grow_ends_the_comparison_with_what_is_whole(scene, start, tmp_path, native):
+    """A limit on the size of files stands for a full disk."""
+    words = ("--models", "lambert", "--size", "160x160", "--reference-samples", "1", "--samples", "4")
+
+    def limit():
+        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (70_000, 70_000))
+
+    assert start(*words).communicate(timeout=300) and (tmp_path / "out" / "results.json").exists()
+    for path in sorted((tmp_path / "out").rglob("*"), reverse=True):
+        path.rmdir() if path.is_dir() else path.unlink()
+    process = start(*words, preexec_fn=limit, restore_signals=False)
+    _, said = process.communicate(timeout=300)
+    assert process.returncode == 3 and "Traceback" not in said
+    assert "a size limit is reached; free some space" in said.strip().splitlines()[-1]
+    left = [path for path in (tmp_path / "out").rglob("*") if path.is_file()]
+    assert all(path.suffix == ".exr" and native.read_exr(path) for path in left)
 
 
 @pytest.mark.parametrize(

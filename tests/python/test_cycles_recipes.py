@@ -102,7 +102,7 @@ def test_our_side_solves_what_cycles_solves():
     assert kinds.our_side("volume_index_matched", BLENDER_4) == {"boundary": "index_matched"}
     assert kinds.our_side("subsurface_burley", BLENDER_4) == {"boundary": "lambert_lambert"}
     for kind in ("volume_dielectric", "photon"):
-        assert kinds.our_side(kind, BLENDER_3) == {"boundary": "dielectric", "roughness": 0.0}
+        assert kinds.our_side(kind, BLENDER_3) == {"boundary": "dielectric", "roughness": 0.0, "specular": False}
     assert kinds.our_side("glossy", BLENDER_3) == {"masking": "separable"}
     assert kinds.our_side("glossy", BLENDER_4) == {"masking": "correlated"}
     assert [kinds.default_kind(model) for model in ("lambert", "conductor", "model_3")] == [

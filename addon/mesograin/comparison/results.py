@@ -18,6 +18,10 @@ CSV_FIRST = ("name", "scene", "model", "reference", "boundary", "status", "frame
 CSV_METRICS = ("relative_l1", "relative_l1_corrected", "relative_l1_blocks", "bias", "rse_mean", "rse_max")
 
 
+PNG_END = b"\0\0\0\0IEND\xae\x42\x60\x82"
+"""The last chunk of every PNG file."""
+
+
 class OutputError(Exception):
     """The output folder cannot be written; one sentence."""
 
@@ -51,23 +55,7 @@ class Output:
 
     def write_png(self, name, colours):
         """(h, w, 3) sRGB-encoded values in [0, 1], row 0 at the top, as an 8-bit picture; returns its name."""
-        path = self._place(name)
-        partial = path.with_name(path.name + ".part.png")
-        height, width = colours.shape[:2]
-        image = bpy.data.images.new("Mesograin picture", width, height)
-        try:
-            opaque = numpy.ones((height, width, 4), numpy.float32)
-            opaque[..., :3] = colours[::-1]
-            image.pixels.foreach_set(opaque.ravel())
-            image.file_format = "PNG"
-            image.filepath_raw = str(partial)
-            image.save()
-            os.replace(partial, path)
-        except (OSError, RuntimeError) as error:
-            raise OutputError(f"{path} cannot be written: {' '.join(str(error).split())}") from error
-        finally:
-            partial.unlink(missing_ok=True)
-            bpy.data.images.remove(image)
+        self._write_bytes(self._place(name), _png(colours))
         return name
 
     def write_results(self, results):
@@ -77,16 +65,21 @@ class Output:
 
     def write_text(self, name, text):
         """A text file under the folder."""
-        path = self.folder / name
+        self._write_bytes(self.folder / name, text.encode())
+
+    def _write_bytes(self, path, content):
+        """The file appears whole or not at all, and is on the disk when this returns."""
         partial = path.with_name(path.name + ".part")
         try:
-            with open(partial, "w", encoding="utf-8", newline="") as file:
-                file.write(text)
+            with open(partial, "wb") as file:
+                file.write(content)
                 file.flush()
                 os.fsync(file.fileno())
             os.replace(partial, path)
         except OSError as error:
-            raise OutputError(f"{path} cannot be written ({error.strerror}).") from error
+            raise OutputError(
+                f"{path} cannot be written ({error.strerror}): free some space or choose another folder with --out."
+            ) from error
         finally:
             partial.unlink(missing_ok=True)
 
@@ -97,6 +90,30 @@ class Output:
         except OSError as error:
             raise OutputError(f"{path.parent} cannot be made ({error.strerror}).") from error
         return path
+
+
+def _png(colours):
+    """The bytes of a PNG file. Blender can only save to a file, and of a full disk it does not always tell: so the file
+    is a temporary one, and looked at."""
+    height, width = colours.shape[:2]
+    image = bpy.data.images.new("Mesograin picture", width, height)
+    try:
+        opaque = numpy.ones((height, width, 4), numpy.float32)
+        opaque[..., :3] = colours[::-1]
+        image.pixels.foreach_set(opaque.ravel())
+        image.file_format = "PNG"
+        with tempfile.TemporaryDirectory(prefix="mesograin-") as folder:
+            saved = Path(folder) / "picture.png"
+            image.filepath_raw = str(saved)
+            image.save()
+            content = saved.read_bytes()
+    except (OSError, RuntimeError) as error:
+        raise OutputError(f"Blender cannot save a picture in {tempfile.gettempdir()}: free some space.") from error
+    finally:
+        bpy.data.images.remove(image)
+    if not content.endswith(PNG_END):
+        raise OutputError(f"Blender cannot save a whole picture in {tempfile.gettempdir()}: free some space.")
+    return content
 
 
 def _csv(cases):

@@ -112,5 +112,5 @@ def our_side(kind, features):
     if kind == "subsurface_burley":
         return {"boundary": "lambert_lambert"}
     if kind in ("volume_dielectric", "photon"):
-        return {"boundary": "dielectric", "roughness": 0.0}
+        return {"boundary": "dielectric", "roughness": 0.0, "specular": False}
     return {}
