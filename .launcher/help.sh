@@ -82,8 +82,8 @@ one converged Cycles render; draws the Pareto front and says how much longer Cyc
   ./mesograin trade [SCENE.blend] [option ...]
 
   SCENE.blend               default: blend_files/sphere.blend
-  --reference KIND          what Cycles renders: diffuse, glossy, volume_index_matched, subsurface (default:
-                            volume_index_matched)
+  --reference KIND          what Cycles renders: diffuse, glossy, volume_index_matched, subsurface, subsurface_burley
+                            (default: volume_index_matched)
   --models MODEL ...        models to measure (default: all that answer the reference)
   --samples N ...           samples per pixel on our side (default: 1 4 16 64)
   --taps N ...              samples of the lit surface that model 3 takes for each of those (default: 4 16 64)

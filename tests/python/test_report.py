@@ -129,6 +129,12 @@ def write_significance(folder, case):
         native.write_exr(folder / case["files"][name], pixels)
     case["significance"] = SIGNIFICANCE
     case["our_noise"] = {"relative_l1": 0.0123}
+    case["judged_by"] = "relative_l1_blocks"
+    case["mask_steps"] = [{"name": "silhouette:2", "pixels": 900, "removed": 100},
+                          {"name": "otsu", "pixels": 800, "removed": 100}]
+    case["unfiltered"] = {"metrics": {**case["metrics"], "relative_l1": 0.777}, "noise_floor": {}, "mask": {}}
+    case["profile"] = {"cosine": [-0.5, 0.0, 0.5], "pixels": [3, 4, 5], "ours": [[1.0, 1.0, 1.0]] * 3,
+                       "reference": [[1.1, 1.0, 1.0]] * 3, "noise": [[0.1, 0.1, 0.1]] * 3}
     case["until"] = {"fraction": 0.2, "metric": "relative_l1", "ratio": 0.31, "reached": False, "most_seeds": 4}
     return case
 
@@ -206,6 +212,9 @@ def test_significance_is_shown_where_it_was_tested(built):
     text = " ".join(html.unescape(re.sub(r"<[^>]*>", " ", second)).split())
     assert "Differs significantly in 10.0 % of 900 pixels and 25.0 % of 20 blocks of 8×8" in text
     assert "noise was 0.200 of the error in relative_l1: it is 0.310 of it; 4 seeds were not enough." in text
+    assert (built / "plots/model_1.volume.by_angle.svg").is_file() and "by_angle" not in first
+    overview = page[:page.index('<section class="case"')]
+    assert overview.count('popovertarget="define-metrics.relative_l1_blocks"') == 1, "the number to read first"
     assert "1.23 %" in text and "whether <noise> explains it" in html.unescape(page)
     live = json.loads(re.search(r'class="live">(.*?)</script>', second)[1])
     scores = unpack(dict(re.findall(r'id="(\w+)">(.*?)</script>', page))[live["scores"]], 48, 48)[..., 0]
@@ -214,6 +223,9 @@ def test_significance_is_shown_where_it_was_tested(built):
 
 def test_what_the_mask_took_away_is_counted(built):
     page = (built / "report.html").read_text()
+    first, second = page.split('<section class="case"')[1:3]
+    assert "otsu took 100 away and kept 800" in second and "unfiltered, relative L1 is 77.7 %" in second
+    assert '<th class="n">unfiltered</th>' in second and "unfiltered" not in first
     kept = int(native.default_mask(disc()[..., 3]).sum())
     assert f"{kept} of 2304; taken away: {2304 - kept} by the mask (reference coverage)" in page
 

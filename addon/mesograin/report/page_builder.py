@@ -10,7 +10,7 @@ import numpy
 from markupsafe import Markup
 
 from . import colours, payload, plots
-from .wording import compared, form, parameters, significance, until, verdict
+from .wording import compared, form, mask_steps, parameters, significance, until, verdict
 
 PAGE = Path(__file__).resolve().parent / "page"
 PLOTS = "plots"
@@ -140,6 +140,10 @@ def _view(of, definitions, pictures, folder):
                 plot(plots.profile(of.model, of.reference, of.noise), folder, f"{case['name']}.profile"),
             ),
             (
+                "Radiance over the angle to the light",
+                plot(plots.by_angle(case.get("profile")), folder, f"{case['name']}.by_angle"),
+            ),
+            (
                 "Distribution of the relative error",
                 plot(plots.histogram(relative, of.mask), folder, f"{case['name']}.histogram"),
             ),
@@ -148,6 +152,7 @@ def _view(of, definitions, pictures, folder):
     ]
     view["numbers"] = [
         {
+            "key": key,
             "title": title,
             "text": form(look_up(case, key), how),
             "value": look_up(case, key),
@@ -160,6 +165,7 @@ def _view(of, definitions, pictures, folder):
             "title": name,
             "text": form(value, "number"),
             "floor": form(case["noise_floor"].get(name), "number"),
+            "unfiltered": form(look_up(case, f"unfiltered.metrics.{name}"), "number"),
             "definition": definitions.get(name, ""),
         }
         for name, value in case["metrics"].items()
@@ -167,7 +173,12 @@ def _view(of, definitions, pictures, folder):
     view["verdict"] = verdict(case)
     view["significance"] = significance(case)
     view["compared"] = compared(case["mask"], of.mask.size)
+    unfiltered = look_up(case, "unfiltered.metrics.relative_l1")
+    view["unfiltered"] = None if unfiltered is None else form(unfiltered, "percent")
+    view["mask_steps"] = mask_steps(case)
     view["until"] = until(case)
+    judged_by = f"metrics.{case.get('judged_by', 'relative_l1')}"
+    view["leading"] = next(number for number in view["numbers"] if number["key"] == judged_by)
     return view
 
 

@@ -165,6 +165,30 @@ def profile(model, reference, noise):
     return draw
 
 
+def by_angle(profile):
+    """A plot of both sides' radiance over the angle to the strongest sun, the channels' mean, with the reference's
+    standard error. profile: of results.json."""
+
+    def draw(palette):
+        if not profile:
+            return None
+        ours, theirs = (numpy.mean(profile[name], axis=-1) for name in ("ours", "reference"))
+        noise = None if profile["noise"][0] is None else numpy.mean(profile["noise"], axis=-1)
+        label = "reference" if noise is None else "reference ± standard error"
+        figure, axes = new_figure(4.4, 2.3)
+        axes.errorbar(profile["cosine"], theirs, yerr=noise, color=palette.theirs, linewidth=2.6, alpha=0.6,
+                      elinewidth=1.0, capsize=2, label=label)
+        axes.plot(profile["cosine"], ours, color=palette.ours, linewidth=1.2, marker="o", markersize=2.5, label="model")
+        axes.set_xlabel("cosine of the angle between normal and light")
+        axes.set_ylabel("radiance, W m⁻² sr⁻¹")
+        axes.set_xlim(-1.0, 1.0)
+        axes.grid(True, axis="y")
+        axes.legend(frameon=False, fontsize=8, loc="upper left")
+        return figure
+
+    return draw
+
+
 def histogram(relative, mask):
     """A plot of how the signed relative error is distributed over the samples of the masked pixels; the outermost bars
     hold all that is beyond."""

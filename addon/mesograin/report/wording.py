@@ -58,6 +58,12 @@ def compared(mask, pixels):
     return f"{mask['pixels'] - mask['nan'] - mask['inf']} of {pixels}; taken away: {', '.join(away)}"
 
 
+def mask_steps(case):
+    """[sentence] of what each mask took away, one after the other."""
+    steps = case.get("mask_steps", ())
+    return [f"{step['name']} took {step['removed']} away and kept {step['pixels']}" for step in steps]
+
+
 def until(case):
     """What adding seeds until the noise was small came to, in a sentence; "" if that was not asked for."""
     found = case.get("until")

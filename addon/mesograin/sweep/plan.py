@@ -99,6 +99,7 @@ SETTINGS = {
     "size": Whole(8, 16384),
     "samples": Whole(1, 1 << 20),
     "reference_samples": Whole(1, 1 << 20),
+    "seeds": Whole(1, 1024),
 }
 TOP_LEVEL = ("title", "scenes", "models", "references", "material", "grid", "list", *SETTINGS)
 

@@ -7,6 +7,10 @@ from ..comparison.arguments import SETTABLE, Parser, _bytes, positive, setting, 
 from ..cycles.kinds import KINDS
 
 
+# Those that light and render the scene as it is, and in Cycles.
+REFERENCES = tuple(name for name, kind in KINDS.items() if not kind.referee and not kind.least_sun)
+
+
 def build():
     """The parser, for --help without Blender."""
     parser = Parser(
@@ -24,10 +28,10 @@ def build():
     parser.add_argument("scene", nargs="?", type=Path, default=None, metavar="SCENE.blend", help="the scene to measure")
     parser.add_argument(
         "--reference",
-        choices=tuple(KINDS),
+        choices=REFERENCES,
         default="volume_index_matched",
         metavar="KIND",
-        help=f"what Cycles renders, of {', '.join(KINDS)} (default: volume_index_matched)",
+        help=f"what Cycles renders, of {', '.join(REFERENCES)} (default: volume_index_matched)",
     )
     parser.add_argument(
         "--models",
