@@ -23,7 +23,8 @@ while len(open({runs!r}).readlines()) < together:
     if time.time() > began + 30:
         sys.exit("The others did not come.")
 if os.environ.get("STAND_IN_FAILS") == settings["scale"]:
-    print("compare: the reference could not be rendered.")
+    print("compare: the reference could not be rendered.\\n")
+    print("Error: script failed, file: 'command.py', exiting.\\nBlender quit")
     sys.exit(1)
 scale = float(settings["scale"])
 result = {{"model": words[words.index("--models") + 1], "reference": "volume_index_matched",
