@@ -106,17 +106,23 @@ def sphere_mesh(radius, segments, rings):
     return smooth_mesh("Sphere", vertices, faces, uvs)
 
 
-def make_sphere():
+def make_sphere(suns=(("Front", (1.0, 1.0, 1.0), 20.0), ("Back", (-1.0, -1.0, -1.6), 10.0))):
     """A sphere of diameter 4.8 before a camera at 6.5 with 45 degrees, under two suns: the scene of the comparison.
-    Its coordinates are literal: y is up and the camera looks along -z, as a Blender camera without rotation does."""
+    Its coordinates are literal: y is up and the camera looks along -z, as a Blender camera without rotation does.
+    suns: (name, direction to the light, irradiance) each."""
     empty_file()
     sphere = add_object("Sphere", sphere_mesh(2.4, 128, 64))
     sphere.data.materials.append(add_grain_material(
         "Translucent", model="model_1", sigma_s=(0.9,) * 3, sigma_a=(0.1,) * 3, g=0.0, eta=1.3, roughness=0.3,
         scale=20.0))
     add_camera(Matrix.Translation((0.0, 0.0, 6.5)), 45.0)
-    add_sun("Front", (1.0, 1.0, 1.0), 20.0)
-    add_sun("Back", (-1.0, -1.0, -1.6), 10.0)
+    for sun in suns:
+        add_sun(*sun)
+
+
+def make_sphere_back_lit():
+    """The same sphere, its one sun behind it: what is seen has gone through the grain."""
+    make_sphere([("Back", (-0.3, 0.4, -1.0), 20.0)])
 
 
 def sand_radius(direction):
@@ -160,7 +166,7 @@ def main():
 
     addon_utils.enable("mesograin")
     folder = pathlib.Path(sys.argv[sys.argv.index("--") + 1]) if "--" in sys.argv else HERE
-    for name, make in (("sphere", make_sphere), ("grain", make_grain)):
+    for name, make in (("sphere", make_sphere), ("sphere_back_lit", make_sphere_back_lit), ("grain", make_grain)):
         make()
         bpy.ops.wm.save_as_mainfile(filepath=str(folder / f"{name}.blend"), compress=True)
 

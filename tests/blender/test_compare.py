@@ -59,6 +59,7 @@ def test_every_file_is_there_and_agrees(tmp_path, native):
         assert {"rse_mean", "rse_max", "relative_l1", "bias"} <= set(case["metrics"])
         assert case["noise_floor"]["relative_l1"] > 0.0 and case["our_noise"]["relative_l1"] >= 0.0
         assert case["significance"]["pixels"] == case["mask"]["used"]
+        assert np.mean(case["channels"]["bias"]) == pytest.approx(case["metrics"]["bias"], rel=0.05)
         assert case["mask"]["pixels"] > 100 and case["mask"]["nan"] == case["mask"]["inf"] == 0
         assert set(case["versions"]) >= {"mesograin", "blender"} and set(found["definitions"]) >= set(case["metrics"])
         pictures = {name: native.read_exr(out / path) for name, path in case["files"].items() if path.endswith(".exr")}

@@ -134,9 +134,10 @@ def _print_table(results):
 
 def _significant(test):
     """What the significance test found, in a few letters."""
-    if test["significant_pixels"]:
-        return f"{test['share']:.1%} px"
-    return f"{test['share_blocks']:.0%} blocks" if test["significant_blocks"] else "nothing"
+    in_blocks = test["share_blocks"] or 0.0
+    if not test["significant_pixels"] and not test["significant_blocks"]:
+        return "nothing"
+    return f"{test['share']:.1%} px" if test["share"] >= in_blocks else f"{in_blocks:.0%} blocks"
 
 
 def _write_report(folder):

@@ -58,6 +58,7 @@ OTHERS = {
     "mask_steps": "what each mask kept (pixels) and took away (removed), in order",
     "unfiltered": "the numbers of the silhouette alone, before any other mask",
     "judged_by": "the metric to read first; in blocks where the reference's single pixels are too noisy",
+    "channels": "bias and relative_l1 of red, green and blue apart: a shift of colour",
     "profile": "means over the masked pixels in 20 equal bins of cos(normal, direction to the strongest sun); radiance",
     "mask.nan": "masked pixels with a NaN in our image or the reference; they are in no sum",
     "mask.inf": "masked pixels with an Inf and no NaN; they are in no sum",

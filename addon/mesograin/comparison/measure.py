@@ -84,6 +84,7 @@ def measure(case, chosen, request, depsgraph, size, overrides, ours, progress):
         "mask_steps": mask_steps,
         "unfiltered": compare(image, theirs.images, whole) if len(mask_steps) > 1 else None,
         "judged_by": sampling.kind.judged_by,
+        "channels": _channels(image, theirs.images, mask),
         "profile": shape,
         "our_noise": compare(theirs.mean, images, mask)["noise_floor"],
         "significance": verdict,
@@ -109,6 +110,15 @@ def compare(image, references, mask):
     metrics = native_module.get().compare(image, *references, mask=mask)
     apart = {name: metrics.pop(name) for name in ("noise_floor", "mask", "epsilon", "block_size")}
     return {"metrics": metrics, **apart}
+
+
+def _channels(image, references, mask):
+    """{'bias', 'relative_l1'} of red, green and blue apart: a shift of colour."""
+    parts = [
+        compare(image[..., [number]], [each[..., [number]] for each in references], mask)["metrics"]
+        for number in range(3)
+    ]
+    return {name: [part[name] for part in parts] for name in ("bias", "relative_l1")}
 
 
 def _until(case, request, size, sampling, image, mirror, progress):
