@@ -7,7 +7,7 @@ from pathlib import Path
 import bpy
 
 from . import native_module
-from .comparison import arguments, progress, report_page, results, run, verdict
+from .comparison import arguments, mask_names, progress, report_page, results, run, verdict
 from .cycles import kinds
 from .cycles.cache import Cache
 
@@ -95,17 +95,19 @@ class Comparison:
 
 
 def compare(models=arguments.DEFAULT_MODELS, references=None, out="//comparison", size=None, samples=64,
-            reference_samples=None, seeds=2, until=None, most_seeds=arguments.MOST_SEEDS, settings=None, frames=9,
-            cache=None, cache_limit=None, report=True, on_progress=None, command=None):
+            reference_samples=None, seeds=2, until=None, most_seeds=arguments.MOST_SEEDS, masks=(), settings=None,
+            frames=9, cache=None, cache_limit=None, report=True, on_progress=None, command=None):
     """Renders the current scene with every model and with the Cycles materials that mean the same, and measures.
 
     models: of 'lambert', 'conductor', 'model_1', 'model_2', 'model_3'; every material is rendered with each.
-    references: of 'diffuse', 'glossy', 'volume_index_matched', 'subsurface'; None for each model's usual one.
+    references: of 'diffuse', 'glossy', 'volume_index_matched', 'subsurface', 'subsurface_burley', 'volume_dielectric',
+    'photon'; None for each model's usual one.
     out: folder for all files, made if needed; '//' is the folder of the .blend file.
     size: (width, height) in pixels, None for the scene's. samples: of each pixel, on our side.
     reference_samples: Cycles samples of each pixel for each seed, None for 64 (surfaces) or 128 (volumes). seeds: how
     many independent references are averaged. until: adds seeds, to `most_seeds` at most, until the reference's noise is
-    this fraction of the measured error.
+    this fraction of the measured error. masks: such as 'silhouette:4', 'crop:LEFT,TOP,RIGHT,BOTTOM', 'mean_deviation',
+    'otsu', one after another.
     settings: {parameter: value} for every material on both sides: reflectance, sigma_a, sigma_s (1/mm; one number or
     three), g, eta, roughness (GGX alpha), scale, profile. frames: how many are timed for `frame_ms`.
     cache: folder of rendered references, None for the usual one. cache_limit: bytes that it may take.
@@ -130,11 +132,13 @@ def compare(models=arguments.DEFAULT_MODELS, references=None, out="//comparison"
             seeds=_count("seeds", seeds),
             until=_fraction("until", until),
             most_seeds=_count("most_seeds", most_seeds),
+            masks=tuple(_mask(text) for text in ((masks,) if isinstance(masks, str) else masks)),
             settings=_settings(settings or {}),
             frames=_count("frames", frames),
             cache=Cache(cache, cache_limit),
             command=command or call(models=models, references=references, out=str(out), size=size, samples=samples,
-                                    reference_samples=reference_samples, seeds=seeds, until=until, settings=settings))
+                                    reference_samples=reference_samples, seeds=seeds, until=until, masks=masks or None,
+                                    settings=settings))
         if not run.cases(request.models, request.references):
             raise ComparisonError(f"None of the references {', '.join(request.references)} answers "
                                   f"{', '.join(request.models)}: choose others, or None for each model's usual one.")
@@ -150,6 +154,13 @@ def compare(models=arguments.DEFAULT_MODELS, references=None, out="//comparison"
     warnings = [sentence for sentence in warnings if not any(case.error and case.error in sentence for case in cases)]
     page = _write_report(request.out, warnings) if report else None
     return Comparison(cases, request.out, page, found, tuple(warnings))
+
+
+def _mask(text):
+    try:
+        return mask_names.parse(text)
+    except mask_names.MaskError as error:
+        raise ComparisonError(f"masks: {error}.") from error
 
 
 def _write_report(folder, warnings):

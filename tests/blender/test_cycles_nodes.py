@@ -14,7 +14,10 @@ def value(material, node, socket):
     return tuple(found)[:3] if hasattr(found, "__len__") else found
 
 
-@pytest.mark.parametrize("kind", [*kinds.KINDS, "coverage"])
+CYCLES_KINDS = [*(kind.name for kind in kinds.KINDS.values() if not kind.referee), "coverage", "normal", "mirrored"]
+
+
+@pytest.mark.parametrize("kind", CYCLES_KINDS)
 def test_every_kind_builds_and_leaves_no_socket_open(kind):
     groups, recipe = len(bpy.data.node_groups), recipes.recipe(kind, GRAIN, nodes.features())
     material = nodes.build("Grain", recipe)
@@ -25,7 +28,7 @@ def test_every_kind_builds_and_leaves_no_socket_open(kind):
         for name_, expected in description["properties"].items():
             assert getattr(material.node_tree.nodes[name], name_) == expected
     assert material.node_tree.nodes["Output"].inputs["Surface"].is_linked == (kind != "volume_index_matched")
-    assert material.node_tree.nodes["Output"].inputs["Volume"].is_linked == (kind == "volume_index_matched")
+    assert material.node_tree.nodes["Output"].inputs["Volume"].is_linked == kind.startswith("volume")
     assert len(bpy.data.node_groups) == groups
 
 
@@ -36,6 +39,11 @@ def test_material_of_the_panel_in_millimetres():
     made = nodes.build_material(material, "volume_index_matched", millimetres_per_unit=10.0)
     assert value(made, "Scatter", "Density") == pytest.approx(18.0)
     assert value(made, "Absorption", "Density") == pytest.approx(2.0)
+
+
+def test_photons_have_no_material():
+    with pytest.raises(ValueError, match="none for 'photon'"):
+        nodes.build_material(bpy.data.materials.new("Sand"), "photon")
 
 
 def test_a_socket_nobody_knows_is_refused():

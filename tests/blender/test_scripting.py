@@ -81,6 +81,7 @@ def test_warnings_are_returned(sphere, compare):
     ({"reference_samples": 2.5}, ("reference_samples", "2.5 came")),
     ({"until": 2.0}, ("until", "2.0 came")),
     ({"seeds": 0}, ("seeds", "0 came")),
+    ({"masks": ("circle",)}, ("silhouette", "'circle' came")),
     ({"settings": {"boundary": "dielectric"}}, ("sigma_a", "'boundary' came")),
     ({"settings": {"sigma_s": (1.0, 2.0)}}, ("one number or three",)),
     ({"settings": {"g": "much"}}, ("g takes one number", "'much' came")),

@@ -13,7 +13,12 @@ OUTPUT = "Output"
 
 
 def recipe(kind, values, features):
-    """The recipe for a kind of reference; see the module. `values`: GrainValues. `features`: kinds.NodeFeatures."""
+    """The recipe for a kind of reference; see the module. `values`: GrainValues. `features`: kinds.NodeFeatures.
+
+    Raises ValueError for a kind that Cycles does not render.
+    """
+    if kind not in _RECIPES:
+        raise ValueError(f"There is a Cycles material for {', '.join(_RECIPES)}, but none for '{kind}': choose another.")
     return _RECIPES[kind](values, features)
 
 
@@ -132,10 +137,9 @@ def _subsurface_burley(values, features):
             "Color": tuple(inversion.colour_of_albedo(s / (a + s)) for a, s in reduced),
             "Scale": 1.0,
             "Radius": tuple(inversion.radius_of_extinction(a + s) for a, s in reduced),
-            "IOR": 1.4,
-            "Anisotropy": 0.0,
         },
-        "optional": {"Roughness": 1.0},
+        # Of the walks; Blender 4 hides them from this one.
+        "optional": {"IOR": 1.4, "Anisotropy": 0.0, "Roughness": 1.0},
     }
     return _recipe({"Subsurface": node}, surface=("Subsurface", "BSSRDF"))
 
