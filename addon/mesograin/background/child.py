@@ -26,16 +26,22 @@ class Channel:
         os.write(self._file, protocol.encode(event, **values))
 
 
+def remove(folders):
+    for folder in folders:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
 def end_with_parent(folders):
-    """Ends this process once its standard input ends, and what it wrote goes with it: the parent is gone."""
+    """Ends this process once its standard input ends, because the parent is gone; what it wrote goes with it."""
 
     def watch():
         while os.read(0, 4096):
             pass
+        # First, because the signal ends the process at once while Cycles renders, and then nothing else is written.
+        remove(folders)
         os.kill(os.getpid(), signal.SIGTERM)
         time.sleep(1.0)
-        for folder in folders:
-            shutil.rmtree(folder, ignore_errors=True)
+        remove(folders)
         os._exit(128 + signal.SIGTERM)
 
     threading.Thread(target=watch, daemon=True).start()
@@ -53,6 +59,7 @@ def main():
         try:
             return compare(task, channel)
         except KeyboardInterrupt:
+            remove(task["folders"])
             return interrupted.code
 
 
