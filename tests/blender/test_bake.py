@@ -169,3 +169,28 @@ def test_an_interrupted_command_leaves_nothing(tmp_path):
     assert process.returncode == 130, errors
     assert "Interrupted: nothing was written." in errors and "Traceback" not in errors
     assert sorted(os.listdir(tmp_path)) == ["sphere.blend"]
+
+
+def test_a_texture_back_on_its_object_looks_like_the_object(tmp_path, native, render):
+    material = make_sphere([((1.0, 0.5, 1.0), 3.0)], segments=64, rings=32, model="lambert",
+                           reflectance=(0.9, 0.5, 0.2))
+    scene = bpy.context.scene
+    scene.render.resolution_x = scene.render.resolution_y = 64
+    scene.render.film_transparent = True
+    scene.mesograin.samples = 16
+    expected = render()
+    chosen, texture = bake(size=(256, 128), samples=8, margin=4)
+    surface.write(tmp_path / "a.exr", texture, chosen.provenance(4))
+    material.use_nodes = True
+    nodes, links = material.node_tree.nodes, material.node_tree.links
+    nodes.clear()
+    image = nodes.new("ShaderNodeTexImage")
+    image.image = bpy.data.images.load(str(tmp_path / "a.exr"))
+    emission, output = nodes.new("ShaderNodeEmission"), nodes.new("ShaderNodeOutputMaterial")
+    links.new(image.outputs["Color"], emission.inputs["Color"])
+    links.new(emission.outputs["Emission"], output.inputs["Surface"])
+    scene.render.engine = "CYCLES"
+    scene.cycles.samples, scene.cycles.use_denoising, scene.cycles.pixel_filter_type = 16, False, "BOX"
+    scene.view_settings.view_transform = "Raw"
+    shown = render()
+    assert native.compare(shown, expected)["relative_l1"] < 0.01

@@ -79,9 +79,12 @@ void write_shading(Writer& writer) {
     }
     const std::string name = fmt::format("{}+{}", model, fmt::join(defines, "+"));
     if (!written.insert(name).second) continue;
-    for (const std::string pass : {"shade", "bake"})
-      writer.write(pass + "+" + name, ShaderSource({"passes/" + pass + ".vert"}, {}),
-                   ShaderSource({"passes/" + pass + ".frag", "models/" + model + ".glsl"}, defines));
+    writer.write(name, ShaderSource({"passes/shade.vert"}, {}),
+                 ShaderSource({"passes/shade.frag", "models/" + model + ".glsl"}, defines));
+    // The two passes ask the same of a model, so one of its choices stands for all of them.
+    if (written.insert(model).second)
+      writer.write("bake+" + name, ShaderSource({"passes/bake.vert"}, {}),
+                   ShaderSource({"passes/bake.frag", "models/" + model + ".glsl"}, defines));
   }
 }
 

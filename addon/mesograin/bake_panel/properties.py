@@ -1,0 +1,40 @@
+# What a scene remembers of how a surface is to be baked: scene.mesograin_bake.
+import bpy
+from bpy.props import BoolProperty, EnumProperty, IntProperty, PointerProperty, StringProperty
+
+from ..baking import choices
+
+VIEWS = {
+    "above_surface": ("Above Surface", "Every texel is looked at along its normal"),
+    "active_camera": ("Active Camera", "From the camera; what it does not see is looked at from low above"),
+}
+
+
+class BakeProperties(bpy.types.PropertyGroup):
+    """`scene.mesograin_bake`."""
+
+    width: IntProperty(name="Width", default=1024, min=1, max=choices.LARGEST_SIDE, description="Texels across")
+    height: IntProperty(name="Height", default=1024, min=1, max=choices.LARGEST_SIDE, description="Texels up")
+    samples: IntProperty(name="Samples", default=64, min=1, max=1 << 20, soft_max=4096,
+                         description="Samples of each texel")
+    view_from: EnumProperty(
+        name="View from", default=choices.VIEW_FROM[0], description="What looks at the surface",
+        items=tuple((name, *VIEWS[name], number) for number, name in enumerate(choices.VIEW_FROM)))
+    margin: IntProperty(name="Margin", default=choices.DEFAULT_MARGIN, min=0, max=choices.LARGEST_MARGIN, soft_max=64,
+                        description="Texels by which what is baked reaches beyond the UVs")
+    half: BoolProperty(name="Half floats", default=False, description="16-bit instead of 32-bit floats")
+    out: StringProperty(name="File", default="//bake.exr", subtype="FILE_PATH",
+                        description="The EXR file to write; // is the folder of the .blend file")
+
+
+_register_classes, _unregister_classes = bpy.utils.register_classes_factory((BakeProperties,))
+
+
+def register():
+    _register_classes()
+    bpy.types.Scene.mesograin_bake = PointerProperty(type=BakeProperties)
+
+
+def unregister():
+    del bpy.types.Scene.mesograin_bake
+    _unregister_classes()
