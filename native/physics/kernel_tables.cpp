@@ -10,7 +10,7 @@ namespace mesograin::physics {
 namespace {
 
 constexpr int distance_count = 256;
-constexpr int share_count = 256;
+constexpr int share_count = 1024;
 constexpr int cosine_count = 32;
 
 // Cosines inside at which a kernel that depends on them is evaluated; the table's are interpolated.

@@ -114,6 +114,7 @@ MaterialInputs model_3_inputs(const Material& material, double grain_radius) {
     if (surface.eta != 1.0) inputs.defines.emplace_back("REFRACTION");
     add_dielectric(material, inputs);
   }
+  if (media[0] == media[1] && media[0] == media[2]) inputs.defines.emplace_back("GREY");
   add_kernel(media, surface, material.profile, inputs);
   // Jensen's dipole stands for all orders, and so does a kernel that light enters by a cosine lobe.
   if (!surface.cosine_entry && material.profile != Profile::dipole) add_single_scattering(media, surface.eta, inputs);

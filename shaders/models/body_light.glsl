@@ -31,21 +31,22 @@ struct BodyFit {
   float cosine;   // between normal and light; negative where something stands in the light
   float visible;  // 0 or 1, smooth at the edge of a shadow
   float radius;   // of the sphere, over the grain's
+  float above;    // depth below the surface that the light meets first, in scene units
   float mu_o;
   float mu_o_refracted;
   float transmittance;  // towards the viewer
 };
 
-BodyFit fit_body(SurfacePoint point, LightSample light) {
+BodyFit fit_body(SurfacePoint point, LightSample light, LightFrame frame) {
   BodyFit fit;
-  vec3 position = to_light_space(light.index, point.position);
+  vec3 position = to_light_space(frame, point.position);
   float cosine = dot(point.normal, light.to_light);
-  LightMapTexel entry = light_map_at(light.index, position.xy);
+  LightMapTexel entry = light_map_at(frame, light.index, position.xy);
 
-  float above = entry.lit ? max(entry.position.z - position.z, 0.0) : 0.0;
-  float own = light_map_tolerance(light.index, entry.normal);
-  fit.visible = light_map_visibility(light.index, entry, position, cosine);
-  float way_in = mix(above, max(position.z - entry.exit_depth, 0.0), entry.lit ? fit.visible : 0.0);
+  fit.above = entry.lit ? max(entry.position.z - position.z, 0.0) : 0.0;
+  float own = light_map_tolerance(frame, entry.normal);
+  fit.visible = light_map_visibility(frame, entry, position, cosine);
+  float way_in = mix(fit.above, max(position.z - entry.exit_depth, 0.0), entry.lit ? fit.visible : 0.0);
 
   // A sphere of radius r has chords 2 r |cosine|. Where both vanish, and where the map is too coarse to tell, the grain's own radius stands
   // in.

@@ -21,22 +21,21 @@ struct LightMapTexel {
   float exit_depth;  // z of the first back face behind it
 };
 
-vec3 to_light_space(int light, vec3 vector) {
-  LightFrame frame = light_frames[light];
+// A light's frame, to be read once: the functions below take it from there.
+LightFrame light_frame(int light) { return light_frames[light]; }
+
+vec3 to_light_space(LightFrame frame, vec3 vector) {
   return vec3(dot(frame.x_axis.xyz, vector), dot(frame.y_axis.xyz, vector), dot(frame.z_axis.xyz, vector));
 }
 
-// Half the width of the square that the map covers, in scene units.
-float light_map_half_width(int light) { return light_frames[light].z_axis.w; }
+float light_map_texel_width(LightFrame frame) { return 2.0 * frame.z_axis.w / float(textureSize(light_maps, 0).x); }
 
 // How far a surface of this normal may lie from its own tangent plane in the map, along z: what is nearer than this is the same surface.
-float light_map_tolerance(int light, vec3 normal) {
-  float texel_width = 2.0 * light_frames[light].z_axis.w / float(textureSize(light_maps, 0).x);
-  return texel_width * (1.0 + 2.0 * sqrt(max(1.0 - normal.z * normal.z, 0.0)) / max(normal.z, 0.05));
+float light_map_tolerance(LightFrame frame, vec3 normal) {
+  return light_map_texel_width(frame) * (1.0 + 2.0 * sqrt(max(1.0 - normal.z * normal.z, 0.0)) / max(normal.z, 0.05));
 }
 
-LightMapTexel light_map_at(int light, vec2 xy) {
-  LightFrame frame = light_frames[light];
+LightMapTexel light_map_at(LightFrame frame, int light, vec2 xy) {
   float resolution = float(textureSize(light_maps, 0).x);
   vec2 in_texels = ((xy - vec2(frame.x_axis.w, frame.y_axis.w)) * (0.5 / frame.z_axis.w) + 0.5) * resolution;
   vec2 texel = clamp(floor(in_texels), 0.0, resolution - 1.0);
@@ -57,8 +56,8 @@ LightMapTexel light_map_at(int light, vec2 xy) {
 
 // How much of the light reaches the surface at `position` (light space), whose normal makes this cosine with it, 0 to 1: another part of the
 // grain may stand in it. `first` is the map there; it holds one tangent plane a texel, so a point is its own occluder by as much.
-float light_map_visibility(int light, LightMapTexel first, vec3 position, float cosine) {
+float light_map_visibility(LightFrame frame, LightMapTexel first, vec3 position, float cosine) {
   float above = first.lit ? max(first.position.z - position.z, 0.0) : 0.0;
-  float own = light_map_tolerance(light, first.normal);
+  float own = light_map_tolerance(frame, first.normal);
   return cosine > 0.0 ? 1.0 - smoothstep(own, 2.0 * own, above) : 0.0;
 }

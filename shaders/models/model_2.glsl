@@ -13,7 +13,7 @@ uniform sampler2D single_difference;
 #endif
 
 vec3 evaluate_model(SurfacePoint point, LightSample light) {
-  BodyFit fit = fit_body(point, light);
+  BodyFit fit = fit_body(point, light, light_frame(light.index));
   HalfSpaceLight half_space = half_space_light(point, light);
   vec4 difference = look_up_body(body_table, fit);
   float flow = flow_along_surface(fit, point, light, difference.a);

@@ -5,6 +5,7 @@
 // Not physical: distances are straight through the grain, so a concave one is crossed where light would have to go round.
 //
 // What is chosen at compile time (physics::model_3_inputs), besides what body_light.glsl names:
+//   GREY                 red, green and blue are the same medium, and only one is computed
 //   SINGLE_MARCHED       `refracted_light`: first-order scattering is not in the kernel
 #include "models/body_light.glsl"
 #include "models/interface.glsl"
@@ -14,6 +15,14 @@
 #include "physics/elementary.glsl"
 #include "physics/fresnel.glsl"
 #include "physics/henyey_greenstein.glsl"
+
+#ifdef GREY
+#define Spectrum float
+#define SPECTRUM(rgb) (rgb).r
+#else
+#define Spectrum vec3
+#define SPECTRUM(rgb) (rgb).rgb
+#endif
 
 #ifdef SINGLE_MARCHED
 struct Single {
@@ -48,10 +57,12 @@ vec2 low_discrepancy(uint index, uvec2 offset) {
   return vec2(bits >> 8u) * (1.0 / 16777216.0);
 }
 
+#ifdef SINGLE_MARCHED
 vec4 at_nodes(sampler2D table, vec2 coordinate) {
   vec2 size = vec2(textureSize(table, 0));
   return texture(table, (coordinate * (size - 1.0) + 0.5) / size);
 }
+#endif
 
 vec4 kernel_at(float distance, float mu) {
   vec2 size = vec2(textureSize(kernel, 0));
@@ -73,20 +84,20 @@ vec2 seen_from_light(float ring, float azimuth, float cosine, float turn, out fl
 }
 
 struct Gathered {
-  vec3 grain;   // exitance per irradiance, by these samples
-  vec3 sphere;  // the same of the sphere that fits
+  Spectrum grain;   // exitance per irradiance, by these samples
+  Spectrum sphere;  // the same of the sphere that fits
 };
 
-Gathered gather(int light, vec3 position, vec3 normal, float radius, int count, uint first, uvec2 offset) {
+Gathered gather(LightFrame frame, int light, BodyFit fit, vec3 position, vec3 normal, int count, uint first, uvec2 offset) {
   // Distances are drawn as for a plane that faces the light, half as high above as the lit surface: no lit point of a sphere is nearer than
   // that plane's, so no sample weighs more than it should.
-  LightMapTexel here = light_map_at(light, position.xy * body.radius);
-  float height = here.lit ? 0.5 * max(here.position.z / body.radius - position.z, 0.0) : 0.0;
+  float height = 0.5 * fit.above / body.radius;
 
   // How the surface looks from the light: narrower by |cosine| across its tilt, and bent as on the sphere.
   float tilt = length(normal.xy);
   vec2 across = tilt > 1e-4 ? normal.xy / tilt : vec2(1.0, 0.0);
   float narrowest = max(abs(normal.z), 0.05);
+  float radius = fit.radius;
   vec3 centre = position - radius * normal;
   // A sphere turns within tan(angle/2) of its radius, an edge at once: light knows no difference within a few mean free paths.
   float turn = min(radius * tilt / (1.0 + narrowest), sampling.turn) + 1e-6;
@@ -97,12 +108,14 @@ Gathered gather(int light, vec3 position, vec3 normal, float radius, int count, 
   float depth_here = height > 0.0 ? kernel_at(height, 1.0).a : 0.0;
   float within = -expm1(depth_here - kernel_at(sqrt(height * height + widest * widest), 1.0).a);
 
-  Gathered sum = Gathered(vec3(0.0), vec3(0.0));
+  float last_share = float(textureSize(kernel_inverse, 0).x - 1);
+  float shares = last_share * last_share / sampling.largest_depth;
+  Gathered sum = Gathered(Spectrum(0.0), Spectrum(0.0));
   for (int i = 0; i < count; ++i) {
     vec2 random = low_discrepancy(first + uint(i), offset);
     // The driver's log errs near 1, where it only moves a sample by a thousandth of its small distance.
     float depth = depth_here - log(1.0 - random.x * within);
-    vec2 drawn = at_nodes(kernel_inverse, vec2(sqrt(min(depth / sampling.largest_depth, 1.0)), 0.5)).xy;
+    vec2 drawn = texelFetch(kernel_inverse, ivec2(int(sqrt(min(depth * shares, last_share * last_share)) + 0.5), 0), 0).xy;
     float ring = sqrt(max(drawn.x * drawn.x - height * height, 0.0));
     float azimuth = 2.0 * PI * random.y;
     float area;
@@ -114,10 +127,10 @@ Gathered gather(int light, vec3 position, vec3 normal, float radius, int count, 
     float height_squared = radius * radius - dot(from_axis, from_axis);
     if (height_squared > 0.0) {
       float rise = sqrt(height_squared);
-      sum.sphere += weight * kernel_at(distance(vec3(place, centre.z + rise), position), rise / radius).rgb;
+      sum.sphere += weight * SPECTRUM(kernel_at(distance(vec3(place, centre.z + rise), position), rise / radius));
     }
-    LightMapTexel entry = light_map_at(light, place * body.radius);
-    if (entry.lit) sum.grain += weight * kernel_at(distance(entry.position / body.radius, position), entry.normal.z).rgb;
+    LightMapTexel entry = light_map_at(frame, light, place * body.radius);
+    if (entry.lit) sum.grain += weight * SPECTRUM(kernel_at(distance(entry.position / body.radius, position), entry.normal.z));
   }
   float share = exp(-depth_here) * within / float(max(count, 1));
   return Gathered(share * sum.grain, share * sum.sphere);
@@ -126,14 +139,14 @@ Gathered gather(int light, vec3 position, vec3 normal, float radius, int count, 
 // Radiance per irradiance of light scattered many times, given that of the sphere that fits.
 vec3 on_the_grain(Gathered gathered, vec3 sphere, float lobe) {
   // A control variate whose weight is never above one: what is less than the sphere's scales it, what is more adds to it.
-  vec3 share = min(gathered.grain / max(gathered.sphere, vec3(1e-30)), vec3(1.0));
-  share = mix(share, vec3(1.0), lessThan(gathered.sphere, vec3(1e-30)));
-  return sphere * share + lobe * max(gathered.grain - gathered.sphere, vec3(0.0));
+  Spectrum least = Spectrum(1e-30);
+  Spectrum share = min((gathered.grain + least) / (gathered.sphere + least), Spectrum(1.0));
+  return sphere * share + lobe * max(gathered.grain - gathered.sphere, Spectrum(0.0));
 }
 
 #ifdef SINGLE_MARCHED
 // Radiance inside, just below the surface, per irradiance: light that was scattered once on the view ray's way through the grain.
-vec3 single_scattering(int light, BodyFit fit, vec3 position, vec3 normal, vec3 to_viewer, int count, uint first, uvec2 offset) {
+vec3 single_scattering(LightFrame frame, int light, BodyFit fit, vec3 position, vec3 normal, vec3 to_viewer, int count, uint first, uvec2 offset) {
   float mu_o_refracted = fit.mu_o_refracted;
   vec3 inwards = (fit.mu_o * normal - to_viewer) / body.eta - mu_o_refracted * normal;
 
@@ -146,31 +159,44 @@ vec3 single_scattering(int light, BodyFit fit, vec3 position, vec3 normal, vec3 
   // or, where light grazes it, like a sphere a mean free path below the surface.
   float mu_i = refracted_cosine(abs(fit.cosine), body.eta);
   float tilted = mu_o_refracted - (fit.cosine < 0.0 ? 2.0 * mu_i * inwards.z : 0.0);
-  vec3 steepness = mu_i + sqrt(mu_i * mu_i + 2.0 / max(single.sigma_t * fit.radius, vec3(1e-6)));
-  vec3 rate = max(single.sigma_t * (1.0 + 2.0 * tilted / steepness), vec3(0.0));
+  Spectrum sigma_t = SPECTRUM(single.sigma_t);
+  Spectrum steepness = mu_i + sqrt(mu_i * mu_i + 2.0 / max(sigma_t * fit.radius, Spectrum(1e-6)));
+  Spectrum rate = max(sigma_t * (1.0 + 2.0 * tilted / steepness), Spectrum(0.0));
 
   // What each channel's exponential leaves of the way, over the way itself.
-  vec3 thickness = rate * longest;
+  Spectrum thickness = rate * longest;
+#ifdef GREY
+  float mean_way = longest * mean_attenuation(thickness);
+#else
   vec3 mean_way = longest * vec3(mean_attenuation(thickness.r), mean_attenuation(thickness.g), mean_attenuation(thickness.b));
+#endif
 
   float shift = low_discrepancy(first, offset).x;
-  vec3 sum = vec3(0.0);
-  vec3 plane = vec3(0.0);
+  Spectrum sum = Spectrum(0.0);
+  Spectrum plane = Spectrum(0.0);
   for (int i = 0; i < count; ++i) {
-    vec2 random = low_discrepancy(first + uint(i), offset);
-    random.x = (float(i) + shift) / float(count);
+    float random = (float(i) + shift) / float(count);
+#ifdef GREY
+    vec2 chosen = vec2(rate, mean_way);
+#else
     // One channel's distribution at a time, the mean of all three as the density.
-    vec2 chosen = random.y < 1.0 / 3.0 ? vec2(rate.r, mean_way.r) : random.y < 2.0 / 3.0 ? vec2(rate.g, mean_way.g) : vec2(rate.b, mean_way.b);
+    float channel = 3.0 * low_discrepancy(first + uint(i), offset).y;
+    vec2 chosen = channel < 1.0 ? vec2(rate.r, mean_way.r) : channel < 2.0 ? vec2(rate.g, mean_way.g) : vec2(rate.b, mean_way.b);
+#endif
     float kept = chosen.x * chosen.y;
-    float t = kept < 1e-2 ? random.x * longest : -log(1.0 - random.x * kept) / chosen.x;
-    vec3 on_plane = exp(-rate * t);
-    vec3 densities = on_plane / mean_way;
+    float t = kept < 1e-2 ? random * longest : -log(1.0 - random * kept) / chosen.x;
+    Spectrum on_plane = exp(-rate * t);
+    Spectrum densities = on_plane / mean_way;
+    #ifdef GREY
+    float density = densities;
+#else
     float density = (densities.r + densities.g + densities.b) / 3.0;
+#endif
     plane += on_plane / density;
     vec3 point = position + t * inwards;
-    LightMapTexel entry = light_map_at(light, point.xy * body.radius);
+    LightMapTexel entry = light_map_at(frame, light, point.xy * body.radius);
     float above = entry.position.z / body.radius - point.z;
-    if (!entry.lit || point.z * body.radius < entry.exit_depth || above < -light_map_tolerance(light, entry.normal) / body.radius) continue;
+    if (!entry.lit || point.z * body.radius < entry.exit_depth || above < -light_map_tolerance(frame, entry.normal) / body.radius) continue;
 
     // The place in the unit sphere that has this normal above it, at this depth.
     float tilt = length(entry.normal.xy);
@@ -182,17 +208,18 @@ vec3 single_scattering(int light, BodyFit fit, vec3 position, vec3 normal, vec3 
                           -sqrt(max((1.0 - lighting.z) * (1.0 + lighting.z), 0.0)));
     vec3 turn = direction + single.sign_g * inwards;
     float phase = henyey_greenstein(0.5 * dot(turn, turn), single.absolute_g, single.one_minus_absolute_g);
-    sum += lighting.x * phase * exp(-single.sigma_t * (t + way_in)) / density;
+    sum += lighting.x * phase * exp(-sigma_t * (t + way_in)) / density;
   }
   // What the lit plane's own integral says the samples should have found.
-  return single.sigma_s * sum * mean_way / max(plane, vec3(1e-30));
+  return single.sigma_s * sum * mean_way / max(plane, Spectrum(1e-30));
 }
 #endif
 
 vec3 evaluate_model(SurfacePoint point, LightSample light) {
-  BodyFit fit = fit_body(point, light);
-  vec3 position = to_light_space(light.index, point.position) / body.radius;
-  vec3 normal = to_light_space(light.index, point.normal);
+  LightFrame frame = light_frame(light.index);
+  BodyFit fit = fit_body(point, light, frame);
+  vec3 position = to_light_space(frame, point.position) / body.radius;
+  vec3 normal = to_light_space(frame, point.normal);
 
   int share = max(taps / max(light_count, 1), 2);
 #ifdef SINGLE_MARCHED
@@ -215,11 +242,11 @@ vec3 evaluate_model(SurfacePoint point, LightSample light) {
 #endif
   float tilt = sqrt(max((1.0 - fit.cosine) * (1.0 + fit.cosine), 0.0));
   vec3 fit_normal = vec3(normal.xy * (tilt * inversesqrt(max(dot(normal.xy, normal.xy), 1e-12))), fit.cosine);
-  Gathered gathered = gather(light.index, position, fit_normal, fit.radius, multiple_share, uint(sample_index * multiple_share), offset.xy);
+  Gathered gathered = gather(frame, light.index, fit, position, fit_normal, multiple_share, uint(sample_index * multiple_share), offset.xy);
   vec3 radiance = on_the_grain(gathered, sphere, lobe);
 #ifdef SINGLE_MARCHED
-  vec3 to_viewer = to_light_space(light.index, point.to_viewer);
-  vec3 inside = single_scattering(light.index, fit, position, normal, to_viewer, single_share, uint(sample_index * single_share), offset.zw);
+  vec3 to_viewer = to_light_space(frame, point.to_viewer);
+  vec3 inside = single_scattering(frame, light.index, fit, position, normal, to_viewer, single_share, uint(sample_index * single_share), offset.zw);
   radiance += fit.transmittance / (body.eta * body.eta) * inside;
 #endif
   radiance *= light.irradiance;
