@@ -16,6 +16,9 @@ constexpr int cosine_count = 32;
 // Cosines inside at which a kernel that depends on them is evaluated; the table's are interpolated.
 constexpr int evaluated_cosines = 8;
 
+// This much of the samples is spread evenly.
+constexpr double least_share = 1e-9;
+
 // Light that enters nearer to grazing is taken as this: it is little, and its kernel vanishes with its chord.
 constexpr double least_cosine = 0.1;
 
@@ -53,6 +56,9 @@ Distribution distribution(const Channels& channels, const std::vector<double>& d
     if (total > 0.0)
       for (std::size_t j = 0; j < distances.size(); ++j) result.density[j] += values[j] / total;
   }
+  // Where a kernel has rounded to nothing it must still be sampled, or the least light there would weigh without
+  // bounds.
+  for (double& density : result.density) density += least_share / (PI * distances.back() * distances.back());
   // Summed from the far end, so that the tail keeps its digits.
   result.beyond.assign(distances.size(), 0.0);
   for (std::size_t j = distances.size() - 1; j > 0; --j)

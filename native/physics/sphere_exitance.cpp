@@ -241,7 +241,7 @@ std::vector<double> half_space_single_exitance(double eta, const std::vector<dou
     for (const QuadratureNode& node : gauss_legendre(48)) {
       const double mu_exit = refracted_cosine(node.x, eta);
       sum += node.weight * node.x / (eta * eta) * (eta == 1.0 ? 1.0 : fresnel_transmittance(node.x, mu_exit, eta)) /
-             (mu_exit + mu_refracted);
+             std::max(mu_exit + mu_refracted, 1e-12);
     }
     exitance[i] = 0.5 * mu * (eta == 1.0 ? 1.0 : fresnel_transmittance(mu, mu_refracted, eta)) * sum;
   }

@@ -16,6 +16,9 @@ constexpr int beam_count = 400;
 // roughness blur.
 constexpr double least_ring = 0.02;
 
+// Beams nearer to the surface than this count as at it.
+constexpr double least_cosine = 1e-2;
+
 struct Crossing {
   double x;  // signed distance from the axis
   double path;
@@ -77,10 +80,12 @@ SphereRefraction::SphereRefraction(double eta) : nodes_(size * size, RefractedLi
           RefractedLight& node = nodes_[row * size + column];
           const double x = width * column / (size - 1);
           const double depth = sine_of_cosine(x) - z;
+          // Into a rarer grain nothing enters beyond the critical angle.
+          if (irradiance <= 0.0) continue;
           const double ratio =
-              depth > 1e-6 ? path / depth : sine_of_cosine(x) / refracted_cosine(sine_of_cosine(x), eta);
+              depth > 1e-6 ? path / depth
+                           : sine_of_cosine(x) / std::max(refracted_cosine(sine_of_cosine(x), eta), least_cosine);
           const double total = node.irradiance + irradiance;
-          if (total <= 0.0) continue;
           const double sideways = side * ((1.0 - t) * a.sideways + t * b.sideways);
           node.path_ratio = (node.irradiance * node.path_ratio + irradiance * ratio) / total;
           node.sideways = (node.irradiance * node.sideways + irradiance * sideways) / total;

@@ -18,10 +18,10 @@
 
 #ifdef GREY
 #define Spectrum float
-#define SPECTRUM(rgb) (rgb).r
+#define SPECTRUM(value) (value).r
 #else
 #define Spectrum vec3
-#define SPECTRUM(rgb) (rgb).rgb
+#define SPECTRUM(value) (value).rgb
 #endif
 
 #ifdef SINGLE_MARCHED

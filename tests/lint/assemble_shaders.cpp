@@ -63,6 +63,9 @@ std::vector<scene::Material> every_choice() {
             material.profile = static_cast<scene::Profile>(profile);
             material.roughness = roughness;
             materials.push_back(material);
+            if (material.model != scene::Model::model_3) continue;
+            material.sigma_s = {1.0, 2.0, 3.0};  // a coloured one is another program than a grey one
+            materials.push_back(material);
           }
   return materials;
 }

@@ -131,3 +131,24 @@ def test_sixteen_samples_are_enough_for_a_thick_grain(radius, eta):
     assert numpy.sqrt((difference**2).mean()) < 0.015 * mean
     assert numpy.abs(difference).max() < 0.15 * mean
     assert abs(difference.mean()) < 0.003 * mean
+
+
+@pytest.mark.parametrize("model", ["model_2", "model_3"])
+@pytest.mark.parametrize(("sigma_s", "sigma_a", "eta", "g"), [
+    (0.9, 0.1, 0.7, 0.0), (0.9, 0.1, 0.5, 0.8), (1e-6, 1e-6, 1.3, 0.0), (1e6, 0.0, 1.3, 0.0), (0.0, 0.0, 1.6, 0.0),
+    ((0.99, 0.8, 0.1), (0.01, 0.2, 0.9), 1.3, -0.5)])
+def test_extreme_media_stay_finite(model, sigma_s, sigma_a, eta, g):
+    """A stretched grain, so that nothing is the sphere that fits; no pixel sends out more than came in."""
+    colour = numpy.broadcast_to
+    made_of = native.Material(model=model, sigma_s=tuple(colour(sigma_s, 3)), sigma_a=tuple(colour(sigma_a, 3)),
+                              eta=eta, g=g, boundary="dielectric")
+    view = native.View(32, 32)
+    light = native.DirectionalLight((0.0, 1.0, 0.3), (1.0, 1.0, 1.0))
+    instance = native.Instance(accuracy.sphere(native), made_of, numpy.diag([0.5, 1.0, 1.5, 1.0]))
+    view.set_scene(native.Scene(instances=[instance], lights=[light]))
+    view.set_camera(native.Camera.look_at((4.0, 2.0, 3.0), (0.0, 0.0, 0.0), (0.0, 0.0, 1.0), 40.0))
+    view.render(2)
+    pixels = view.read()
+    assert numpy.isfinite(pixels).all()
+    assert pixels.min() >= 0.0
+    assert pixels[..., :3].max() < 1.0
