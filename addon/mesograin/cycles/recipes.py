@@ -18,7 +18,7 @@ def recipe(kind, values, features):
     Raises ValueError for a kind that Cycles does not render.
     """
     if kind not in _RECIPES:
-        raise ValueError(f"There is a Cycles material for {', '.join(_RECIPES)}, but none for '{kind}': choose another.")
+        raise ValueError(f"There are Cycles materials for {', '.join(_RECIPES)}, none for '{kind}': choose another.")
     return _RECIPES[kind](values, features)
 
 
