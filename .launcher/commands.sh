@@ -51,6 +51,7 @@ in_background_blender() {
   ensure_blender
   ensure_lists report
   ensure_product product
+  ensure_referee "$@"
   mkdir -p "$logs"
   exec /usr/bin/python3 "$source_folder/.launcher/run_blender.py" "$logs/$name.log" "$blender" --background \
     --factory-startup --python-exit-code 1 --python "$source_folder/addon/mesograin/$room/command.py" -- \
@@ -72,9 +73,7 @@ run_sweep() {
   ensure_blender
   ensure_lists report
   ensure_product product
-  # shellcheck disable=SC2046 # the kinds of reference are separate words
-  ensure_referee $(grep -hos 'photon' "$@" | head -n 1)
-  ensure_referee "$@"
+  ensure_referee "$(grep -hosw -e photon -- "$@" | head -n 1)"
   exec "$python" "$source_folder/addon/mesograin/sweep/command.py" "$@" --blender "$blender"
 }
 
@@ -106,6 +105,7 @@ run_bake() {
   [ -f "$1" ] || fail "$exit_usage" "There is no scene '$1'."
   ensure_blender
   ensure_product product
+  ensure_referee "$@"
   mkdir -p "$logs"
   exec /usr/bin/python3 "$source_folder/.launcher/run_blender.py" "$logs/bake.log" "$blender" --background \
     --factory-startup --python-exit-code 1 --python "$source_folder/addon/mesograin/baking/command.py" -- "$@"

@@ -144,3 +144,12 @@ def test_versions_agree():
     assert f'version = "{version}"' in (SOURCE / "addon/mesograin/blender_manifest.toml").read_text()
     assert f'"version": ({version.replace(".", ", ")})' in (SOURCE / "addon/mesograin/__init__.py").read_text()
     assert f"## {version}" in (SOURCE / "CHANGELOG.md").read_text()
+
+
+@pytest.mark.parametrize("command", [["sweep", "none.toml", "--out", "sweep"], ["render", "none.json", "-o", "a.exr"]])
+def test_a_missing_file_is_one_sentence(command, tmp_path):
+    outcome = launcher(*command, folder=tmp_path)
+    assert outcome.returncode in (1, 2), outcome.stderr
+    said = outcome.stderr.strip().splitlines()
+    assert len(said) == 1 and "none." in said[0], outcome.stderr
+    assert not list(tmp_path.iterdir())

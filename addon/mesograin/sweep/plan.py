@@ -184,7 +184,8 @@ def read(path):
     try:
         text = path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
-        raise PlanError(f"The sweep '{path}' cannot be read: {error}.") from error
+        reason = getattr(error, "strerror", None) or error
+        raise PlanError(f"The sweep '{path}' cannot be read ({reason}): name a TOML file.") from error
     try:
         table = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
