@@ -5,45 +5,12 @@ import sys
 from pathlib import Path
 
 ADDON = Path(__file__).resolve().parents[1]
-OK, NOT_BAKED, BAD_INPUT, NO_OUTPUT = 0, 1, 2, 3
 
 
-def main():
-    """Returns the exit code; every problem is one sentence on standard error."""
-    sys.path.insert(0, str(ADDON.parent))
-    from mesograin.baking import arguments
+def _run(chosen, _):
+    from mesograin.comparison.command_line import FAILED, NO_OUTPUT, OK, CommandError, open_scene
 
-    chosen = arguments.parse(sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else [])
-
-    from mesograin.comparison import interruption
-
-    with interruption.Interruption() as interrupted:
-        try:
-            return _run(chosen)
-        except KeyboardInterrupt:
-            sys.stderr.write("\nInterrupted: nothing was written.\n")
-            return interrupted.code
-
-
-def _run(chosen):
-    import addon_utils
-    import bpy
-    import mesograin
-    from mesograin import native_module
-
-    addon_utils.enable("cycles")
-    if not hasattr(bpy.types.Scene, "mesograin"):
-        mesograin.register()
-    try:
-        # Only now, so that the file finds its engine and its properties.
-        bpy.ops.wm.open_mainfile(filepath=str(chosen.scene.absolute()), load_ui=False)
-    except RuntimeError as error:
-        reason = " ".join(str(error).split()).removeprefix("Error: ")
-        return _complain(f"{chosen.scene} cannot be opened: {reason}", BAD_INPUT)
-    try:
-        native = native_module.get()
-    except native_module.Unavailable as error:
-        return _complain(error, BAD_INPUT)
+    native = open_scene(chosen.scene)
 
     from mesograin.baking import surface
     from mesograin.comparison.progress import Progress
@@ -53,13 +20,14 @@ def _run(chosen):
     progress = Progress()
     try:
         surface.require_writable(chosen.output)
-        return _bake(chosen, progress)
+        _bake(chosen, progress)
     except surface.OutputError as error:
-        return _complain(error, NO_OUTPUT)
+        raise CommandError(error, NO_OUTPUT) from error
     except (surface.BakeError, ReferenceError, StageError, native.Error) as error:
-        return _complain(error, NOT_BAKED)
+        raise CommandError(error, FAILED) from error
     finally:
         progress.close()
+    return OK
 
 
 def _bake(chosen, progress):
@@ -72,7 +40,8 @@ def _bake(chosen, progress):
     overrides = {parameter: export.per_unit(parameter, value, unit) for parameter, value in chosen.settings.items()}
     name = surface.choose(depsgraph, chosen.object)
     if chosen.compare:
-        return _compare(chosen, depsgraph, name, overrides, progress)
+        _compare(chosen, depsgraph, name, overrides, progress)
+        return
     if chosen.model:
         overrides["model"] = chosen.model
     ours = surface.Surface(depsgraph, name, chosen.size, chosen.view_from, overrides)
@@ -88,7 +57,6 @@ def _bake(chosen, progress):
     models = ", ".join(sorted({values["model"] for values in ours.materials.values()}))
     print(f"{chosen.output}: {name}, {chosen.size[0]} x {chosen.size[1]} texels, {chosen.samples} samples by {models}",
           flush=True)
-    return OK
 
 
 def _compare(chosen, depsgraph, name, overrides, progress):
@@ -108,20 +76,15 @@ def _compare(chosen, depsgraph, name, overrides, progress):
     print(f"{name}, {results['model']} beside {results['reference_title']}: {verdict({**results, 'status': 'done'})}")
     print(f"{', '.join(numbers)}; {results['mask']['pixels']} texels; Cycles {results['reference_seconds']:.1f} s")
     print(f"{chosen.output.absolute().parent}: {', '.join(written)}", flush=True)
-    return OK
 
 
 def _share(value):
     return "unknown" if value is None else format(value, ".2%")
 
 
-def _complain(error, code):
-    sys.stderr.write(f"bake: {error}\n")
-    return code
-
-
 if __name__ == "__main__":
-    code = main()
-    sys.stdout.flush()
-    sys.stderr.flush()
-    sys.exit(code)
+    sys.path.insert(0, str(ADDON.parent))
+    from mesograin.baking import arguments
+    from mesograin.comparison import command_line
+
+    command_line.main("bake", arguments.parse, _run, "Interrupted: nothing was written.")

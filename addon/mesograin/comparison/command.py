@@ -6,44 +6,12 @@ import sys
 from pathlib import Path
 
 ADDON = Path(__file__).resolve().parents[1]
-OK, CASE_FAILED, BAD_INPUT, NO_OUTPUT = 0, 1, 2, 3
-
-
-def main():
-    """Returns the exit code; every problem is one sentence on standard error."""
-    sys.path.insert(0, str(ADDON.parent))
-    from mesograin.comparison import arguments
-
-    words = sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else []
-    chosen = arguments.parse(words)
-
-    from mesograin.comparison import interruption
-
-    with interruption.Interruption() as interrupted:
-        try:
-            return _run(chosen, words)
-        except KeyboardInterrupt:
-            sys.stderr.write(f"\n{interruption.INTERRUPTED}\n")
-            return interrupted.code
 
 
 def _run(chosen, words):
-    import addon_utils
-    import bpy
-    import mesograin
-    from mesograin import native_module
+    from mesograin.comparison.command_line import FAILED, NO_OUTPUT, OK, CommandError, complain, open_scene
 
-    addon_utils.enable("cycles")
-    if not hasattr(bpy.types.Scene, "mesograin"):
-        mesograin.register()
-
-    if chosen.scene:
-        # Only now, so that the file finds its engine and its properties.
-        try:
-            bpy.ops.wm.open_mainfile(filepath=str(chosen.scene.absolute()), load_ui=False)
-        except RuntimeError as error:
-            reason = " ".join(str(error).split()).removeprefix("Error: ")
-            return _complain(f"{chosen.scene} cannot be opened: {reason}", BAD_INPUT)
+    native = open_scene(chosen.scene)
 
     from mesograin.comparison.progress import Progress
     from mesograin.comparison.results import OutputError
@@ -56,15 +24,12 @@ def _run(chosen, words):
             count, size = cache.clear()
             print(f"{count} references removed from {cache.folder}, {size / 2**20:.1f} MiB.")
             return OK
-        native = native_module.get()
-    except (ValueError, native_module.Unavailable) as error:
-        return _complain(error, BAD_INPUT)
+    except ValueError as error:
+        raise CommandError(error) from error
     except OSError as error:
-        return _complain(f"The reference cache cannot be emptied: {error}.", NO_OUTPUT)
+        raise CommandError(f"The reference cache cannot be emptied: {error}.", NO_OUTPUT) from error
     if not cases(chosen.models, chosen.references):
-        return _complain(
-            f"None of the references {', '.join(chosen.references)} answers {', '.join(chosen.models)}.", BAD_INPUT
-        )
+        raise CommandError(f"None of the references {', '.join(chosen.references)} answers {', '.join(chosen.models)}.")
 
     request = Request(
         models=tuple(chosen.models),
@@ -86,9 +51,9 @@ def _run(chosen, words):
     try:
         results = compare(request, progress)
     except OutputError as error:
-        return _complain(error, NO_OUTPUT)
+        raise CommandError(error, NO_OUTPUT) from error
     except native.Error as error:
-        return _complain(error, BAD_INPUT)
+        raise CommandError(error) from error
     finally:
         progress.close()
     _print_table(results)
@@ -96,13 +61,8 @@ def _run(chosen, words):
     print(f"Results: {Path(chosen.out).absolute()}", flush=True)
     failed = [f"{case['name']}: {case['error']}" for case in results["cases"] if case["status"] != "done"]
     for sentence in failed:
-        _complain(sentence, CASE_FAILED)
-    return CASE_FAILED if failed or not written else OK
-
-
-def _complain(error, code):
-    sys.stderr.write(f"compare: {error}\n")
-    return code
+        complain("compare", sentence)
+    return FAILED if failed or not written else OK
 
 
 def _command(words):
@@ -153,7 +113,7 @@ def _write_report(folder):
 
 
 if __name__ == "__main__":
-    code = main()
-    sys.stdout.flush()
-    sys.stderr.flush()
-    sys.exit(code)
+    sys.path.insert(0, str(ADDON.parent))
+    from mesograin.comparison import arguments, command_line
+
+    command_line.main("compare", arguments.parse, _run)

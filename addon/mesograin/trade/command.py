@@ -6,43 +6,14 @@ import sys
 from pathlib import Path
 
 ADDON = Path(__file__).resolve().parents[1]
-OK, FAILED, BAD_INPUT, NO_OUTPUT = 0, 1, 2, 3
-
-
-def main():
-    """Returns the exit code; every problem is one sentence on standard error."""
-    sys.path.insert(0, str(ADDON.parent))
-    from mesograin.comparison import interruption
-    from mesograin.trade import arguments
-
-    words = sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else []
-    chosen = arguments.parse(words)
-    with interruption.Interruption() as interrupted:
-        try:
-            return _run(chosen, words)
-        except KeyboardInterrupt:
-            sys.stderr.write(f"\n{interruption.INTERRUPTED}\n")
-            return interrupted.code
 
 
 def _run(chosen, words):
-    import addon_utils
-    import bpy
-    import mesograin
-    from mesograin import native_module
-
-    addon_utils.enable("cycles")
-    if not hasattr(bpy.types.Scene, "mesograin"):
-        mesograin.register()
-    if chosen.scene:
-        # Only now, so that the file finds its engine and its properties.
-        try:
-            bpy.ops.wm.open_mainfile(filepath=str(chosen.scene.absolute()), load_ui=False)
-        except RuntimeError as error:
-            reason = " ".join(str(error).split()).removeprefix("Error: ")
-            return _complain(f"{chosen.scene} cannot be opened: {reason}", BAD_INPUT)
-
     from mesograin.comparison import report_page
+    from mesograin.comparison.command_line import FAILED, NO_OUTPUT, OK, CommandError, open_scene
+
+    native = open_scene(chosen.scene)
+
     from mesograin.comparison.progress import Progress
     from mesograin.comparison.results import OutputError
     from mesograin.cycles.cache import Cache
@@ -51,10 +22,9 @@ def _run(chosen, words):
     from mesograin.trade.measure import Request, measure
 
     try:
-        native = native_module.get()
         cache = Cache(chosen.cache, chosen.cache_limit)
-    except (ValueError, native_module.Unavailable) as error:
-        return _complain(error, BAD_INPUT)
+    except ValueError as error:
+        raise CommandError(error) from error
     progress = Progress()
     try:
         results = measure(
@@ -75,9 +45,9 @@ def _run(chosen, words):
             progress,
         )
     except OutputError as error:
-        return _complain(error, NO_OUTPUT)
+        raise CommandError(error, NO_OUTPUT) from error
     except (native.Error, ReferenceError, StageError) as error:
-        return _complain(error, BAD_INPUT)
+        raise CommandError(error) from error
     finally:
         progress.close()
     for entry in results["summary"]:
@@ -85,18 +55,14 @@ def _run(chosen, words):
     try:
         page = report_page.write(chosen.out)
     except report_page.ReportError as error:
-        return _complain(f"no report: {error}", FAILED)
+        raise CommandError(f"no report: {error}", FAILED) from error
     print(f"Results: {page.absolute()}", flush=True)
     return OK
 
 
-def _complain(error, code):
-    sys.stderr.write(f"trade: {error}\n")
-    return code
-
-
 if __name__ == "__main__":
-    code = main()
-    sys.stdout.flush()
-    sys.stderr.flush()
-    sys.exit(code)
+    sys.path.insert(0, str(ADDON.parent))
+    from mesograin.comparison import command_line
+    from mesograin.trade import arguments
+
+    command_line.main("trade", arguments.parse, _run)
