@@ -1,12 +1,13 @@
 """How far each model's sphere is from photon Monte Carlo, over materials, indices and radii.
 
-    accuracy.py BUILD_FOLDER [--models M ...] [--taps N ...] [--out FOLDER]
+    accuracy.py BUILD_FOLDER [--models M ...] [--taps N ...] [--out FOLDER] [--fresh] [--markdown FILE]
 
 Exitance is what is compared: radiance is rendered from directions all around the sphere and summed over them, so no
 exit lobe is assumed. relative_l1 is sum|model - truth|/sum truth over bins of cos(normal, light), total is
 sum model/sum truth, dark_ratio the same for cosines below -1/2, noise_floor the truth's own standard error as a
 relative_l1. Truth: scattering of every order from one up (tests/data/referee).
-Writes accuracy.json and accuracy.csv and prints the means.
+thesis_relative_l1 and so on are the same numbers of the thesis' form of the model (thesis_models.py), noise apart.
+shade_ms is a frame's shade pass, 64x64 pixels. Writes accuracy.json, accuracy.csv and accuracy.html, prints the means.
 """
 import argparse
 import csv
@@ -14,8 +15,11 @@ import importlib
 import json
 import pathlib
 import sys
+import time
 
+import accuracy_page
 import numpy
+import thesis_models
 
 SIZE = 64
 VIEWS = 10
@@ -78,39 +82,83 @@ def compare(exitance, truth, noise, cosines):
             "noise_floor": float(noise.sum() / truth.sum())}
 
 
-def run(native, models, taps):
+class Thesis:
+    """The thesis' form of each model, computed once for each albedo."""
+
+    def __init__(self, cosines):
+        self._cosines = cosines
+        self._known = {}
+
+    def exitance(self, model, albedos, radius, eta):
+        """(bins, 3) for three albedos."""
+        columns = []
+        for albedo in albedos:
+            key = model, round(float(albedo), 12), radius, eta
+            if key not in self._known:
+                self._known[key] = thesis_models.MODELS[model](self._cosines, float(albedo), radius, eta)
+            columns.append(self._known[key])
+        return numpy.stack(columns, axis=-1)
+
+
+class Bench:
+    """Everything that all cases share."""
+
+    def __init__(self, native, table):
+        self._native = native
+        self._table = table
+        self._bins = table["bins"]
+        self._cosines = (2.0 * numpy.arange(self._bins) + 1.0) / self._bins - 1.0
+        self._mesh = sphere(native)
+        self._cameras = Cameras(native)
+        self._view = native.View(SIZE, SIZE)
+        self._light = native.DirectionalLight((0.0, 1.0, 0.0), (1.0, 1.0, 1.0))
+        self._thesis = Thesis(self._cosines)
+
+    def measure(self, case, material, model, taps):
+        """One row of the table."""
+        albedo = numpy.array([self._table["albedos"][index] for index in material["albedo_index"]])
+        truth = numpy.array([case["scattered"][index] for index in material["albedo_index"]]).T
+        noise = numpy.array([case["scattered_noise"][index] for index in material["albedo_index"]]).T
+        printed = compare(self._thesis.exitance(model, albedo, case["radius"], case["eta"]), truth, noise,
+                          self._cosines)
+        # sigma_t is the radius in mean free paths: every channel has its own albedo at the same radius.
+        made = self._native.Material(sigma_s=tuple(albedo * case["radius"]),
+                                     sigma_a=tuple((1.0 - albedo) * case["radius"]), eta=case["eta"], model=model,
+                                     boundary="index_matched" if case["eta"] == 1.0 else "dielectric")
+        self._view.set_scene(self._native.Scene(
+            instances=[self._native.Instance(self._mesh, made, numpy.eye(4))], lights=[self._light]))
+        if taps:
+            self._view.set_taps(taps)
+        exitance = self._cameras.exitance(self._view, 1 if taps else 4, self._bins)
+        milliseconds = {entry["pass"]: entry["milliseconds"] for entry in self._view.timings()}["shade"]
+        return {"material": material["name"], "eta": case["eta"], "radius": case["radius"], "model": model,
+                "taps": taps, "shade_ms": milliseconds, **compare(exitance, truth, noise, self._cosines),
+                **{f"thesis_{name}": printed[name]
+                   for name in ("relative_l1", "total", "dark_ratio", "dark_relative_l1")}}
+
+
+def key(row):
+    return row["material"], row["eta"], row["radius"], row["model"], row["taps"]
+
+
+def run(native, models, taps, known, save):
+    """Rows of all cases; `known` ones are not measured again. `save` gets the rows so far after every sphere."""
     table = json.loads(REFEREE.read_text())
-    bins = table["bins"]
-    cosines = (2.0 * numpy.arange(bins) + 1.0) / bins - 1.0
-    mesh = sphere(native)
-    cameras = Cameras(native)
-    view = native.View(SIZE, SIZE)
-    light = native.DirectionalLight((0.0, 1.0, 0.0), (1.0, 1.0, 1.0))
+    bench = Bench(native, table)
+    rows = {key(row): row for row in known}
     cases = [case for case in table["cases"] if case["entry"] == "refracted"]
-    rows = []
+    start = time.monotonic()
     for number, case in enumerate(cases):
         for material in table["materials"]:
-            albedo = numpy.array([table["albedos"][index] for index in material["albedo_index"]])
-            truth = numpy.array([case["scattered"][index] for index in material["albedo_index"]]).T
-            noise = numpy.array([case["scattered_noise"][index] for index in material["albedo_index"]]).T
             for model in models:
                 for count in (taps if model == "model_3" else (0,)):
-                    # sigma_t is the radius in mean free paths: every channel has its own albedo at the same radius.
-                    parameters = {"sigma_s": tuple(albedo * case["radius"]),
-                                  "sigma_a": tuple((1.0 - albedo) * case["radius"]),
-                                  "eta": case["eta"], "model": model,
-                                  "boundary": "index_matched" if case["eta"] == 1.0 else "dielectric"}
-                    instance = native.Instance(mesh, native.Material(**parameters), numpy.eye(4))
-                    view.set_scene(native.Scene(instances=[instance], lights=[light]))
-                    if count:
-                        view.set_taps(count)
-                    exitance = cameras.exitance(view, 1 if count else 4, bins)
-                    milliseconds = {entry["pass"]: entry["milliseconds"] for entry in view.timings()}["shade"]
-                    rows.append({"material": material["name"], "eta": case["eta"], "radius": case["radius"],
-                                 "model": model, "taps": count, "shade_ms": milliseconds,
-                                 **compare(exitance, truth, noise, cosines)})
-        print(f"{number + 1} of {len(cases)} spheres", file=sys.stderr, flush=True)
-    return rows
+                    if (material["name"], case["eta"], case["radius"], model, count) not in rows:
+                        row = bench.measure(case, material, model, count)
+                        rows[key(row)] = row
+        save(list(rows.values()))
+        left = (time.monotonic() - start) / (number + 1) * (len(cases) - number - 1)
+        print(f"{number + 1} of {len(cases)} spheres, about {left:.0f} s left", file=sys.stderr, flush=True)
+    return list(rows.values())
 
 
 def summary(rows):
@@ -131,16 +179,28 @@ def main():
     parser.add_argument("--models", nargs="+", default=["model_1", "model_2", "model_3"])
     parser.add_argument("--taps", nargs="+", type=int, default=[16, 64])
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("accuracy"))
+    parser.add_argument("--fresh", action="store_true", help="measure again what OUT holds from a broken-off run")
+    parser.add_argument("--markdown", type=pathlib.Path, help="also writes the summary there")
     arguments = parser.parse_args()
     sys.path.insert(0, str(arguments.build))
     native = importlib.import_module("mesograin_native")
-    rows = run(native, arguments.models, arguments.taps)
     arguments.out.mkdir(parents=True, exist_ok=True)
-    (arguments.out / "accuracy.json").write_text(json.dumps({"about": __doc__, "rows": rows}, indent=1))
+    results = arguments.out / "accuracy.json"
+    made_by = {"about": __doc__, "device": native.device_info()["renderer"], "version": native.__version__}
+
+    def save(rows):
+        results.write_text(json.dumps({**made_by, "rows": rows}, indent=1))
+
+    known = json.loads(results.read_text()) if results.exists() and not arguments.fresh else {"rows": []}
+    rows = run(native, arguments.models, arguments.taps, known["rows"], save)
+    device = made_by["device"]
     with open(arguments.out / "accuracy.csv", "w", newline="") as file:
         writer = csv.DictWriter(file, rows[0])
         writer.writeheader()
         writer.writerows(rows)
+    (arguments.out / "accuracy.html").write_text(accuracy_page.render("accuracy.html.j2", rows, device))
+    if arguments.markdown:
+        arguments.markdown.write_text(accuracy_page.render("accuracy.md.j2", rows, device))
     print("\n".join(summary(rows)))
 
 

@@ -172,7 +172,7 @@ class RandomMaterials {
     material.eta =
         pick({0.5, 1.0, 1.0 - 1e-7, 1.0 + 1e-7, 4.0, even(0.5, 4.0), even(0.5, 4.0), even(1.0, 2.0), even(1.0, 2.0)});
     material.roughness = pick({0.0, 1e-7, 1.0, even(0.0, 1.0), even(0.0, 1.0)});
-    material.specular = pick({true, false});
+    material.specular = pick({true, false, false, false});
     material.scale = pick({1.0, 1.0, 1.0, 0.0, 1e-6, 1e6, magnitude()});
     return material;
   }
