@@ -11,12 +11,6 @@ constexpr int beam_depths = 100;
 
 double beam_depth(int index, double sigma_t) { return -std::log1p(-(index + 0.5) / beam_depths) / sigma_t; }
 
-// exp(-k d_r)/d_r - exp(-k d_v)/d_v for a source above its image, without the difference of neighbours.
-double image_difference(double real_distance, double virtual_distance, double delta_squared, double decay) {
-  const double delta = delta_squared / (real_distance + virtual_distance);
-  return std::exp(-decay * real_distance) / real_distance * -expm1(-(decay * delta + log1p(delta / real_distance)));
-}
-
 double flux_term(double depth, double distance, double decay) {
   return depth * (1.0 + decay * distance) * std::exp(-decay * distance) / (distance * distance * distance);
 }

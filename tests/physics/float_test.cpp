@@ -257,6 +257,24 @@ TEST(NaiveForm, BetterDipoleWithoutAbsorption) {
   EXPECT_LE(largest_deviation(evaluate_on_gpu(stable.glsl, inputs), exact, inputs, 1e-30).relative, 1e-6);
 }
 
+TEST(NaiveForm, FluenceOfASourceAndItsImageFarAway) {
+  // x[0] = r, x[1] = decay; a source at depth 1 and its image at 4.1, in mean free paths.
+  const auto inputs = grid({{30.0, 100.0, 300.0, 1000.0, 3000.0}, {0.0, 1e-3, 1e-2}});
+  expect_row(
+      "exp(-x[1] * sqrt(x[0] * x[0] + 1.0)) / sqrt(x[0] * x[0] + 1.0) - exp(-x[1] * sqrt(x[0] * x[0] + 16.81)) "
+      "/ sqrt(x[0] * x[0] + 16.81)",
+      MESOGRAIN_EXPRESSION(image_difference(sqrt(x[0] * x[0] + 1.0), sqrt(x[0] * x[0] + 16.81), 15.81, x[1])), inputs,
+      1e-3, 1e-5);
+}
+
+TEST(NaiveForm, FluenceAtTheSourceAndBeyondAnyDistance) {
+  // Distances from nothing to 1e6 mean free paths: finite, and zero where single precision has no number for it.
+  const auto inputs = grid({std::vector<double>{0.0} + geometric(1e-20, 1e6, 200), {0.0, 0.1, 3.0}});
+  for (const float value :
+       evaluate_on_gpu("image_difference(sqrt(x[0] * x[0] + 1.0), sqrt(x[0] * x[0] + 16.81), 15.81, x[1])", inputs))
+    EXPECT_TRUE(std::isfinite(value) && value >= 0.0F) << value;
+}
+
 TEST(NaiveForm, HenyeyGreensteinNearOne) {
   // x[0] = 1 - g, x[1] = 1 - cosine.
   const auto inputs = grid({geometric(1e-4, 1e-2, 20), geometric(1e-9, 1e-2, 30)});
@@ -275,6 +293,15 @@ TEST(NaiveForm, GgxDistributionAtSmallAlpha) {
   const std::string naive = "x[2] * x[2] / (PI * pow(x[1] * x[1] * (x[2] * x[2] - 1.0) + 1.0, 2.0))";
   expect_row(naive, MESOGRAIN_EXPRESSION(ggx_distribution(real3(0.0, 0.0, 1.0), real3(x[0], 0.0, x[1]), x[2])), inputs,
              0.4, 1e-5);
+}
+
+TEST(NaiveForm, GgxDistributionOfASmoothSurface) {
+  // x[0] = tilt of the half vector, x[1] = alpha: what is smoother than single precision resolves is drawn as the
+  // least.
+  expect_row("x[1] * x[1] / (PI * pow((1.0 - x[0] * x[0]) * (x[1] * x[1] - 1.0) + 1.0, 2.0))",
+             MESOGRAIN_EXPRESSION(ggx_distribution(real3(0.0, 0.0, 1.0), real3(x[0], 0.0, sqrt(1.0 - x[0] * x[0])),
+                                                   max(x[1], GGX_SMALLEST_ALPHA))),
+             grid({{0.0, 1e-4, 1e-3}, {0.0, 1e-30, 1e-5}}), 0.9, 1e-5);
 }
 
 TEST(NaiveForm, SmithAtGrazing) {

@@ -102,6 +102,25 @@ TEST(DiffusionBoundary, GivesTheAuditedConstants) {
   EXPECT_NEAR(diffusion_boundary(1.6).exit_transmittance, 0.8938, 5e-5);
 }
 
+TEST(DiffusionBoundary, HoldsWhereThePublishedPolynomialsDoNot) {
+  // d'Eon and Irving 2011, their fits of 2 C_1 and 3 C_2 for eta >= 1.
+  const auto fitted = [](double eta) {
+    const double first =
+        -9.23372 + eta * (22.2272 + eta * (-20.9292 + eta * (10.2291 + eta * (-2.54396 + eta * 0.254913))));
+    const double third = -1641.1 + 135.926 / (eta * eta * eta) - 656.175 / (eta * eta) + 1376.53 / eta +
+                         eta * (1213.67 + eta * (-568.556 + eta * (164.798 + eta * (-27.0181 + eta * 1.91826))));
+    return (1.0 + third) / (1.0 - first);
+  };
+  EXPECT_NEAR(fitted(1.5), diffusion_boundary(1.5).a, 0.01);
+  EXPECT_LT(fitted(2.85), 0.0);  // a reflectance beyond 1
+  double before = 0.0;
+  for (double eta = 0.5; eta <= 4.0; eta += 0.01) {
+    const double now = diffusion_boundary(eta).a;
+    EXPECT_GT(now, before) << eta;
+    before = now;
+  }
+}
+
 TEST(DiffusionBoundary, KeepsTheIdentityOfItsTwoForms) {
   // A = (1 - C_E)/(2 C_phi) = (1 + 3 C_2)/(1 - 2 C_1).
   for (double eta = 0.5; eta <= 4.0; eta += 0.1) {
