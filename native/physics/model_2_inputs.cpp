@@ -11,7 +11,8 @@ MaterialInputs model_2_inputs(const scene::Material& material, double grain_radi
   inputs.light_maps = true;
   const BodySurface surface = body_surface(material);
   // Anisotropic first-order scattering keeps its phase function; everything else leaves by the interface's own lobe.
-  const bool separate = !surface.cosine_entry && material.g != 0.0;
+  // (Jensen's dipole stands for all orders at once, the first included.)
+  const bool separate = !surface.cosine_entry && material.g != 0.0 && material.profile != scene::Profile::dipole;
   if (separate) {
     inputs.defines.emplace_back("SEPARATE_SINGLE");
     add_body_difference("single_difference", material, grain_radius, {.single = true, .multiple = false}, inputs);
