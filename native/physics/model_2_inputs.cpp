@@ -11,8 +11,10 @@ MaterialInputs model_2_inputs(const scene::Material& material, double grain_radi
   inputs.light_maps = true;
   const BodySurface surface = body_surface(material);
   // Anisotropic first-order scattering keeps its phase function; everything else leaves by the interface's own lobe.
-  // (Jensen's dipole stands for all orders at once, the first included.)
-  const bool separate = !surface.cosine_entry && material.g != 0.0 && material.profile != scene::Profile::dipole;
+  // Jensen's dipole stands for all orders at once; the better dipole never holds the first.
+  const bool separate =
+      !surface.cosine_entry && (material.profile == scene::Profile::better_dipole ||
+                                (material.profile == scene::Profile::half_space && material.g != 0.0));
   if (separate) {
     inputs.defines.emplace_back("SEPARATE_SINGLE");
     add_body_difference("single_difference", material, grain_radius, {.single = true, .multiple = false}, inputs);
