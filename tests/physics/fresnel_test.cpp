@@ -114,7 +114,7 @@ TEST(DiffusionBoundary, HoldsWhereThePublishedPolynomialsDoNot) {
   EXPECT_NEAR(fitted(1.5), diffusion_boundary(1.5).a, 0.01);
   EXPECT_LT(fitted(2.85), 0.0);  // a reflectance beyond 1
   double before = 0.0;
-  for (double eta = 0.5; eta <= 4.0; eta += 0.01) {
+  for (double eta = 1.0; eta <= 4.0; eta += 0.01) {
     const double now = diffusion_boundary(eta).a;
     EXPECT_GT(now, before) << eta;
     before = now;
