@@ -19,6 +19,7 @@ LAUNCHES = {  # what is checked, in which environment, on a screen of which size
     "viewport": ("checks_viewport", {}, SMALL, SIMULATED),
     "cancel": ("checks_cancel", {}, SMALL, []),
     "compare": ("checks_compare", {}, TALL, SIMULATED),
+    "bake": ("checks_bake", {}, TALL, SIMULATED),
     "no_native_module": ("checks_unavailable", {"MESOGRAIN_NATIVE_DIR": EMPTY_FOLDER}, SMALL, SIMULATED),
     "no_device": ("checks_unavailable", {"MESOGRAIN_GL_DEVICE": "nonexistent"}, SMALL, SIMULATED),
 }

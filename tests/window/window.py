@@ -11,6 +11,7 @@ from mesograin import engine, export, meshes, native_module, status
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 TIMEOUT = 60.0
 RIM = 28
+PANELS_AT_REST = 1.5  # s; Blender moves panels to their new places for 0.3 s, and later where the machine is busy
 
 
 class Window:
@@ -105,7 +106,11 @@ class Window:
         return area, new
 
     def restore(self):
-        """Closes what `split` opened."""
+        """Closes what `split` opened, once its panels are at rest."""
+        # Blender 3.4 frees a panel with its area, but not the handler that moves it where a panel above changed its
+        # height, and dies in that handler at the next tick. Any panel does it, ours by showing one line more.
+        if self._opened:
+            yield from self.seconds(PANELS_AT_REST)
         while self._opened:
             with self.override(self._opened.pop()):
                 bpy.ops.screen.area_close()
