@@ -173,3 +173,16 @@ def check_another_file_ends_the_comparison_and_what_fails_is_one_sentence(window
     yield from finished(window)
     assert "no active camera" in session.error and "\n" not in session.error and session.results is None
     yield from window.picture(properties)
+
+
+def check_no_model_chosen_is_said(window):
+    _, properties = yield from prepare(window, models=set())
+    quiet = yield from window.picture(properties)
+    try:
+        outcome = str(press(window, properties, "compare"))
+    except RuntimeError as error:  # how an operator's error report reaches a script
+        outcome = str(error)
+    assert "model" in session.error and session.error in outcome and "\n" not in session.error, outcome
+    assert not session.running() and session.results is None
+    shown = yield from window.picture(properties)
+    assert (np.abs(shown - quiet).max(axis=-1) > 0.1).sum() > 100, "the panel does not say it"

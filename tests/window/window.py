@@ -11,7 +11,7 @@ from mesograin import engine, export, meshes, native_module, status
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 TIMEOUT = 60.0
 RIM = 28
-PANELS_AT_REST = 1.5  # s; Blender moves panels to their new places for 0.3 s, and later where the machine is busy
+PANELS_MOVE = 0.3  # s, ANIMATION_TIME in Blender's interface_panel.c
 
 
 class Window:
@@ -107,10 +107,12 @@ class Window:
 
     def restore(self):
         """Closes what `split` opened, once its panels are at rest."""
-        # Blender 3.4 frees a panel with its area, but not the handler that moves it where a panel above changed its
-        # height, and dies in that handler at the next tick. Any panel does it, ours by showing one line more.
+        # A panel that changed its height moves those below it. Blender 3.4 frees panels with their area but not the
+        # handler that moves them, and dies of it at the next tick, whosever panel it is. One wait may be over within
+        # one slow redraw: several let Blender begin to move them, get there, and be told that it did.
         if self._opened:
-            yield from self.seconds(PANELS_AT_REST)
+            for _ in range(5):
+                yield from self.seconds(PANELS_MOVE)
         while self._opened:
             with self.override(self._opened.pop()):
                 bpy.ops.screen.area_close()
