@@ -83,6 +83,12 @@ vec2 seen_from_light(float ring, float azimuth, float cosine, float turn, out fl
   return vec2(across, ring * sin(azimuth));
 }
 
+// A division may round up to 1, whose logarithm is no distance.
+const float LARGEST_BELOW_ONE = 1.0 - 1.0 / 16777216.0;
+
+// Single samples that found much where little was expected would stand out as dots for thousands of frames.
+const float MOST_A_SAMPLE_COUNTS = 64.0;
+
 struct Gathered {
   Spectrum grain;   // exitance per irradiance, by these samples
   Spectrum sphere;  // the same of the sphere that fits
@@ -150,10 +156,10 @@ vec3 single_scattering(LightFrame frame, int light, BodyFit fit, vec3 position, 
   float mu_o_refracted = fit.mu_o_refracted;
   vec3 inwards = (fit.mu_o * normal - to_viewer) / body.eta - mu_o_refracted * normal;
 
-  // No farther than through the ball that holds the grain.
+  // No farther than through the ball that holds the grain. Rounding may leave a point on the silhouette outside, which has no way at all.
   float reach = grain_reach / body.radius;
   float along = dot(position, inwards);
-  float longest = -along + sqrt(max(along * along + reach * reach - dot(position, position), 0.0));
+  float longest = max(sqrt(max(along * along + reach * reach - dot(position, position), 0.0)) - along, 0.0);
 
   // How fast the light's way in grows along the view ray where that begins: as below a plane that is tilted like the entry above the point,
   // or, where light grazes it, like a sphere a mean free path below the surface.
@@ -175,7 +181,7 @@ vec3 single_scattering(LightFrame frame, int light, BodyFit fit, vec3 position, 
   Spectrum sum = Spectrum(0.0);
   Spectrum plane = Spectrum(0.0);
   for (int i = 0; i < count; ++i) {
-    float random = (float(i) + shift) / float(count);
+    float random = min((float(i) + shift) / float(count), LARGEST_BELOW_ONE);
 #ifdef GREY
     vec2 chosen = vec2(rate, mean_way);
 #else
@@ -192,7 +198,8 @@ vec3 single_scattering(LightFrame frame, int light, BodyFit fit, vec3 position, 
 #else
     float density = (densities.r + densities.g + densities.b) / 3.0;
 #endif
-    plane += on_plane / density;
+    Spectrum drawn = on_plane / density;
+    plane += drawn;
     vec3 point = position + t * inwards;
     LightMapTexel entry = light_map_at(frame, light, point.xy * body.radius);
     float above = entry.position.z / body.radius - point.z;
@@ -208,10 +215,14 @@ vec3 single_scattering(LightFrame frame, int light, BodyFit fit, vec3 position, 
                           -sqrt(max((1.0 - lighting.z) * (1.0 + lighting.z), 0.0)));
     vec3 turn = direction + single.sign_g * inwards;
     float phase = henyey_greenstein(0.5 * dot(turn, turn), single.absolute_g, single.one_minus_absolute_g);
-    sum += lighting.x * phase * exp(-sigma_t * (t + way_in)) / density;
+    // Where the light's way in hardly grows, far samples are too rare for what they find; each may count as many, but not as any number.
+    sum += lighting.x * phase * drawn * min(exp(rate * t - sigma_t * (t + way_in)), Spectrum(MOST_A_SAMPLE_COUNTS));
   }
   // What the lit plane's own integral says the samples should have found.
-  return single.sigma_s * sum * mean_way / max(plane, Spectrum(1e-30));
+  vec3 found = single.sigma_s * sum * mean_way / max(plane, Spectrum(1e-30));
+  // Never above the albedo times the phase function's peak, but for what refraction focuses: a bound against single precision at silhouettes.
+  float peak = (1.0 + single.absolute_g) / (4.0 * PI * single.one_minus_absolute_g * single.one_minus_absolute_g);
+  return min(found, 4.0 * peak * single.sigma_s / max(single.sigma_t, vec3(1e-30)));
 }
 #endif
 
