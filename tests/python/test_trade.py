@@ -176,3 +176,10 @@ def test_the_plot_is_a_file_too_and_names_everything(folder):
                   "time of a picture", "error: relative L1"):
         assert words in svg
     assert (folder / "plots/trade.png").read_bytes()[:4] == b"\x89PNG"
+
+
+def test_a_wrong_option_is_told_by_the_command_that_was_called(capsys):
+    with pytest.raises(SystemExit) as ended:
+        arguments.parse(["--nothing"])
+    assert ended.value.code == 2
+    assert capsys.readouterr().err.startswith("trade: ")

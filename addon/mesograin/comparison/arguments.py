@@ -30,7 +30,7 @@ class Parser(argparse.ArgumentParser):
     """Says what is wrong in one sentence."""
 
     def error(self, message):
-        self.exit(2, f"compare: {message}; see --help.\n")
+        self.exit(2, f"{self.prog.split()[-1]}: {message}; see --help.\n")
 
 
 def build():
