@@ -132,6 +132,13 @@ def per_unit(parameter, value, millimetres_per_unit):
     return value
 
 
+def overrides(settings, scene):
+    """{parameter: value} with coefficients in 1/mm, as a command line gives them, as {parameter: value} per Blender
+    unit of a bpy.types.Scene."""
+    unit = scene.mesograin.millimetres_per_unit
+    return {parameter: per_unit(parameter, value, unit) for parameter, value in settings.items()}
+
+
 def material_values(material, millimetres_per_unit):
     """MaterialValues of a Blender material, or of the default grain where a slot is empty (None)."""
     if material is None:

@@ -7,6 +7,7 @@ from pathlib import Path
 import bpy
 
 from . import native_module
+from .command_line import values
 from .comparison import arguments, mask_names, progress, report_page, results, run, verdict
 from .cycles import kinds
 from .cycles.cache import Cache
@@ -224,9 +225,9 @@ def _settings(settings):
 
 
 def _setting(name, value):
-    if name not in arguments.SETTABLE:
-        raise ComparisonError(f"settings takes {', '.join(arguments.SETTABLE)}; {name!r} came.")
-    count = arguments.SETTABLE[name]
+    if name not in values.SETTABLE:
+        raise ComparisonError(f"settings takes {', '.join(values.SETTABLE)}; {name!r} came.")
+    count = values.SETTABLE[name]
     if count == 0:
         return str(value)
     try:

@@ -6,9 +6,9 @@ import json
 import pytest
 from cycles_scenes import make_sphere
 
-from mesograin.comparison import progress
+from mesograin.comparison import ours, progress
 from mesograin.cycles.cache import Cache
-from mesograin.trade import measure, progressive
+from mesograin.trade import measure
 
 SUNS = [((1.0, 1.0, 1.0), 20.0)]
 
@@ -58,12 +58,12 @@ def test_every_point_is_measured_and_taken_over(tmp_path, native, monkeypatch):
     # As a run that was killed before its last points leaves it.
     (out / "trade.json").write_text(json.dumps({**found, "complete": False, "points": found["points"][:4]}))
     begun = []
-    begin = progressive.Progressive.begin
+    begin = ours.Ours.begin
     monkeypatch.setattr(
-        progressive.Progressive, "begin", lambda self, *setting: (begun.append(setting), begin(self, *setting))
+        ours.Ours, "begin", lambda self, chosen, taps: (begun.append(taps), begin(self, chosen, taps=taps))
     )
     again = trade(tmp_path)
-    assert [taps for _, taps in begun] == [4], "only what was missing is measured"
+    assert begun == [4], "only what was missing is measured"
     assert again["points"][:4] == found["points"][:4]
     assert [point["error"] for point in again["points"]] == [point["error"] for point in found["points"]]
 

@@ -52,7 +52,7 @@ def main():
     task = json.loads(Path(sys.argv[sys.argv.index("--") + 1]).read_text())
     end_with_parent(task["folders"])
     sys.path.insert(0, str(ADDON.parent))
-    from mesograin.comparison import interruption
+    from mesograin.command_line import interruption
 
     channel = Channel()
     with interruption.Interruption() as interrupted:

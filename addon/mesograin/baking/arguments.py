@@ -5,20 +5,15 @@ import argparse
 import re
 from pathlib import Path
 
-from ..comparison.arguments import MODELS, REFERENCES, SETTABLE, positive, setting
+from ..command_line import parser as shared
+from ..command_line.values import positive
+from ..comparison.arguments import MODELS, REFERENCES
 from .choices import DEFAULT_MARGIN, LARGEST_MARGIN, LARGEST_SIDE, VIEW_FROM
-
-
-class Parser(argparse.ArgumentParser):
-    """Says what is wrong in one sentence."""
-
-    def error(self, message):
-        self.exit(2, f"bake: {message}; see --help.\n")
 
 
 def build():
     """The parser, for --help without Blender."""
-    parser = Parser(
+    parser = shared.Parser(
         prog="mesograin bake",
         usage="mesograin bake SCENE.blend -o OUT.exr [options]",
         description="Bakes an object's surface to an EXR texture at its UVs, and Cycles' beside it with --compare.",
@@ -39,9 +34,7 @@ def build():
     parser.add_argument("--margin", type=_margin, default=None, metavar="N",
                         help="texels by which what is baked reaches beyond the UVs (default: 16; with --compare 0)")
     parser.add_argument("--half", action="store_true", help="16-bit instead of 32-bit floats")
-    parser.add_argument("--set", action="append", type=setting, default=[], dest="settings", metavar="NAME=VALUE",
-                        help=f"a material parameter: {', '.join(SETTABLE)}; RGB as one number or three with commas; may"
-                        " be repeated")
+    shared.add_settings(parser, "")
     parser.add_argument("--compare", action="store_true",
                         help="also bakes with Cycles: OUT.cycles.exr, OUT.error.exr, PNGs, and numbers in OUT.json")
     parser.add_argument("--reference", choices=REFERENCES, default=None, metavar="KIND",
@@ -54,10 +47,7 @@ def build():
 def parse(words):
     """argparse.Namespace of the command line after `--`. Raises SystemExit(2) after one sentence on standard error."""
     parser = build()
-    chosen = parser.parse_args(words)
-    chosen.settings = dict(chosen.settings)
-    if not chosen.scene.is_file():
-        parser.error(f"there is no scene '{chosen.scene}'")
+    chosen = parser.choose(words)
     if not chosen.compare and (chosen.reference or chosen.reference_samples):
         parser.error("--reference and --reference-samples need --compare")
     if chosen.compare and (chosen.half or chosen.margin):

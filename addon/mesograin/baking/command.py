@@ -8,7 +8,7 @@ ADDON = Path(__file__).resolve().parents[1]
 
 
 def _run(chosen, _):
-    from mesograin.comparison.command_line import FAILED, NO_OUTPUT, OK, CommandError, open_scene
+    from mesograin.command_line.process import FAILED, OK, open_scene, told
 
     native = open_scene(chosen.scene)
 
@@ -18,15 +18,9 @@ def _run(chosen, _):
     from mesograin.cycles.stage import StageError
 
     progress = Progress()
-    try:
+    with told(progress, surface.OutputError, (surface.BakeError, ReferenceError, StageError, native.Error), FAILED):
         surface.require_writable(chosen.output)
         _bake(chosen, progress)
-    except surface.OutputError as error:
-        raise CommandError(error, NO_OUTPUT) from error
-    except (surface.BakeError, ReferenceError, StageError, native.Error) as error:
-        raise CommandError(error, FAILED) from error
-    finally:
-        progress.close()
     return OK
 
 
@@ -36,8 +30,7 @@ def _bake(chosen, progress):
     from mesograin.baking import surface
 
     depsgraph = bpy.context.evaluated_depsgraph_get()
-    unit = depsgraph.scene.mesograin.millimetres_per_unit
-    overrides = {parameter: export.per_unit(parameter, value, unit) for parameter, value in chosen.settings.items()}
+    overrides = export.overrides(chosen.settings, depsgraph.scene)
     name = surface.choose(depsgraph, chosen.object)
     if chosen.compare:
         _compare(chosen, depsgraph, name, overrides, progress)
@@ -85,6 +78,6 @@ def _share(value):
 if __name__ == "__main__":
     sys.path.insert(0, str(ADDON.parent))
     from mesograin.baking import arguments
-    from mesograin.comparison import command_line
+    from mesograin.command_line import process
 
-    command_line.main("bake", arguments.parse, _run, "Interrupted: nothing was written.")
+    process.main("bake", arguments.parse, _run, "Interrupted: nothing was written.")

@@ -9,25 +9,23 @@ ADDON = Path(__file__).resolve().parents[1]
 
 
 def _run(chosen, words):
-    from mesograin.comparison.command_line import FAILED, NO_OUTPUT, OK, CommandError, complain, open_scene
+    from mesograin.command_line.process import FAILED, NO_OUTPUT, OK, CommandError, complain
+    from mesograin.command_line.process import open_cache, open_scene, told
 
     native = open_scene(chosen.scene)
 
     from mesograin.comparison.progress import Progress
     from mesograin.comparison.results import OutputError
     from mesograin.comparison.run import Request, cases, compare
-    from mesograin.cycles.cache import Cache
 
-    try:
-        cache = Cache(chosen.cache, chosen.cache_limit)
-        if chosen.clear_cache:
+    cache = open_cache(chosen)
+    if chosen.clear_cache:
+        try:
             count, size = cache.clear()
-            print(f"{count} references removed from {cache.folder}, {size / 2**20:.1f} MiB.")
-            return OK
-    except ValueError as error:
-        raise CommandError(error) from error
-    except OSError as error:
-        raise CommandError(f"The reference cache cannot be emptied: {error}.", NO_OUTPUT) from error
+        except OSError as error:
+            raise CommandError(f"The reference cache cannot be emptied: {error}.", NO_OUTPUT) from error
+        print(f"{count} references removed from {cache.folder}, {size / 2**20:.1f} MiB.")
+        return OK
     if not cases(chosen.models, chosen.references):
         raise CommandError(f"None of the references {', '.join(chosen.references)} answers {', '.join(chosen.models)}.")
 
@@ -48,14 +46,8 @@ def _run(chosen, words):
         command=_command(words),
     )
     progress = Progress()
-    try:
+    with told(progress, OutputError, (native.Error,)):
         results = compare(request, progress)
-    except OutputError as error:
-        raise CommandError(error, NO_OUTPUT) from error
-    except native.Error as error:
-        raise CommandError(error) from error
-    finally:
-        progress.close()
     _print_table(results)
     written = chosen.no_report or _write_report(chosen.out)
     print(f"Results: {Path(chosen.out).absolute()}", flush=True)
@@ -114,6 +106,7 @@ def _write_report(folder):
 
 if __name__ == "__main__":
     sys.path.insert(0, str(ADDON.parent))
-    from mesograin.comparison import arguments, command_line
+    from mesograin.command_line import process
+    from mesograin.comparison import arguments
 
-    command_line.main("compare", arguments.parse, _run)
+    process.main("compare", arguments.parse, _run)

@@ -61,7 +61,9 @@ def measure(case, chosen, request, depsgraph, size, overrides, ours, progress):
     progress.end(learn=not theirs.cached)
     progress.begin()
     started = time.monotonic()
-    images = ours.render(chosen, request.samples, sampling.kind.least_sun)
+    ours.begin(chosen, sampling.kind.least_sun)
+    images = ours.refine(request.samples)
+    our_samples = ours.samples
     our_seconds = time.monotonic() - started
     frame_ms, passes = ours.time_frames(request.frames)
     progress.end()
@@ -89,12 +91,12 @@ def measure(case, chosen, request, depsgraph, size, overrides, ours, progress):
         "our_noise": compare(theirs.mean, images, mask)["noise_floor"],
         "significance": verdict,
         "until": until,
-        "samples": ours.samples(request.samples),
+        "samples": our_samples,
         "our_seeds": len(images),
         "our_seconds": round(our_seconds, 4),
         "frame_ms": round(frame_ms, 4),
         "frames_timed": request.frames,
-        "passes_ms": {name: round(milliseconds, 4) for name, milliseconds in passes},
+        "passes_ms": {name: round(milliseconds, 4) for name, milliseconds in passes.items()},
         "reference_samples": sampling.samples,
         "reference_seeds": list(theirs.seeds),
         "reference_seconds": round(theirs.seconds, 3),

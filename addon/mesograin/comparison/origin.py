@@ -1,6 +1,7 @@
 # Where a result comes from: the scene, the versions, the machine.
 """What `results.json` says of its origin."""
 
+import datetime
 import os
 import platform
 from pathlib import Path
@@ -8,7 +9,23 @@ from pathlib import Path
 import bpy
 import numpy
 
-from .. import __version__
+from .. import __version__, native_module
+
+COMMON_SETTINGS = {"pixel_filter": "box, one pixel, on both sides", "colour_space": "linear, scene-referred"}
+"""What holds of every picture of both sides."""
+
+
+def describe(command, size):
+    """The keys that every file of results has. command: the line that repeats it. size: (width, height)."""
+    return {
+        "created": datetime.datetime.now(datetime.timezone.utc).isoformat(timespec="seconds"),
+        "command": command,
+        "scene": scene_name(),
+        "size": list(size),
+        "versions": versions(),
+        "device": native_module.get().device_info(),
+        "cpu": processor(),
+    }
 
 
 def scene_name():

@@ -15,14 +15,15 @@ class Ours:
     """One evaluated scene and views of it, ready for any number of models.
 
     depsgraph: evaluated. size: (width, height) in pixels. overrides: {parameter: value} for every material,
-    coefficients per scene unit. Raises native.Error with a sentence if the scene has no camera or cannot be drawn.
+    coefficients per scene unit. parts: of independent noise that a picture consists of, at most.
+    Raises native.Error with a sentence if the scene has no camera or cannot be drawn.
     """
 
-    def __init__(self, depsgraph, size, overrides):
+    def __init__(self, depsgraph, size, overrides, parts=SEEDS):
         native = native_module.get()
         self._overrides = overrides
         self._scene = export.read_scene(depsgraph, meshes.MeshCache())
-        self._views = [native.View(*size, seed=seed) for seed in range(SEEDS)]
+        self._views = self._all_views = [native.View(*size, seed=seed) for seed in range(parts)]
         self._camera = export.camera_from_scene(depsgraph, *size)
         self.warnings = self._scene.warnings
 
@@ -33,14 +34,13 @@ class Ours:
             for instance in self._scene.instances
         }
 
-    @staticmethod
-    def samples(samples):
-        """How many samples a pixel `render` really takes: so many that all parts have as many."""
-        parts = min(SEEDS, samples)
-        return -(-samples // parts) * parts
+    @property
+    def samples(self):
+        """How many samples a pixel there are, over all parts."""
+        return sum(view.samples for view in self._views)
 
     def suns(self, least_sun=0.0):
-        """[(direction to the light, full angle in radians, irradiance)] as `render` takes them, the strongest first."""
+        """[(direction to the light, full angle in radians, irradiance)] as `begin` takes them, the strongest first."""
         lights = sorted(self._lights(least_sun), key=lambda light: -sum(light.irradiance))
         return [(light.direction_to_light, light.angle, light.irradiance) for light in lights]
 
@@ -49,10 +49,9 @@ class Ours:
             dataclasses.replace(light, angle=max(light.angle, least_sun)) for light in self._scene.lights
         )
 
-    def render(self, chosen, samples, least_sun=0.0):
-        """The scene with the case's choice of parameters, as parts of independent noise whose mean is the picture:
-        a list of (h, w, 4) float32. samples: of each pixel, over all parts. least_sun: radians; narrower suns are
-        widened to this."""
+    def begin(self, chosen, least_sun=0.0, taps=None):
+        """Starts a picture without samples. chosen: the case's choice of parameters. least_sun: radians; narrower suns
+        are widened to this. taps: of model 3, for each sample; None as they were."""
         parameters = self.parameters(chosen)
         instances = tuple(
             dataclasses.replace(
@@ -64,17 +63,24 @@ class Ours:
             for instance in self._scene.instances
         )
         scene = dataclasses.replace(self._scene, instances=instances, lights=self._lights(least_sun)).to_native()
-        views = self._views[: min(SEEDS, samples)]
-        parts = []
-        for view in views:
+        self._views = self._all_views
+        for view in self._views:
+            if taps:
+                view.set_taps(taps)
             view.set_scene(scene)
             view.set_camera(self._camera)
-            view.render(self.samples(samples) // len(views))
-            parts.append(view.read())
-        return parts
+
+    def refine(self, samples):
+        """The picture with at least so many samples a pixel in all, as parts of independent noise, as many samples in
+        each, whose mean it is: a list of (h, w, 4) float32."""
+        self._views = self._all_views[:samples]
+        share = -(-samples // len(self._views))
+        for view in self._views:
+            view.render(share - view.samples)
+        return [view.read() for view in self._views]
 
     def time_frames(self, frames):
-        """(median milliseconds of a frame, [(pass, median milliseconds)]): one sample of what was rendered last."""
+        """(median milliseconds of a frame of one sample, {pass: median milliseconds}), the light maps being there."""
         totals, passes = [], {}
         view = self._views[0]
         for _ in range(frames):
@@ -84,4 +90,4 @@ class Ours:
             totals.append(sum(timing["milliseconds"] for timing in timings))
             for timing in timings:
                 passes.setdefault(timing["pass"], []).append(timing["milliseconds"])
-        return statistics.median(totals), [(name, statistics.median(times)) for name, times in passes.items()]
+        return statistics.median(totals), {name: statistics.median(times) for name, times in passes.items()}

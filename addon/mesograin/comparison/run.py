@@ -1,12 +1,11 @@
 # Runs a comparison: every case by itself, its results written as soon as they are known.
 """See `compare`."""
 
-import datetime
 from dataclasses import dataclass
 
 import bpy
 
-from .. import native_module
+from .. import export, native_module
 from ..cycles import kinds, nodes, reference
 from ..cycles.stage import StageError
 from . import definitions, measure, origin, pictures
@@ -27,12 +26,11 @@ def compare(request, progress):
     Raises OutputError if the folder cannot be written, native.Error or Unavailable if nothing can be rendered,
     progress.Cancelled after `progress.cancel()`; what was finished stays.
     """
-    native = native_module.get()
     scene = bpy.context.scene
     output = Output(request.out)
     size = request.size or _size(scene)
     depsgraph = bpy.context.evaluated_depsgraph_get()
-    overrides = _per_unit(request.settings, scene.mesograin.millimetres_per_unit)
+    overrides = export.overrides(request.settings, scene)
     ours = Ours(depsgraph, size, overrides)
     for warning in ours.warnings:
         progress.say(warning)
@@ -43,20 +41,13 @@ def compare(request, progress):
         "format": FORMAT,
         "format_version": FORMAT_VERSION,
         "complete": False,
-        "created": datetime.datetime.now(datetime.timezone.utc).isoformat(timespec="seconds"),
-        "command": request.command,
-        "scene": origin.scene_name(),
-        "size": list(size),
-        "versions": origin.versions(),
-        "device": native.device_info(),
-        "cpu": origin.processor(),
+        **origin.describe(request.command, size),
         "settings": {
+            **origin.COMMON_SETTINGS,
             "samples": request.samples,
             "seeds": request.seeds,
             "until": request.until,
             "masks": [[name, *numbers] for name, numbers in request.masks],
-            "pixel_filter": "box, one pixel, on both sides",
-            "colour_space": "linear, scene-referred",
             "material_settings": _plain(request.settings),
         },
         "definitions": definitions.OTHERS,
@@ -130,14 +121,6 @@ class _Comparison:
 
 def _plain(parameters):
     return {name: list(value) if isinstance(value, tuple) else value for name, value in parameters.items()}
-
-
-def _per_unit(settings, millimetres_per_unit):
-    """Settings with coefficients per scene unit, as material values have them."""
-    return {
-        name: tuple(channel * millimetres_per_unit for channel in value) if name in ("sigma_a", "sigma_s") else value
-        for name, value in settings.items()
-    }
 
 
 def _size(scene):

@@ -1,6 +1,5 @@
 # The command line of `sweep`: reads the plan, runs what is missing, merges and plots.
 """Run as `python3 command.py FILE.toml --out DIR`; see --help."""
-import argparse
 import os
 import shutil
 import signal
@@ -9,17 +8,11 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
+from mesograin.command_line.parser import Parser  # noqa: E402
 from mesograin.sweep import emit, merge, plan, plots, run  # noqa: E402
 from mesograin.sweep.folder import Folder  # noqa: E402
 
 DONE, FAILED, USAGE, UNWRITABLE, INTERRUPTED = 0, 1, 2, 3, 130
-
-
-class Parser(argparse.ArgumentParser):
-    """Says what is wrong in one sentence."""
-
-    def error(self, message):
-        self.exit(USAGE, f"sweep: {message}; see --help.\n")
 
 
 def parser():

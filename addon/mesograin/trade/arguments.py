@@ -3,9 +3,9 @@
 
 from pathlib import Path
 
-from ..comparison.arguments import SETTABLE, Parser, _bytes, positive, setting, _size
+from ..command_line import parser as shared
+from ..command_line.values import picture_size, positive
 from ..cycles.kinds import KINDS
-
 
 # Those that light and render the scene as it is, and in Cycles.
 REFERENCES = tuple(name for name, kind in KINDS.items() if not kind.referee and not kind.least_sun)
@@ -13,7 +13,7 @@ REFERENCES = tuple(name for name, kind in KINDS.items() if not kind.referee and 
 
 def build():
     """The parser, for --help without Blender."""
-    parser = Parser(
+    parser = shared.Parser(
         prog="mesograin trade",
         usage="mesograin trade [SCENE.blend] [options]",
         description=(
@@ -25,7 +25,7 @@ def build():
             "folder cannot be written, 130 interrupted. The same command goes on where it was stopped."
         ),
     )
-    parser.add_argument("scene", nargs="?", type=Path, default=None, metavar="SCENE.blend", help="the scene to measure")
+    shared.add_scene(parser, "measure")
     parser.add_argument(
         "--reference",
         choices=REFERENCES,
@@ -75,35 +75,20 @@ def build():
         "--out", type=Path, default=Path("trade"), metavar="DIR", help="folder for what is written (default: trade)"
     )
     parser.add_argument(
-        "--size", type=_size, default=(128, 128), metavar="WxH", help="picture size in pixels (default: 128x128)"
+        "--size", type=picture_size, default=(128, 128), metavar="WxH", help="picture size in pixels (default: 128x128)"
     )
     parser.add_argument(
         "--frames", type=positive, default=25, metavar="N", help="frames whose median is the time of one (default: 25)"
     )
-    parser.add_argument(
-        "--set",
-        action="append",
-        type=setting,
-        default=[],
-        dest="settings",
-        metavar="NAME=VALUE",
-        help=(
-            f"a material parameter for every material, on both sides: {', '.join(SETTABLE)}; RGB as one number or three"
-            " with commas; may be repeated"
-        ),
-    )
-    parser.add_argument("--cache", type=Path, default=None, metavar="DIR", help="folder of rendered references")
-    parser.add_argument(
-        "--cache-limit", type=_bytes, default=None, metavar="SIZE", help="bytes that it may take"
-    )
+    shared.add_settings(parser, " for every material, on both sides")
+    shared.add_cache(parser)
     return parser
 
 
 def parse(words):
     """argparse.Namespace of the command line after `--`. Raises SystemExit(2) after one sentence on standard error."""
     parser = build()
-    chosen = parser.parse_args(words)
-    chosen.settings = dict(chosen.settings)
+    chosen = parser.choose(words)
     answered = KINDS[chosen.reference].models
     chosen.models = tuple(dict.fromkeys(chosen.models or answered))
     for model in chosen.models:
@@ -117,8 +102,6 @@ def parse(words):
             f"--cycles-samples must not exceed the converged render's {chosen.reference_samples} samples;"
             f" got {chosen.cycles_samples[-1]}"
         )
-    if chosen.scene and not chosen.scene.is_file():
-        parser.error(f"there is no scene '{chosen.scene}'")
     return chosen
 
 

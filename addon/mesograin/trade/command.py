@@ -9,24 +9,20 @@ ADDON = Path(__file__).resolve().parents[1]
 
 
 def _run(chosen, words):
+    from mesograin.command_line.process import FAILED, OK, CommandError, open_cache, open_scene, told
     from mesograin.comparison import report_page
-    from mesograin.comparison.command_line import FAILED, NO_OUTPUT, OK, CommandError, open_scene
 
     native = open_scene(chosen.scene)
 
     from mesograin.comparison.progress import Progress
     from mesograin.comparison.results import OutputError
-    from mesograin.cycles.cache import Cache
     from mesograin.cycles.reference import ReferenceError
     from mesograin.cycles.stage import StageError
     from mesograin.trade.measure import Request, measure
 
-    try:
-        cache = Cache(chosen.cache, chosen.cache_limit)
-    except ValueError as error:
-        raise CommandError(error) from error
+    cache = open_cache(chosen)
     progress = Progress()
-    try:
+    with told(progress, OutputError, (native.Error, ReferenceError, StageError)):
         results = measure(
             Request(
                 out=chosen.out,
@@ -44,12 +40,6 @@ def _run(chosen, words):
             ),
             progress,
         )
-    except OutputError as error:
-        raise CommandError(error, NO_OUTPUT) from error
-    except (native.Error, ReferenceError, StageError) as error:
-        raise CommandError(error) from error
-    finally:
-        progress.close()
     for entry in results["summary"]:
         print(entry["sentence"])
     try:
@@ -62,7 +52,7 @@ def _run(chosen, words):
 
 if __name__ == "__main__":
     sys.path.insert(0, str(ADDON.parent))
-    from mesograin.comparison import command_line
+    from mesograin.command_line import process
     from mesograin.trade import arguments
 
-    command_line.main("trade", arguments.parse, _run)
+    process.main("trade", arguments.parse, _run)

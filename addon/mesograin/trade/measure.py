@@ -2,7 +2,6 @@
 """See `measure`."""
 
 import csv
-import datetime
 import hashlib
 import io
 import json
@@ -12,13 +11,13 @@ from pathlib import Path
 
 import bpy
 
-from .. import native_module
+from .. import export, native_module
 from ..comparison import definitions, origin
+from ..comparison.ours import Ours
 from ..comparison.results import Output
 from ..cycles import kinds, nodes, reference
 from ..cycles.cache import Cache
 from . import curve
-from .progressive import Progressive
 
 FORMAT, FORMAT_VERSION = "mesograin-trade", 1
 RESULTS = "trade.json"
@@ -78,8 +77,8 @@ def measure(request, progress):
     native = native_module.get()
     output = Output(request.out)
     depsgraph = bpy.context.evaluated_depsgraph_get()
-    overrides = _per_unit(request.settings, bpy.context.scene.mesograin.millimetres_per_unit)
-    ours = Progressive(depsgraph, request.size, overrides)
+    overrides = export.overrides(request.settings, bpy.context.scene)
+    ours = Ours(depsgraph, request.size, overrides, parts=1)
     for warning in ours.warnings:
         progress.say(warning)
     progress.plan(_steps(request))
@@ -106,16 +105,9 @@ def measure(request, progress):
         "format": FORMAT,
         "format_version": FORMAT_VERSION,
         "complete": False,
-        "created": datetime.datetime.now(datetime.timezone.utc).isoformat(timespec="seconds"),
-        "command": request.command,
-        "scene": origin.scene_name(),
-        "size": list(request.size),
-        "versions": origin.versions(),
-        "device": native.device_info(),
-        "cpu": origin.processor(),
+        **origin.describe(request.command, request.size),
         "settings": {
-            "pixel_filter": "box, one pixel, on both sides",
-            "colour_space": "linear, scene-referred",
+            **origin.COMMON_SETTINGS,
             "frames_timed": request.frames,
         },
         "definitions": {**DEFINITIONS, **{name: definitions.METRICS[name] for name in METRICS}},
@@ -166,10 +158,10 @@ def _measure_model(request, ours, chosen, taps, book, progress, provenance):
     if not missing:
         progress.end(learn=False)
         return
-    ours.begin(chosen, taps)
+    ours.begin(chosen, taps=taps)
     images = {}
     for name, count in missing.items():
-        images[name] = ours.refine(count)
+        (images[name],) = ours.refine(count)
         book.picture(name, images[name], {**provenance, "model": model, "samples": count, "taps": taps})
         progress.update(count / (request.samples[-1] + request.frames))
     frame_ms, passes = ours.time_frames(request.frames)
@@ -266,11 +258,3 @@ def _steps(request):
             yield what, f"{model} {taps}", (0.3 + 0.3 * (taps or 0)) * frames * million
     for samples in request.cycles_samples:
         yield f"Cycles at {samples} samples", "cycles", kind.cost * samples * million
-
-
-def _per_unit(settings, millimetres_per_unit):
-    """Settings with coefficients per scene unit, as material values have them."""
-    return {
-        name: tuple(channel * millimetres_per_unit for channel in value) if name in ("sigma_a", "sigma_s") else value
-        for name, value in settings.items()
-    }

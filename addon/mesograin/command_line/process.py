@@ -1,11 +1,13 @@
-# What the commands of the add-on share: no window, the scene opened, one sentence and an exit code for a problem.
+# A command from its words to its exit code: no window, the scene opened, one sentence for a problem.
 """A command is a file that Blender runs: blender -b --factory-startup --python FILE -- WORD ... See `main`."""
 
+import contextlib
 import sys
 
 from . import interruption
+from .parser import BAD_INPUT
 
-OK, FAILED, BAD_INPUT, NO_OUTPUT = 0, 1, 2, 3
+OK, FAILED, NO_OUTPUT = 0, 1, 3
 """Exit codes. FAILED: something of what was asked for, the rest is written. NO_OUTPUT: nothing can be written there."""
 
 
@@ -67,3 +69,29 @@ def open_scene(path):
         return native_module.get()
     except native_module.Unavailable as error:
         raise CommandError(error) from error
+
+
+def open_cache(chosen):
+    """The `cycles.cache.Cache` that --cache and --cache-limit choose. Raises CommandError."""
+    from ..cycles.cache import Cache
+
+    try:
+        return Cache(chosen.cache, chosen.cache_limit)
+    except ValueError as error:
+        raise CommandError(error) from error
+
+
+@contextlib.contextmanager
+def told(progress, unwritable, others, code=BAD_INPUT):
+    """What goes wrong inside becomes a CommandError, and the line of progress is left empty.
+
+    unwritable: the exception for an output folder. others: a tuple of those that end with `code`.
+    """
+    try:
+        yield
+    except unwritable as error:
+        raise CommandError(error, NO_OUTPUT) from error
+    except others as error:
+        raise CommandError(error, code) from error
+    finally:
+        progress.close()
