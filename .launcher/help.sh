@@ -77,19 +77,20 @@ TEXT
 help_trade() {
   cat <<'TEXT'
 Measures error against time, for every model at several sample counts and for Cycles itself at rising samples, all against
-one converged Cycles render; draws the Pareto front and says how much longer Cycles needs for the same error.
+one converged render of the reference; draws the Pareto front and says how much longer Cycles needs for the same error.
 
   ./mesograin trade [SCENE.blend] [option ...]
 
   SCENE.blend               default: blend_files/sphere.blend
-  --reference KIND          what Cycles renders: diffuse, glossy, volume_index_matched, subsurface, subsurface_burley
-                            (default: volume_index_matched)
+  --reference KIND          what the models are measured against, any of compare's references (default:
+                            volume_index_matched); with photon the photon tracer takes Cycles' place
   --models MODEL ...        models to measure (default: all that answer the reference)
   --samples N ...           samples per pixel on our side (default: 1 4 16 64)
   --taps N ...              samples of the lit surface that model 3 takes for each of those (default: 4 16 64)
-  --reference-samples N     samples per pixel of each of the two seeds of the converged render (default: 512)
-  --cycles-samples N ...    samples per pixel of the Cycles renders that are measured (default: 1 2 4 ... up to a quarter
-                            of the converged one)
+  --reference-samples N     samples per pixel of each of the two seeds of the converged render (default: 512,
+                            volume_dielectric 1024)
+  --traced-samples N ...    samples per pixel of Cycles' renders that are measured, or of the photon tracer's (default:
+                            1 2 4 ... up to a quarter of the converged one)
   --size WxH                picture size in pixels (default: 128x128)
   --frames N                frames whose median is the time of one (default: 25)
   --set NAME=VALUE          a material parameter for every material, on both sides; see ./mesograin help compare

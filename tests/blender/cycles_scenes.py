@@ -1,5 +1,7 @@
 # Small scenes for the tests of the Cycles side, and what their pixels should be.
 import math
+import os
+import pathlib
 
 import bpy
 import numpy as np
@@ -7,6 +9,8 @@ from mathutils import Vector
 
 RADIUS = 2.4
 DISTANCE = 6.5
+BUILD = pathlib.Path(os.environ.get("MESOGRAIN_BUILD") or pathlib.Path(__file__).resolve().parents[2] / "build/release")
+REFEREE = BUILD / "tests/referee/mesograin-referee"
 
 
 def make_sphere(suns, camera=(0.0, 0.0, DISTANCE), segments=128, rings=64, **parameters):

@@ -13,7 +13,7 @@ import time
 import bpy
 import numpy as np
 import pytest
-from cycles_scenes import depsgraph, make_sphere
+from cycles_scenes import REFEREE, depsgraph, make_sphere
 
 from mesograin import native_module
 from mesograin.comparison import progress, results, run, significance
@@ -240,14 +240,9 @@ def test_burley_agrees_with_a_thick_grain(tmp_path):
     assert case["boundary"] == "lambert_lambert" and case["metrics"]["bias"] == pytest.approx(1.0, abs=0.03)
 
 
-REFEREE = pathlib.Path(os.environ.get("MESOGRAIN_BUILD") or COMMAND.parents[3] / "build/release")
-
-
-@pytest.mark.skipif(
-    not (REFEREE / "tests/referee/mesograin-referee").exists(), reason="mesograin-referee comes with the native tests"
-)
+@pytest.mark.skipif(not REFEREE.exists(), reason="mesograin-referee comes with the native tests")
 def test_photons_agree_with_model_3(tmp_path, monkeypatch):
-    monkeypatch.setenv("MESOGRAIN_REFEREE", str(REFEREE / "tests/referee/mesograin-referee"))
+    monkeypatch.setenv("MESOGRAIN_REFEREE", str(REFEREE))
     make_sphere(SUNS, sigma_s=(0.9,) * 3, sigma_a=(0.1,) * 3, eta=1.3)
     bpy.data.objects["Sphere"].location = (0.1, -0.2, 0.3)
     done = {"size": (32, 24), "samples": 32, "reference_samples": 64, "models": ("model_3",)}

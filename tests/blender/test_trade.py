@@ -4,7 +4,7 @@ import io
 import json
 
 import pytest
-from cycles_scenes import make_sphere
+from cycles_scenes import REFEREE, make_sphere
 
 from mesograin.comparison import ours, progress
 from mesograin.cycles.cache import Cache
@@ -21,7 +21,7 @@ def trade(folder, **changes):
         "samples": (1, 3),
         "taps": (2, 4),
         "reference_samples": 8,
-        "cycles_samples": (1, 4),
+        "traced_samples": (1, 4),
         "size": (24, 20),
         "frames": 2,
         "cache": Cache(folder / "cache"),
@@ -60,7 +60,7 @@ def test_every_point_is_measured_and_taken_over(tmp_path, native, monkeypatch):
     begun = []
     begin = ours.Ours.begin
     monkeypatch.setattr(
-        ours.Ours, "begin", lambda self, chosen, taps: (begun.append(taps), begin(self, chosen, taps=taps))
+        ours.Ours, "begin", lambda self, chosen, sun, taps: (begun.append(taps), begin(self, chosen, sun, taps))
     )
     again = trade(tmp_path)
     assert begun == [4], "only what was missing is measured"
@@ -69,3 +69,29 @@ def test_every_point_is_measured_and_taken_over(tmp_path, native, monkeypatch):
 
     trade(tmp_path, settings={"scale": 2.0})
     assert len(begun) == 4, "what was measured on another material is not taken over"
+
+
+def test_a_smooth_interface_is_judged_in_blocks_under_a_wide_sun(tmp_path):
+    make_sphere(SUNS, sigma_s=(4.0, 4.0, 4.0), sigma_a=(0.2, 0.2, 0.2))
+    asked = {"reference": "volume_dielectric", "models": ("model_2",), "samples": (8,), "traced_samples": (1, 4)}
+    found = trade(tmp_path, reference_samples=64, **asked)
+    assert found["reference"]["judged_by"] == "relative_l1_blocks" and found["reference"]["tracer"] == "Cycles"
+    assert "20 degrees" in found["reference"]["notes"][0]
+    by_name = {point["name"]: point for point in found["points"]}
+    ours = by_name["model_2.samples8"]
+    assert ours["metrics"]["bias"] == pytest.approx(1.0, abs=0.12)
+    assert ours["error"] < by_name["cycles.samples1"]["error"] and ours["metrics"]["relative_l1"] > 1.3 * ours["error"]
+    silhouette = trade(tmp_path / "whole", traced_samples=(1,), models=())["reference"]["mask"]["pixels"]
+    assert found["reference"]["mask"]["pixels"] < silhouette, "the sun's mirror image is left out"
+
+
+@pytest.mark.skipif(not REFEREE.exists(), reason="mesograin-referee comes with the native tests")
+def test_photons_stand_where_cycles_cannot(tmp_path, monkeypatch):
+    monkeypatch.setenv("MESOGRAIN_REFEREE", str(REFEREE))
+    make_sphere(SUNS, sigma_s=(0.9, 0.9, 0.9), sigma_a=(0.1, 0.1, 0.1))
+    asked = {"reference": "photon", "models": ("model_3",), "samples": (8,), "taps": (16,), "traced_samples": (1, 4)}
+    found = trade(tmp_path, reference_samples=64, **asked)
+    by_name = {point["name"]: point for point in found["points"]}
+    assert set(by_name) == {"model_3.taps16.samples8", "photon.samples1", "photon.samples4"}
+    assert by_name["photon.samples4"]["error"] < by_name["photon.samples1"]["error"]
+    assert "mesograin-referee" in found["summary"][0]["sentence"]

@@ -20,14 +20,14 @@ BUILDER = ADDON / "mesograin" / "report" / "build.py"
 def point(model, samples, milliseconds, error, taps=None, resolved=True):
     return {
         "name": f"{model}.{taps}.{samples}",
-        "side": "cycles" if model == "Cycles" else "mesograin",
+        "side": "traced" if model in ("Cycles", "mesograin-referee") else "mesograin",
         "model": model,
         "taps": taps,
         "samples": samples,
         "milliseconds": milliseconds,
         "error": error,
         "resolved": resolved,
-        "metrics": {"relative_l1": error + 0.01, "bias": 1.0, "rse_mean": error**2},
+        "metrics": {"relative_l1": error + 0.01, "relative_l1_blocks": error, "bias": 1.0, "rse_mean": error**2},
         "picture": f"pictures/{model}.{taps}.{samples}.exr",
     }
 
@@ -54,14 +54,14 @@ def test_the_front_is_what_nothing_beats():
     (0.01, 640000.0, "beyond"),
     (0.9, 100.0, "below"),
 ])
-def test_cycles_time_follows_its_own_points(error, milliseconds, known):
-    found = curve.cycles_time(path_tracer(1, 4, 16), error)
+def test_traced_time_follows_its_own_points(error, milliseconds, known):
+    found = curve.traced_time(path_tracer(1, 4, 16), error)
     assert found == (pytest.approx(milliseconds), known)
 
 
 def test_without_cycles_nothing_is_claimed():
     points = [point("model_1", 1, 2.0, 0.1)]
-    assert curve.cycles_time(points, 0.1) == (None, None)
+    assert curve.traced_time(points, 0.1) == (None, None)
     assert curve.summary(points)[0]["sentence"] == "model_1 with 1 sample: 10 % at 2 ms."
 
 
@@ -93,16 +93,35 @@ def test_an_error_below_the_noise_is_a_bound():
     )
 
 
+def test_the_sentence_names_who_traced():
+    points = [point("model_3", 1, 5.0, 0.4, taps=4), point("mesograin-referee", 4, 400.0, 0.4)]
+    assert curve.summary(points)[0]["sentence"] == (
+        "model_3 with 1 sample of 4 taps: 40 % at 5 ms; mesograin-referee is as near after 400 ms or less."
+    )
+
+
+def test_a_noisy_reference_judges_in_blocks():
+    metrics = {"relative_l1_corrected": 0.3, "relative_l1_blocks_corrected": 0.02}
+    placed = curve.place(metrics, {"relative_l1": 0.5, "relative_l1_blocks": 0.01}, "relative_l1_blocks")
+    assert placed == {"error": 0.02, "resolved": True}
+
+
+def test_every_reference_of_compare_can_be_measured_against():
+    assert arguments.REFERENCES == room("comparison.arguments").REFERENCES
+    assert arguments.parse(["--reference", "volume_dielectric"]).reference_samples == 1024
+    assert arguments.parse(["--reference", "photon"]).models == ("model_1", "model_2", "model_3")
+
+
 def test_defaults_suit_each_other():
     chosen = arguments.parse([])
     assert chosen.models == ("model_1", "model_2", "model_3")
-    assert chosen.cycles_samples == (1, 2, 4, 8, 16, 32, 64, 128)
-    assert arguments.parse(["--reference", "glossy", "--reference-samples", "1"]).cycles_samples == (1,)
+    assert chosen.traced_samples == (1, 2, 4, 8, 16, 32, 64, 128)
+    assert arguments.parse(["--reference", "glossy", "--reference-samples", "1"]).traced_samples == (1,)
 
 
 @pytest.mark.parametrize("words, part", [
     (["--models", "lambert"], "not answered by volume_index_matched; allowed are model_1, model_2, model_3"),
-    (["--cycles-samples", "600"], "must not exceed the converged render's 512 samples; got 600"),
+    (["--traced-samples", "600"], "must not exceed the converged render's 512 samples; got 600"),
     (["--samples", "0"], "a whole number from 1 to"),
     (["--reference", "photons"], "invalid choice: 'photons'"),
     (["none.blend"], "there is no scene 'none.blend'"),
@@ -142,7 +161,8 @@ def folder(tmp_path_factory):
         "settings": {"pixel_filter": "box", "colour_space": "linear", "frames_timed": 25},
         "definitions": {"error": "what is left of it", "milliseconds": "how long", "front": "not beaten"},
         "material": {"Sand": {"sigma_s": [0.9] * 3, "g": 0.1}},
-        "reference": {"kind": "volume_index_matched", "title": "Cycles volume", "samples": 64, "seeds": [1, 2],
+        "reference": {"kind": "volume_index_matched", "title": "Cycles volume", "tracer": "Cycles",
+                      "judged_by": "relative_l1", "samples": 64, "seeds": [1, 2],
                       "bounces": 1024, "seconds": 3.0, "notes": [], "noise_floor": 0.05, "mask": {"pixels": 200}},
         "points": points,
         "front": [points[index]["name"] for index in curve.front(points)],

@@ -43,6 +43,11 @@ class Kind:
     smooth_interface: bool = False
     referee: bool = False
 
+    @property
+    def tracer(self):
+        """Who renders it, as it is called in sentences."""
+        return "mesograin-referee" if self.referee else "Cycles"
+
 
 # The opaque kinds see direct light alone, as the models that they answer do; inside a medium everything counts.
 # New kinds are added at the end: Blender files remember a choice of kinds by their numbers.

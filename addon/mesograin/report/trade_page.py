@@ -15,11 +15,12 @@ COLUMNS = (
     ("milliseconds", "time, ms", "number"),
     ("error", "error", "percent"),
     ("metrics.relative_l1", "relative L1", "percent"),
+    ("metrics.relative_l1_blocks", "L1 in 8×8 blocks", "percent"),
     ("metrics.bias", "bias", "ratio"),
     ("metrics.rse_mean", "mean RSE", "number"),
 )
-CYCLES_PICTURES = 4
-"""How many of Cycles' renders are shown, at most."""
+TRACED_PICTURES = 4
+"""How many of the path tracer's renders are shown, at most."""
 
 
 def build(results, pictures, folder):
@@ -70,8 +71,8 @@ def _error(point):
 
 
 def _pictured(results):
-    """The points shown as pictures: the setting that is named for each model, then Cycles from few samples to many."""
+    """The points shown as pictures: the setting that is named for each model, then some of the tracer's."""
     points = results["points"]
-    theirs = [point for point in points if point["side"] == "cycles"]
-    some = sorted({round(at * (len(theirs) - 1) / (CYCLES_PICTURES - 1)) for at in range(CYCLES_PICTURES)})
+    theirs = [point for point in points if point["side"] == "traced"]
+    some = sorted({round(at * (len(theirs) - 1) / (TRACED_PICTURES - 1)) for at in range(TRACED_PICTURES)})
     return [points[entry["point"]] for entry in results["summary"]] + [theirs[at] for at in some if theirs]

@@ -1,4 +1,4 @@
-# The plot of a trade curve: error against milliseconds, ours and Cycles', with the Pareto front.
+# The plot of a trade curve: error against milliseconds, ours and the path tracer's, with the Pareto front.
 """See `trade`."""
 
 from .plots import log_axis, new_figure, percent
@@ -21,24 +21,26 @@ def trade(results):
         figure, axes = new_figure(9.0, 5.0)
         axes.set_xscale("log")
         axes.set_yscale("log")
+        judged_by = results["reference"]["judged_by"]
         _front(axes, results, palette)
         colours = {"model_3": palette.ours, "model_2": palette.second, "model_1": palette.third}
         lines = {}
         for point in points:
             lines.setdefault((point["side"], point["model"], point["taps"]), []).append(point)
         for number, ((side, model, taps), line) in enumerate(lines.items()):
-            colour = palette.theirs if side == "cycles" else colours.get(model, palette.ours)
+            colour = palette.theirs if side == "traced" else colours.get(model, palette.ours)
             label = f"{model}, {taps} taps" if taps else model
-            _line(axes, line, colour, MARKERS[number % len(MARKERS)], label, palette)
+            _line(axes, line, colour, MARKERS[number % len(MARKERS)], label, palette, judged_by)
         floor = results["reference"]["noise_floor"]
         axes.axhline(floor, color=palette.quiet, linewidth=0.9, linestyle=(0, (1, 2)),
                      label="noise floor of the converged render")
         _gain(axes, results, palette)
         axes.set_xlabel("time of a picture")
-        axes.set_ylabel("error: relative L1, the converged render's noise taken off")
-        reached = [entry["cycles_milliseconds"] for entry in results["summary"][:1] if entry["cycles_milliseconds"]]
+        metric = "relative L1 in 8×8 blocks" if judged_by.endswith("_blocks") else "relative L1"
+        axes.set_ylabel(f"error: {metric},\nthe converged render's noise taken off")
+        reached = [entry["traced_milliseconds"] for entry in results["summary"][:1] if entry["traced_milliseconds"]]
         log_axis(axes.xaxis, [*reached, *(point["milliseconds"] for point in points)], 1.7, _tick, steps=(1,))
-        errors = [size for point in points for size in (point["error"], point["metrics"]["relative_l1"])]
+        errors = [size for point in points for size in (point["error"], point["metrics"][judged_by])]
         log_axis(axes.yaxis, [*errors, floor], 1.5, percent, steps=(1, 2, 5))
         axes.grid(True, which="major")
         axes.legend(frameon=False, fontsize=8, loc="upper left", bbox_to_anchor=(1.0, 1.0))
@@ -47,12 +49,12 @@ def trade(results):
     return draw
 
 
-def _line(axes, line, colour, marker, label, palette):
+def _line(axes, line, colour, marker, label, palette, judged_by):
     times = [point["milliseconds"] for point in line]
     axes.plot(times, [point["error"] for point in line], color=colour, linewidth=1.1, alpha=0.8)
     for number, point in enumerate(line):
         at, error = point["milliseconds"], point["error"]
-        raw = max(error, point["metrics"]["relative_l1"])
+        raw = max(error, point["metrics"][judged_by])
         axes.plot([at] * 2, [error, raw], color=colour, linewidth=0.8, alpha=0.4)
         axes.plot([at], [error], marker=marker, markersize=5.5, color=colour, linestyle="none",
                   fillstyle="full" if point["resolved"] else "none", label=label if number == 0 else None)
@@ -74,16 +76,16 @@ def _front(axes, results, palette):
 
 
 def _gain(axes, results, palette):
-    """The arrow from our most exact setting to where Cycles is as near."""
+    """The arrow from our most exact setting to where the path tracer is as near."""
     entry = next(iter(results["summary"]), None)
     if entry is None or not entry["ratio"] or entry["ratio"] < 2.0:
         return
-    if entry["cycles_known"] == "beyond":
-        last = max((point for point in results["points"] if point["side"] == "cycles"),
+    if entry["traced_known"] == "beyond":
+        last = max((point for point in results["points"] if point["side"] == "traced"),
                    key=lambda point: point["milliseconds"])
-        axes.plot([last["milliseconds"], entry["cycles_milliseconds"]], [last["error"], entry["error"]],
+        axes.plot([last["milliseconds"], entry["traced_milliseconds"]], [last["error"], entry["error"]],
                   color=palette.theirs, linewidth=1.1, linestyle=(0, (4, 3)), alpha=0.8)
-    ours, theirs, error = entry["milliseconds"], entry["cycles_milliseconds"], entry["error"]
+    ours, theirs, error = entry["milliseconds"], entry["traced_milliseconds"], entry["error"]
     axes.annotate("", (theirs, error), (ours, error), arrowprops={
         "arrowstyle": "<->", "color": palette.quiet, "linewidth": 0.9, "shrinkA": 6, "shrinkB": 2})
     axes.annotate(times(entry["ratio"]), ((ours * theirs) ** 0.5, error), (0, 3), textcoords="offset points",

@@ -6,9 +6,9 @@ from pathlib import Path
 from ..command_line import parser as shared
 from ..command_line.values import picture_size, positive
 from ..cycles.kinds import KINDS
-
-# Those that light and render the scene as it is, and in Cycles.
-REFERENCES = tuple(name for name, kind in KINDS.items() if not kind.referee and not kind.least_sun)
+REFERENCES = tuple(KINDS)
+LEAST_CONVERGED = 512
+"""Samples a pixel of the converged render, unless its kind needs more."""
 
 
 def build():
@@ -17,8 +17,8 @@ def build():
         prog="mesograin trade",
         usage="mesograin trade [SCENE.blend] [options]",
         description=(
-            "Measures error against time: every model at several sample counts, and Cycles itself at rising samples,"
-            " all against one converged Cycles render; draws the Pareto front."
+            "Measures error against time: every model at several sample counts, and Cycles itself (or the photon"
+            " tracer) at rising samples, all against one converged render; draws the Pareto front."
         ),
         epilog=(
             "Exit codes: 0 measured, 1 something failed (the rest is written), 2 bad arguments or scene, 3 the output "
@@ -31,7 +31,7 @@ def build():
         choices=REFERENCES,
         default="volume_index_matched",
         metavar="KIND",
-        help=f"what Cycles renders, of {', '.join(REFERENCES)} (default: volume_index_matched)",
+        help=f"what the models are measured against, of {', '.join(REFERENCES)} (default: volume_index_matched)",
     )
     parser.add_argument(
         "--models",
@@ -59,17 +59,18 @@ def build():
     parser.add_argument(
         "--reference-samples",
         type=positive,
-        default=512,
+        default=None,
         metavar="N",
-        help="samples a pixel of each of the two seeds of the converged render (default: 512)",
+        help="samples a pixel of each of the two seeds of the converged render (default: 512; volume_dielectric 1024)",
     )
     parser.add_argument(
-        "--cycles-samples",
+        "--traced-samples",
         nargs="+",
         type=positive,
         default=None,
         metavar="N",
-        help="samples a pixel of the Cycles renders to measure (default: 1 2 4 ... to a quarter of the converged one)",
+        help="samples a pixel of Cycles' renders to measure, or of the photon tracer's (default: 1 2 4 ... to a quarter"
+        " of the converged one)",
     )
     parser.add_argument(
         "--out", type=Path, default=Path("trade"), metavar="DIR", help="folder for what is written (default: trade)"
@@ -96,11 +97,12 @@ def parse(words):
             parser.error(f"'{model}' is not answered by {chosen.reference}; allowed are {', '.join(answered)}")
     for name in ("samples", "taps"):
         setattr(chosen, name, tuple(sorted(set(getattr(chosen, name)))))
-    chosen.cycles_samples = tuple(sorted(set(chosen.cycles_samples or rising(chosen.reference_samples))))
-    if chosen.cycles_samples[-1] > chosen.reference_samples:
+    chosen.reference_samples = chosen.reference_samples or max(LEAST_CONVERGED, KINDS[chosen.reference].samples)
+    chosen.traced_samples = tuple(sorted(set(chosen.traced_samples or rising(chosen.reference_samples))))
+    if chosen.traced_samples[-1] > chosen.reference_samples:
         parser.error(
-            f"--cycles-samples must not exceed the converged render's {chosen.reference_samples} samples;"
-            f" got {chosen.cycles_samples[-1]}"
+            f"--traced-samples must not exceed the converged render's {chosen.reference_samples} samples;"
+            f" got {chosen.traced_samples[-1]}"
         )
     return chosen
 

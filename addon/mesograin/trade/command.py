@@ -31,7 +31,7 @@ def _run(chosen, words):
                 samples=chosen.samples,
                 taps=chosen.taps,
                 reference_samples=chosen.reference_samples,
-                cycles_samples=chosen.cycles_samples,
+                traced_samples=chosen.traced_samples,
                 size=chosen.size,
                 frames=chosen.frames,
                 settings=chosen.settings,

@@ -1,5 +1,5 @@
-# What measured points come to: the Pareto front, how long Cycles needs for an error, and that in a sentence.
-"""Points are dicts with `side` ('mesograin' or 'cycles'), `milliseconds`, `error` and `resolved`; see `place`."""
+# What measured points come to: the Pareto front, how long the path tracer needs for an error, and that in a sentence.
+"""Points are dicts with `side` ('mesograin' or 'traced'), `milliseconds`, `error` and `resolved`; see `place`."""
 
 import math
 
@@ -13,11 +13,12 @@ NEAR_BEST = 1.1
 """A setting whose error is within this factor of a model's best is as good; the cheapest of them is the one to name."""
 
 
-def place(metrics, noise_floor):
-    """{'error', 'resolved'} of a point: relative_l1 with the reference's noise taken off, or, where that is too small
-    to be told from none, the smallest error that can be, with `resolved` False. metrics: of native.compare."""
-    smallest = RESOLVED * noise_floor["relative_l1"]
-    error = metrics["relative_l1_corrected"]
+def place(metrics, noise_floor, judged_by="relative_l1"):
+    """{'error', 'resolved'} of a point: the metric that judges with the reference's noise taken off, or, where that is
+    too small to be told from none, the smallest error that can be, with `resolved` False. metrics: of native.compare.
+    """
+    smallest = RESOLVED * noise_floor[judged_by]
+    error = metrics[f"{judged_by}_corrected"]
     return {"error": max(error, smallest), "resolved": error > smallest}
 
 
@@ -31,13 +32,13 @@ def front(points):
     return found
 
 
-def cycles_time(points, error):
-    """(milliseconds that Cycles needs to come as near as `error`, how that is known) from its measured points.
+def traced_time(points, error):
+    """(milliseconds that the path tracer needs to come as near as `error`, how that is known) from its measured points.
 
     How: 'between' two points (straight lines in logarithms), 'beyond' the last one, where the error of a path tracer
     falls with the root of its time, or 'below' the first: its time is then an upper bound. (None, None) without points.
     """
-    measured = sorted((point["milliseconds"], point["error"]) for point in points if point["side"] == "cycles")
+    measured = sorted((point["milliseconds"], point["error"]) for point in points if point["side"] == "traced")
     measured = [(time, size) for time, size in measured if time > 0.0 and size > 0.0]
     if not measured or error <= 0.0:
         return None, None
@@ -53,12 +54,13 @@ def cycles_time(points, error):
 
 def summary(points):
     """One entry for each model, the most exact one first: its cheapest setting that is as good as its best, and how
-    long Cycles needs for the same error.
+    long the path tracer needs for the same error.
 
-    Each entry is a dict with `point` (an index), `error`, `milliseconds`, `cycles_milliseconds`, `cycles_known` (see
-    `cycles_time`), `ratio` and `sentence`.
+    Each entry is a dict with `point` (an index), `error`, `milliseconds`, `traced_milliseconds`, `traced_known` (see
+    `traced_time`), `ratio` and `sentence`.
     """
     entries = []
+    tracer = next((point["model"] for point in points if point["side"] == "traced"), None)
     for model in dict.fromkeys(point["model"] for point in points if point["side"] == "mesograin"):
         own = [at for at, point in enumerate(points) if point["side"] == "mesograin" and point["model"] == model]
         least = min(points[at]["error"] for at in own)
@@ -66,33 +68,33 @@ def summary(points):
             (at for at in own if points[at]["error"] <= NEAR_BEST * least), key=lambda at: points[at]["milliseconds"]
         )
         error = points[chosen]["error"]
-        theirs, known = cycles_time(points, error)
+        theirs, known = traced_time(points, error)
         entry = {
             "point": chosen,
             "error": error,
             "milliseconds": points[chosen]["milliseconds"],
-            "cycles_milliseconds": theirs,
-            "cycles_known": known,
+            "traced_milliseconds": theirs,
+            "traced_known": known,
             "ratio": theirs / points[chosen]["milliseconds"] if theirs else None,
         }
-        entries.append({**entry, "sentence": _sentence(points[chosen], entry)})
+        entries.append({**entry, "sentence": _sentence(points[chosen], entry, tracer)})
     return sorted(entries, key=lambda entry: (entry["error"], entry["milliseconds"]))
 
 
-def _sentence(point, entry):
+def _sentence(point, entry, tracer):
     count = f"{point['samples']} sample{'s' if point['samples'] > 1 else ''}"
     taps = f" of {point['taps']} taps" if point["taps"] else ""
-    known = entry["cycles_known"]
+    known = entry["traced_known"]
     off = _share(entry["error"]) if point["resolved"] else f"at most {_share(entry['error'])}"
     ours = f"{point['model']} with {count}{taps}: {off} at {duration(entry['milliseconds'])}"
     if known is None:
         return f"{ours}."
     if known == "below":
-        return f"{ours}; Cycles is as near after {duration(entry['cycles_milliseconds'])} or less."
+        return f"{ours}; {tracer} is as near after {duration(entry['traced_milliseconds'])} or less."
     least = "" if point["resolved"] else "at least "
     extrapolated = ", extrapolated" if known == "beyond" else ""
-    needed = f"{least}{duration(entry['cycles_milliseconds'])}"
-    return f"{ours}; Cycles needs {needed} for the same error{extrapolated}: {times(entry['ratio'])}."
+    needed = f"{least}{duration(entry['traced_milliseconds'])}"
+    return f"{ours}; {tracer} needs {needed} for the same error{extrapolated}: {times(entry['ratio'])}."
 
 
 def _share(value):

@@ -12,36 +12,36 @@ from pathlib import Path
 import bpy
 
 from .. import export, native_module
-from ..comparison import definitions, origin
+from ..comparison import definitions, masks, origin
 from ..comparison.ours import Ours
 from ..comparison.results import Output
 from ..cycles import kinds, nodes, reference
 from ..cycles.cache import Cache
 from . import curve
 
-FORMAT, FORMAT_VERSION = "mesograin-trade", 1
+FORMAT, FORMAT_VERSION = "mesograin-trade", 2
 RESULTS = "trade.json"
 SEED = 11
-"""Of the Cycles renders that are measured; the converged one has others, so that their noise is independent."""
+"""Of the traced renders that are measured; the converged one has others, so that their noise is independent."""
 
-METRICS = ("relative_l1", "bias", "rse_mean")
+METRICS = ("relative_l1", "relative_l1_blocks", "bias", "rse_mean")
 """What a point keeps of docs/metrics.md beside its error."""
 
 DEFINITIONS = {
     "error": (
-        "relative_l1 with the converged render's noise taken off: sqrt(max(0, v^2 - floor^2)), v = sum |i - r| / sum r;"
-        " 0 is perfect, no unit"
+        "the metric named by judged_by with the converged render's noise taken off: sqrt(max(0, v^2 - floor^2)), v ="
+        " sum |i - r| / sum r, pixel by pixel or in blocks of 8 x 8; 0 is perfect, no unit"
     ),
     "resolved": f"whether the error is above {curve.RESOLVED:g} of the noise floor; if not, it is at most what stands",
     "milliseconds": (
-        "ours: samples times frame_ms; Cycles: wall-clock time of one render on all cores of the CPU, with the"
-        " preparation of its scene"
+        "ours: samples times frame_ms; the path tracer's: wall-clock time of one render on all cores of the CPU, with"
+        " the preparation of its scene"
     ),
     "frame_ms": (
         "milliseconds of all passes of a frame, one sample a pixel, on the device named; the median of frames_timed"
         " frames after a first one that prepared the device"
     ),
-    "noise_floor": "relative_l1 that a perfect picture would score, because the converged render is noisy itself",
+    "noise_floor": "the error that a perfect picture would score, because the converged render is noisy itself",
     "front": "no other point is both faster and nearer to the converged render",
 }
 
@@ -49,7 +49,7 @@ DEFINITIONS = {
 @dataclass(frozen=True)
 class Request:
     """What to measure. reference: a name in `kinds.KINDS`; models: some of those that it answers. samples: a pixel, on
-    our side; taps: of model 3. reference_samples: a pixel and seed, of the converged render; cycles_samples: of those
+    our side; taps: of model 3. reference_samples: a pixel and seed, of the converged render; traced_samples: of those
     that are measured against it. settings: {material parameter: value}, coefficients in 1/mm. command: the line that
     repeats it."""
 
@@ -59,7 +59,7 @@ class Request:
     samples: tuple
     taps: tuple
     reference_samples: int
-    cycles_samples: tuple
+    traced_samples: tuple
     size: tuple
     frames: int = 25
     settings: dict = field(default_factory=dict)
@@ -83,24 +83,22 @@ def measure(request, progress):
         progress.say(warning)
     progress.plan(_steps(request))
 
-    def cycles(samples, seeds):
+    def traced(samples, seeds):
+        sampling = reference.Sampling(depsgraph, kind.name, request.size, samples, request.cache, overrides)
         progress.begin()
-        rendered = reference.render(
-            depsgraph,
-            request.reference,
-            request.size,
-            samples=samples,
-            seeds=seeds,
-            cache=request.cache,
-            overrides=overrides,
-            on_progress=progress.update,
-        )
+        sampling.add(seeds, progress.update)
+        rendered = sampling.result()
         progress.end(learn=not rendered.cached)
-        return rendered
+        return rendered, sampling
 
-    truth = cycles(request.reference_samples, reference.SEEDS)
-    chosen = kinds.our_side(request.reference, nodes.features())
     kind = kinds.KINDS[request.reference]
+    truth, sampling = traced(request.reference_samples, reference.SEEDS)
+    mirror = None
+    if kind.smooth_interface:
+        suns = [(direction, angle) for direction, angle, _ in ours.suns(kind.least_sun)]
+        mirror = masks.mirror_patch(sampling.geometry()[1], suns)
+    mask = masks.select((), truth.mean, truth, mirror)[0]
+    chosen = kinds.our_side(request.reference, nodes.features())
     results = {
         "format": FORMAT,
         "format_version": FORMAT_VERSION,
@@ -110,11 +108,13 @@ def measure(request, progress):
             **origin.COMMON_SETTINGS,
             "frames_timed": request.frames,
         },
-        "definitions": {**DEFINITIONS, **{name: definitions.METRICS[name] for name in METRICS}},
+        "definitions": {**DEFINITIONS, **{name: definitions.definition(name) for name in METRICS}},
         "material": ours.parameters(chosen),
         "reference": {
             "kind": kind.name,
             "title": kind.title,
+            "tracer": kind.tracer,
+            "judged_by": kind.judged_by,
             "samples": request.reference_samples,
             "seeds": list(reference.SEEDS),
             "bounces": kind.bounces,
@@ -123,7 +123,7 @@ def measure(request, progress):
         },
         "points": [],
     }
-    book = _Book(results, output, truth, _fingerprint(request, results, truth))
+    book = _Book(results, output, truth, mask, _fingerprint(request, results, truth))
 
     provenance = {
         "made_by": f"Mesograin {native.__version__}",
@@ -134,15 +134,15 @@ def measure(request, progress):
     for model in request.models:
         for taps in request.taps if model == "model_3" else (None,):
             _measure_model(request, ours, {"model": model, **chosen}, taps, book, progress, provenance)
-    for samples in request.cycles_samples:
-        name = f"cycles.samples{samples}"
+    for samples in request.traced_samples:
+        name = f"{'photon' if kind.referee else 'cycles'}.samples{samples}"
         if book.has(name):
             progress.begin()
             progress.end(learn=False)
             continue
-        rendered = cycles(samples, (SEED,))
-        book.picture(name, rendered.images[0], {**provenance, "cycles": rendered.provenance[0]})
-        book.add(name, rendered.images[0], side="cycles", model="Cycles", taps=None, samples=samples,
+        rendered, _ = traced(samples, (SEED,))
+        book.picture(name, rendered.images[0], {**provenance, "traced": rendered.provenance[0]})
+        book.add(name, rendered.images[0], side="traced", model=kind.tracer, taps=None, samples=samples,
                  milliseconds=1000.0 * rendered.seconds)
     book.finish()
     return results
@@ -158,7 +158,7 @@ def _measure_model(request, ours, chosen, taps, book, progress, provenance):
     if not missing:
         progress.end(learn=False)
         return
-    ours.begin(chosen, taps=taps)
+    ours.begin(chosen, kinds.KINDS[request.reference].least_sun, taps)
     images = {}
     for name, count in missing.items():
         (images[name],) = ours.refine(count)
@@ -174,8 +174,8 @@ def _measure_model(request, ours, chosen, taps, book, progress, provenance):
 class _Book:
     """The points so far, on disk after each; those of an earlier run that was determined by the same are taken over."""
 
-    def __init__(self, results, output, truth, fingerprint):
-        self._results, self._output, self._truth = results, output, truth
+    def __init__(self, results, output, truth, mask, fingerprint):
+        self._results, self._output, self._truth, self._mask = results, output, truth, mask
         results["fingerprint"] = fingerprint
         self._known = {}
         try:
@@ -198,13 +198,15 @@ class _Book:
         self._output.write_exr(f"pictures/{name}.exr", pixels, provenance)
 
     def add(self, name, image, **point):
-        metrics = native_module.get().compare(image, *self._truth.images)
+        metrics = native_module.get().compare(image, *self._truth.images, mask=self._mask)
         floor, mask = metrics["noise_floor"], metrics["mask"]
         kept = {name: metrics[name] for name in METRICS}
-        self._results["reference"]["noise_floor"] = floor["relative_l1"]
+        judged_by = self._results["reference"]["judged_by"]
+        self._results["reference"]["noise_floor"] = floor[judged_by]
         self._results["reference"]["mask"] = mask
         self._results["points"].append(
-            {"name": name, **point, **curve.place(metrics, floor), "metrics": kept, "picture": f"pictures/{name}.exr"}
+            {"name": name, **point, **curve.place(metrics, floor, judged_by), "metrics": kept,
+             "picture": f"pictures/{name}.exr"}
         )
         self._write()
 
@@ -247,14 +249,14 @@ def _csv(points, on_front):
 
 
 def _steps(request):
-    """The converged render, ours, then Cycles' samples: (what, kind, guessed seconds) each."""
+    """The converged render, ours, then the traced ones: (what, kind, guessed seconds) each."""
     kind = kinds.KINDS[request.reference]
     million = request.size[0] * request.size[1] * 1e-6 / (os.cpu_count() or 1)
-    yield "converged render", "cycles", 2 * kind.cost * request.reference_samples * million
+    yield "converged render", "traced", 2 * kind.cost * request.reference_samples * million
     for model in request.models:
         for taps in request.taps if model == "model_3" else (None,):
             frames = request.samples[-1] + request.frames
             what = f"{model}, {taps} taps" if taps else model
             yield what, f"{model} {taps}", (0.3 + 0.3 * (taps or 0)) * frames * million
-    for samples in request.cycles_samples:
-        yield f"Cycles at {samples} samples", "cycles", kind.cost * samples * million
+    for samples in request.traced_samples:
+        yield f"{kind.tracer} at {samples} samples", "traced", kind.cost * samples * million
