@@ -117,7 +117,8 @@ Gathered gather(LightFrame frame, int light, BodyFit fit, vec3 position, vec3 no
   float last_share = float(textureSize(kernel_inverse, 0).x - 1);
   float shares = last_share * last_share / sampling.largest_depth;
   Gathered sum = Gathered(Spectrum(0.0), Spectrum(0.0));
-  for (int i = 0; i < count; ++i) {
+  int i = 0;
+  do {
     vec2 random = low_discrepancy(first + uint(i), offset);
     // The driver's log errs near 1, where it only moves a sample by a thousandth of its small distance.
     float depth = depth_here - log(1.0 - random.x * within);
@@ -137,7 +138,7 @@ Gathered gather(LightFrame frame, int light, BodyFit fit, vec3 position, vec3 no
     }
     LightMapTexel entry = light_map_at(frame, light, place * body.radius);
     if (entry.lit) sum.grain += weight * SPECTRUM(kernel_at(distance(entry.position / body.radius, position), entry.normal.z));
-  }
+  } while (++i < count);
   float share = exp(-depth_here) * within / float(max(count, 1));
   return Gathered(share * sum.grain, share * sum.sphere);
 }
@@ -180,7 +181,8 @@ vec3 single_scattering(LightFrame frame, int light, BodyFit fit, vec3 position, 
   float shift = low_discrepancy(first, offset).x;
   Spectrum sum = Spectrum(0.0);
   Spectrum plane = Spectrum(0.0);
-  for (int i = 0; i < count; ++i) {
+  int i = 0;
+  do {
     float random = min((float(i) + shift) / float(count), LARGEST_BELOW_ONE);
 #ifdef GREY
     vec2 chosen = vec2(rate, mean_way);
@@ -217,7 +219,7 @@ vec3 single_scattering(LightFrame frame, int light, BodyFit fit, vec3 position, 
     float phase = henyey_greenstein(0.5 * dot(turn, turn), single.absolute_g, single.one_minus_absolute_g);
     // Where the light's way in hardly grows, far samples are too rare for what they find; each may count as many, but not as any number.
     sum += lighting.x * phase * drawn * min(exp(rate * t - sigma_t * (t + way_in)), Spectrum(MOST_A_SAMPLE_COUNTS));
-  }
+  } while (++i < count);
   // What the lit plane's own integral says the samples should have found.
   vec3 found = single.sigma_s * sum * mean_way / max(plane, Spectrum(1e-30));
   // Never above the albedo times the phase function's peak, but for what refraction focuses: a bound against single precision at silhouettes.
