@@ -1,33 +1,21 @@
 // A stack of equally sized 2-D textures, read in a shader by layer.
 #pragma once
 
-#include "gl/handle.h"
+#include "gl/texture_storage.h"
 
 namespace mesograin::gl {
 
-class TextureArray {
+class TextureArray : public TextureStorage<GL_TEXTURE_2D_ARRAY> {
  public:
-  /// One level of `format`, nearest filtering, coordinates clamped. Throws Error if the size is beyond the device's.
+  /// One level of `format`, nearest filtering. Throws Error if there are more layers than the device draws.
   TextureArray(GLenum format, int width, int height, int layers);
 
-  GLuint name() const { return handle_.name(); }
-  int width() const { return width_; }
-  int height() const { return height_; }
   int layers() const { return layers_; }
 
   /// Waits for the drawing and copies one layer as float RGBA into `texels`, first row y = 0.
   void read(int layer, float* texels) const;
 
-  void bind(GLuint unit) const { glBindTextureUnit(unit, handle_.name()); }
-
  private:
-  struct Traits {
-    static GLuint create();
-    static void destroy(GLuint name);
-  };
-  Handle<Traits> handle_;
-  int width_;
-  int height_;
   int layers_;
 };
 

@@ -5,7 +5,7 @@ import bpy
 import pytest
 from cycles_scenes import make_sphere
 
-from mesograin.bake_panel import session
+from mesograin.bake_panel.session import prepare, session
 from mesograin.baking.surface import PROVENANCE
 
 SUN = [((0.0, 0.0, 1.0), 3.0)]
@@ -30,13 +30,13 @@ def test_the_button_writes_the_texture_and_nothing_else(asked, tmp_path, native)
     assert pixels.shape == (16, 32, 4) and pixels[..., 3].min() == 1.0
     assert (origin["object"], origin["view_from"], origin["margin"], origin["samples"]) == (
         "Sphere", "active_camera", 3, 2)
-    assert session.bake.finished and session.bake.fraction == 1.0 and not session.running()
+    assert session.task.finished and session.task.fraction == 1.0 and not session.running
     assert not bpy.ops.mesograin.cancel_bake.poll()
 
 
 def test_a_cancelled_bake_writes_nothing(asked, tmp_path):
     asked.samples = 1 << 20
-    bake = session.prepare(bpy.context)
+    bake = prepare(bpy.context)
     bake.start()
     bake.cancel()
     bake.wait()
@@ -45,9 +45,9 @@ def test_a_cancelled_bake_writes_nothing(asked, tmp_path):
 
 def test_the_active_object_is_baked(asked, tmp_path, native):
     bpy.ops.mesh.primitive_plane_add()
-    assert session.prepare(bpy.context).surface.name == "Plane"
+    assert prepare(bpy.context).surface.name == "Plane"
     bpy.context.view_layer.objects.active = bpy.data.objects["Sphere"]
-    assert session.prepare(bpy.context).surface.name == "Sphere"
+    assert prepare(bpy.context).surface.name == "Sphere"
 
 
 def test_a_file_beside_the_blend_file(asked, tmp_path):
@@ -69,10 +69,10 @@ def test_what_is_wrong_is_one_sentence(asked, change, sentence):
     change(asked)
     with pytest.raises(RuntimeError, match=sentence):
         bpy.ops.mesograin.bake()
-    assert sentence in session.error and session.bake is None
+    assert sentence in session.error and session.task is None
 
 
 def test_another_file_forgets_the_bake(asked):
     bpy.ops.mesograin.bake()
     bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
-    assert session.bake is None
+    assert session.task is None

@@ -7,7 +7,8 @@ import pytest
 from cycles_scenes import make_sphere
 
 from mesograin import reference_cache, scripting
-from mesograin.compare_panel import pictures, properties, session
+from mesograin.compare_panel import pictures, properties
+from mesograin.compare_panel.session import folder, session
 from mesograin.cycles.cache import DEFAULT_LIMIT
 
 
@@ -38,11 +39,11 @@ def test_settings_become_arguments_in_the_order_of_the_tables(settings):
 
 def test_results_go_beside_the_file_or_last_as_long_as_blender(settings, tmp_path):
     scene = bpy.context.scene
-    assert session.folder(scene) == pathlib.Path(bpy.app.tempdir) / "comparison"
+    assert folder(scene) == pathlib.Path(bpy.app.tempdir) / "comparison"
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "grain.blend"))
-    assert session.folder(scene) == tmp_path / "comparison"
+    assert folder(scene) == tmp_path / "comparison"
     settings.out = str(tmp_path / "mine")
-    assert session.folder(scene) == tmp_path / "mine"
+    assert folder(scene) == tmp_path / "mine"
 
 
 def test_without_a_window_the_button_names_the_function():
@@ -59,7 +60,7 @@ def test_what_cannot_start_is_one_sentence(settings, change, words):
     change(settings)
     with pytest.raises(scripting.ComparisonError) as complaint:
         session.start(bpy.context)
-    assert words in str(complaint.value) and "\n" not in str(complaint.value) and not session.running()
+    assert words in str(complaint.value) and "\n" not in str(complaint.value) and not session.running
 
 
 def test_preferences_choose_the_cache(preferences, tmp_path, monkeypatch):

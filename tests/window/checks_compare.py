@@ -1,12 +1,10 @@
 # The Compare panel in a real window: progress, cancel, numbers and pictures, while the interface stays alive.
-import time
-
 import bpy
 import mesograin
 import numpy as np
 from mesograin import status
 from mesograin.background import job as jobs
-from mesograin.compare_panel import session
+from mesograin.compare_panel.session import session
 
 
 def prepare(window, **settings):
@@ -20,52 +18,32 @@ def prepare(window, **settings):
     for name, value in settings.items():
         setattr(asked, name, value)
     bpy.context.preferences.addons["mesograin"].preferences.cache_folder = str(window.folder / "cache")
-    area, properties = yield from window.split(area)
-    properties.type = "PROPERTIES"
-    yield from window.seconds(0.3)  # its tabs are known once it was drawn
-    properties.spaces.active.context = "RENDER"
-    yield from window.seconds(0.2)
-    return area, properties
-
-
-def press(window, area, button):
-    with window.override(area):
-        return getattr(bpy.ops.mesograin, button)("INVOKE_DEFAULT")
+    return area, (yield from window.render_properties(area))
 
 
 def finished(window):
-    """Waits for the job's end and for its results; gives the longest time that Blender did not answer, as a share of
-    the whole."""
-    started = before = time.monotonic()
-    longest = 0.0
-
-    def answered():
-        nonlocal longest, before
-        now = time.monotonic()
-        longest, before = max(longest, now - before), now
-        return not session.running() and not bpy.app.timers.is_registered(session._poll)
-
-    yield from window.until(answered, timeout=120.0)
-    return longest / (time.monotonic() - started)
+    """Waits for the job's end and for its results; gives what `silence_until` does."""
+    return (yield from window.silence_until(
+        lambda: not session.running and not bpy.app.timers.is_registered(session.poll)))
 
 
 def check_it_compares_beside_and_shows_what_it_found(window):
     area, properties = yield from prepare(window, models={"lambert", "conductor"})
     quiet = yield from window.picture(properties)
     state = (bpy.data.filepath, bpy.data.is_dirty, [image.name for image in bpy.data.images])
-    assert press(window, properties, "compare") == {"FINISHED"}
-    assert session.running() and not bpy.ops.mesograin.compare.poll()
+    assert window.call(properties, "compare") == {"FINISHED"}
+    assert session.running and not bpy.ops.mesograin.compare.poll()
     assert (bpy.data.filepath, bpy.data.is_dirty, [image.name for image in bpy.data.images]) == state
-    yield from window.until(lambda: session.job.step is not None)
+    yield from window.until(lambda: session.task.step is not None)
     busy = yield from window.picture(properties)
-    assert session.running(), "over before it could be looked at"
+    assert session.running, "over before it could be looked at"
     assert (np.abs(busy - quiet).max(axis=-1) > 0.1).sum() > 500, "the panel shows no progress"
     # The artist goes on.
     status.clear()
     bpy.data.materials["Translucent"].mesograin.reflectance = (0.4, 0.2, 0.8)
     yield from window.converged_picture(area)
-    longest = yield from finished(window)
-    assert longest < 0.25, f"Blender did not answer for {longest:.0%} of the comparison"
+    silent = yield from finished(window)
+    assert silent < 0.25, f"Blender did not answer for {silent:.0%} of the comparison"
     assert session.error == "" and [case["status"] for case in session.results["cases"]] == ["done", "done"]
     shown = yield from window.picture(properties)
     assert (np.abs(shown - quiet).max(axis=-1) > 0.1).sum() > 1000, "the panel shows no numbers"
@@ -114,7 +92,7 @@ def compare_again(window, properties):
     bpy.data.images.remove(bpy.data.images["Mesograin lambert.diffuse reference"])
     grain = bpy.data.materials["Translucent"].mesograin
     grain.reflectance, grain.roughness = (0.1, 0.1, 0.1), 0.0
-    press(window, properties, "compare")
+    window.call(properties, "compare")
     assert session.results is None
     yield from finished(window)
     lambert, conductor = session.results["cases"]
@@ -142,17 +120,17 @@ def check_undo_goes_on_and_cancel_is_at_once(window):
         bpy.data.materials["Translucent"].mesograin.eta = 1.7
         bpy.ops.ed.undo_push(message="eta")
     assert bpy.data.is_dirty
-    press(window, properties, "compare")
+    window.call(properties, "compare")
     assert bpy.data.is_dirty
     with window.override(properties):
         bpy.ops.ed.undo()
         assert abs(bpy.data.materials["Translucent"].mesograin.eta - 1.3) < 1e-6
         bpy.ops.ed.redo()
         assert abs(bpy.data.materials["Translucent"].mesograin.eta - 1.7) < 1e-6
-    yield from window.until(lambda: session.job.step is not None)
-    job = session.job
-    press(window, properties, "cancel_compare")
-    assert not session.running() and job.state == jobs.CANCELLED
+    yield from window.until(lambda: session.task.step is not None)
+    job = session.task
+    window.call(properties, "cancel_compare")
+    assert not session.running and job.state == jobs.CANCELLED
     yield from window.until(lambda: job.wait(0.0), timeout=10.0)
     assert not job.folder.exists() and not (window.folder / "cancelled").exists()
     yield from window.picture(properties)
@@ -162,14 +140,14 @@ def check_undo_goes_on_and_cancel_is_at_once(window):
 
 def check_another_file_ends_the_comparison_and_what_fails_is_one_sentence(window):
     _, properties = yield from prepare(window, models={"model_1"}, size_percent=100, quality="final")
-    press(window, properties, "compare")
-    job = session.job
+    window.call(properties, "compare")
+    job = session.task
     yield from window.restore()
     _, properties = yield from prepare(window)
-    assert job.state == jobs.CANCELLED and session.job is None and session.results is None
+    assert job.state == jobs.CANCELLED and session.task is None and session.results is None
     yield from window.until(lambda: job.wait(0.0), timeout=10.0)
     bpy.data.objects.remove(bpy.context.scene.camera)
-    press(window, properties, "compare")
+    window.call(properties, "compare")
     yield from finished(window)
     assert "no active camera" in session.error and "\n" not in session.error and session.results is None
     yield from window.picture(properties)
@@ -179,10 +157,10 @@ def check_no_model_chosen_is_said(window):
     _, properties = yield from prepare(window, models=set())
     quiet = yield from window.picture(properties)
     try:
-        outcome = str(press(window, properties, "compare"))
+        outcome = str(window.call(properties, "compare"))
     except RuntimeError as error:  # how an operator's error report reaches a script
         outcome = str(error)
     assert "model" in session.error and session.error in outcome and "\n" not in session.error, outcome
-    assert not session.running() and session.results is None
+    assert not session.running and session.results is None
     shown = yield from window.picture(properties)
     assert (np.abs(shown - quiet).max(axis=-1) > 0.1).sum() > 100, "the panel does not say it"

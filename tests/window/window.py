@@ -52,6 +52,20 @@ class Window:
             assert time.monotonic() < deadline, f"{timeout} s were not enough; {status.complaints()}"
             yield 0.05
 
+    def silence_until(self, condition, timeout=120.0):
+        """Waits as `until`; gives the longest time that Blender did not answer, as a share of the whole."""
+        started = before = time.monotonic()
+        longest = 0.0
+
+        def answered():
+            nonlocal longest, before
+            now = time.monotonic()
+            longest, before = max(longest, now - before), now
+            return condition()
+
+        yield from self.until(answered, timeout)
+        return longest / (time.monotonic() - started)
+
     # Files and areas
 
     def open(self, name, samples=4):
@@ -104,6 +118,20 @@ class Window:
         self.prepare(new)
         yield from self.seconds(0.3)
         return area, new
+
+    def render_properties(self, area):
+        """Splits an area; gives the new half, which shows the render properties."""
+        _, properties = yield from self.split(area)
+        properties.type = "PROPERTIES"
+        yield from self.seconds(0.3)  # its tabs are known once it was drawn
+        properties.spaces.active.context = "RENDER"
+        yield from self.seconds(0.2)
+        return properties
+
+    def call(self, area, operator):
+        """What a click on the button of `mesograin.<operator>` in this area does; gives the operator's answer."""
+        with self.override(area):
+            return getattr(bpy.ops.mesograin, operator)("INVOKE_DEFAULT")
 
     def restore(self):
         """Closes what `split` opened, once its panels are at rest."""

@@ -59,6 +59,22 @@ class Job:
         self._thread = threading.Thread(target=self._watch, name="mesograin-job", daemon=True)
         self._thread.start()
 
+    @property
+    def running(self):
+        return self.state == RUNNING
+
+    @property
+    def fraction(self):
+        """How much is done, 0 to 1, all steps alike."""
+        step = self.step
+        return (step.number - 1 + step.fraction) / step.count if step and step.count else 0.0
+
+    @property
+    def seconds_left(self):
+        """None before the first step."""
+        step = self.step
+        return step.seconds_left if step else None
+
     def cancel(self):
         """Ends the job; its state says so at once, its process and files are gone within PATIENCE_SECONDS."""
         with self._lock:

@@ -1,9 +1,11 @@
 # The Bake panel, among the render properties.
 import bpy
 
-from .. import compat, panels
+from .. import panels
 from ..comparison.progress import duration
-from . import operators, session
+from ..side_task import panel as side_task
+from . import operators
+from .session import session
 
 
 def draw_settings(layout, context):
@@ -22,21 +24,11 @@ def draw_settings(layout, context):
 
 def draw_bake(layout, context):
     """The button, or how far the bake is; then what came of the last one."""
-    bake = session.bake
-    if session.running():
-        left = bake.seconds_left
-        text = f"about {duration(left)} left" if left is not None else "the first sample"
-        column = layout.column(align=True)
-        compat.draw_progress(column, context.window_manager, "mesograin_bake_progress", text)
-        layout.operator(operators.MESOGRAIN_OT_cancel_bake.bl_idname, icon="CANCEL")
-    else:
-        row = layout.row()
-        row.scale_y = 1.4
-        active = context.view_layer.objects.active
-        label = f"Bake {active.name} to EXR" if active is not None else operators.MESOGRAIN_OT_bake.bl_label
-        row.operator(operators.MESOGRAIN_OT_bake.bl_idname, text=label, icon="RENDER_STILL")
-    if session.error:
-        panels.draw_sentence(layout, context, session.error)
+    bake = session.task
+    active = context.view_layer.objects.active
+    label = f"Bake {active.name} to EXR" if active is not None else operators.MESOGRAIN_OT_bake.bl_label
+    side_task.draw_task(layout, context, session, operators.MESOGRAIN_OT_bake, operators.MESOGRAIN_OT_cancel_bake,
+                        "the first sample", text=label, icon="RENDER_STILL")
     if bake is None:
         return
     if bake.error:
@@ -56,12 +48,8 @@ class MESOGRAIN_PT_bake(panels.MesograinPanel, bpy.types.Panel):
     bl_context = "render"
 
     def draw(self, context):
-        layout = self.layout
-        if not panels.draw_native_problem(layout, context):
-            column = layout.column()
-            column.enabled = not session.running()
-            draw_settings(column, context)
-        draw_bake(layout, context)
+        side_task.draw_settings(self.layout, context, session, draw_settings)
+        draw_bake(self.layout, context)
 
 
 register, unregister = bpy.utils.register_classes_factory((MESOGRAIN_PT_bake,))

@@ -1,8 +1,9 @@
 # What a scene remembers of how a surface is to be baked: scene.mesograin_bake.
 import bpy
-from bpy.props import BoolProperty, EnumProperty, IntProperty, PointerProperty, StringProperty
+from bpy.props import BoolProperty, EnumProperty, IntProperty, StringProperty
 
 from ..baking import choices
+from ..side_task.settings import remembered_by_scenes
 
 VIEWS = {
     "above_surface": ("Above Surface", "Every texel is looked at along its normal"),
@@ -27,14 +28,4 @@ class BakeProperties(bpy.types.PropertyGroup):
                         description="The EXR file to write; // is the folder of the .blend file")
 
 
-_register_classes, _unregister_classes = bpy.utils.register_classes_factory((BakeProperties,))
-
-
-def register():
-    _register_classes()
-    bpy.types.Scene.mesograin_bake = PointerProperty(type=BakeProperties)
-
-
-def unregister():
-    del bpy.types.Scene.mesograin_bake
-    _unregister_classes()
+register, unregister = remembered_by_scenes("mesograin_bake", BakeProperties)

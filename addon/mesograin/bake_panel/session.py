@@ -1,22 +1,20 @@
 # The one bake that may be under way in this Blender, and what came of the last one.
-"""The surface is read at once; a thread shades and writes it, without Blender's data, and a timer looks at it."""
+"""The surface is read at once; a thread shades and writes it, without Blender's data."""
 
 import threading
 import time
 from pathlib import Path
 
 import bpy
-from bpy.props import FloatProperty
 
 from .. import native_module
 from ..baking import surface
+from ..side_task.session import Session
 
-POLL_SECONDS = 0.2
 
-bake = None
-"""The Bake under way, or the last one; None before the first."""
-error = ""
-"""Why there is none, one sentence."""
+def refusals():
+    """The exceptions that say, in a sentence, why there is no texture."""
+    return surface.BakeError, surface.OutputError, native_module.get().Error
 
 
 class Bake:
@@ -58,12 +56,35 @@ class Bake:
             if self.finished:
                 surface.write(self.path, self.surface.texture(self._margin), self.surface.provenance(self._margin),
                               self._half)
-        except (surface.BakeError, surface.OutputError, native_module.get().Error) as problem:
+        except refusals() as problem:
             self.finished, self.error = False, str(problem)
         self.seconds = time.monotonic() - self._started
 
     def _advance(self, fraction):
         self.fraction = fraction
+
+
+class BakeSession(Session):
+    refusals = staticmethod(refusals)
+
+    def launch(self, context):
+        bake = prepare(context)
+        bake.start()
+        return bake
+
+    def start(self, context):
+        self.task = None  # what is wrong with this one is not said beside what came of another
+        super().start(context)
+
+    def forget(self):
+        bake = self.task
+        super().forget()
+        if bake is not None:
+            bake.wait()
+
+
+session = BakeSession("mesograin_bake_progress", {"PROPERTIES"})
+register, unregister = session.register, session.unregister
 
 
 def prepare(context):
@@ -79,14 +100,6 @@ def prepare(context):
     return Bake(chosen, path, asked.samples, asked.margin, asked.half)
 
 
-def start(context):
-    """Starts baking beside the artist. Raises as `prepare`."""
-    global bake, error
-    bake, error = prepare(context), ""
-    bake.start()
-    bpy.app.timers.register(_poll, first_interval=POLL_SECONDS)
-
-
 def output(scene):
     """The file that a scene asks for. Raises surface.OutputError if it has no folder yet, or is no EXR file."""
     chosen = scene.mesograin_bake.out
@@ -97,50 +110,3 @@ def output(scene):
     if path.suffix.lower() != ".exr":
         raise surface.OutputError(f"The texture is OpenEXR and its name must end in .exr; got '{path.name}'.")
     return path
-
-
-def running():
-    return bake is not None and bake.running
-
-
-def cancel():
-    """Ends the bake under way, if there is one."""
-    if bake is not None:
-        bake.cancel()
-
-
-def _poll():
-    _redraw()
-    return POLL_SECONDS if running() else None
-
-
-def _redraw():
-    for window in bpy.context.window_manager.windows:
-        for area in window.screen.areas:
-            if area.type == "PROPERTIES":
-                area.tag_redraw()
-
-
-@bpy.app.handlers.persistent
-def _forget(*_arguments):
-    global bake, error
-    if bake is not None:
-        bake.cancel()
-        bake.wait()
-    bake, error = None, ""
-
-
-def register():
-    # As in the Compare panel: a slider is how Blender before 4.0 draws a bar.
-    bpy.types.WindowManager.mesograin_bake_progress = FloatProperty(
-        name="Progress", min=0.0, max=100.0, subtype="PERCENTAGE", precision=0,
-        get=lambda _: 100.0 * bake.fraction if bake is not None else 0.0)
-    bpy.app.handlers.load_pre.append(_forget)
-
-
-def unregister():
-    _forget()
-    if bpy.app.timers.is_registered(_poll):
-        bpy.app.timers.unregister(_poll)
-    bpy.app.handlers.load_pre.remove(_forget)
-    del bpy.types.WindowManager.mesograin_bake_progress

@@ -2,8 +2,9 @@
 import bpy
 from bpy.props import EnumProperty, StringProperty
 
-from .. import native_module, scripting
-from . import pictures, session
+from ..side_task.operators import CancelOperator, StartOperator
+from . import pictures
+from .session import session
 
 
 # What each of pictures.FILES is called on its button, and what it shows.
@@ -16,41 +17,24 @@ PICTURES = {
 }
 
 
-class MESOGRAIN_OT_compare(bpy.types.Operator):
+class MESOGRAIN_OT_compare(StartOperator, bpy.types.Operator):
     bl_idname = "mesograin.compare"
     bl_label = "Compare with Cycles"
     bl_description = ("Render every chosen model and the Cycles materials that mean the same, beside this Blender, and "
                       "measure the difference")
-
-    @classmethod
-    def poll(cls, _context):
-        return native_module.problem() is None and not session.running()
+    session = session
 
     def execute(self, context):
         if bpy.app.background:
             self.report({"ERROR"}, "Without a window, call mesograin.compare() from the script.")
             return {"CANCELLED"}
-        try:
-            session.start(context)
-        except scripting.ComparisonError as error:
-            session.error = str(error)
-            self.report({"ERROR"}, str(error))
-            return {"CANCELLED"}
-        return {"FINISHED"}
+        return super().execute(context)
 
 
-class MESOGRAIN_OT_cancel_compare(bpy.types.Operator):
+class MESOGRAIN_OT_cancel_compare(CancelOperator, bpy.types.Operator):
     bl_idname = "mesograin.cancel_compare"
-    bl_label = "Cancel"
     bl_description = "End the comparison at once; references that are rendered stay in the cache"
-
-    @classmethod
-    def poll(cls, _context):
-        return session.running()
-
-    def execute(self, _context):
-        session.cancel()
-        return {"FINISHED"}
+    session = session
 
 
 class MESOGRAIN_OT_open_report(bpy.types.Operator):
@@ -60,10 +44,10 @@ class MESOGRAIN_OT_open_report(bpy.types.Operator):
 
     @classmethod
     def poll(cls, _context):
-        return session.results is not None and (session.job.out / "report.html").is_file()
+        return session.results is not None and (session.task.out / "report.html").is_file()
 
     def execute(self, _context):
-        return bpy.ops.wm.url_open(url=(session.job.out / "report.html").as_uri())
+        return bpy.ops.wm.url_open(url=(session.task.out / "report.html").as_uri())
 
 
 class MESOGRAIN_OT_show_picture(bpy.types.Operator):
@@ -90,7 +74,7 @@ class MESOGRAIN_OT_show_picture(bpy.types.Operator):
             self.report({"ERROR"}, f"The last comparison has no pictures of a case '{self.case}'.")
             return {"CANCELLED"}
         try:
-            image = pictures.show(entry, self.picture, session.job.out)
+            image = pictures.show(entry, self.picture, session.task.out)
         except RuntimeError as error:
             self.report({"ERROR"}, f"The picture cannot be shown: {' '.join(str(error).split())}")
             return {"CANCELLED"}

@@ -1,13 +1,15 @@
 # The Compare panel, among the render properties and beside the pictures in the Image Editor.
 import bpy
 
-from .. import compat, panels, reference_cache
+from .. import panels, reference_cache
 from ..background import job as jobs
 from ..comparison.progress import duration
 from ..comparison.significance import NO_DIFFERENCE
 from ..comparison.verdict import verdict
 from ..properties import MODELS
-from . import operators, pictures, properties, session
+from ..side_task import panel as side_task
+from . import operators, pictures, properties
+from .session import session
 
 MODEL_LABELS = {item[0]: item[1] for item in MODELS}
 
@@ -29,21 +31,11 @@ def draw_settings(layout, context):
 
 def draw_job(layout, context):
     """The button, or how far the job is; then what went wrong or was left out."""
-    job = session.job
-    if session.running():
-        text = f"about {duration(job.step.seconds_left)} left" if job.step else "Blender is starting"
-        column = layout.column(align=True)
-        compat.draw_progress(column, context.window_manager, "mesograin_compare_progress", text)
-        if job.step:
-            column.label(text=f"{job.step.number} of {job.step.count}: {job.step.what}")
-        layout.operator(operators.MESOGRAIN_OT_cancel_compare.bl_idname, icon="CANCEL")
-    else:
-        row = layout.row()
-        row.scale_y = 1.4
-        row.operator(operators.MESOGRAIN_OT_compare.bl_idname, icon="RESTRICT_RENDER_OFF")
-    if session.error:
-        panels.draw_sentence(layout, context, session.error)
-    elif job is not None and job.state == jobs.CANCELLED:
+    job = session.task
+    detail = f"{job.step.number} of {job.step.count}: {job.step.what}" if job is not None and job.step else ""
+    side_task.draw_task(layout, context, session, operators.MESOGRAIN_OT_compare, operators.MESOGRAIN_OT_cancel_compare,
+                        "Blender is starting", detail, icon="RESTRICT_RENDER_OFF")
+    if not session.error and job is not None and job.state == jobs.CANCELLED:
         layout.label(text="Cancelled; rendered references are kept.", icon="INFO")
     for sentence in job.sentences if job is not None else ():
         panels.draw_sentence(layout, context, sentence)
@@ -97,13 +89,9 @@ class MESOGRAIN_PT_compare(panels.MesograinPanel, bpy.types.Panel):
     bl_context = "render"
 
     def draw(self, context):
-        layout = self.layout
-        if not panels.draw_native_problem(layout, context):
-            column = layout.column()
-            column.enabled = not session.running()
-            draw_settings(column, context)
-        draw_job(layout, context)
-        draw_results(layout, context)
+        side_task.draw_settings(self.layout, context, session, draw_settings)
+        draw_job(self.layout, context)
+        draw_results(self.layout, context)
 
 
 class MESOGRAIN_PT_compare_references(panels.MesograinPanel, bpy.types.Panel):
@@ -115,7 +103,7 @@ class MESOGRAIN_PT_compare_references(panels.MesograinPanel, bpy.types.Panel):
     def draw(self, context):
         settings = context.scene.mesograin_compare
         column = self.layout.column(align=True)
-        column.enabled = not session.running()
+        column.enabled = not session.running
         column.prop(settings, "references")
         if not settings.references:
             column.label(text="None chosen: each model's usual one", icon="INFO")

@@ -2,10 +2,11 @@
 import dataclasses
 
 import bpy
-from bpy.props import EnumProperty, IntProperty, PointerProperty, StringProperty
+from bpy.props import EnumProperty, IntProperty, StringProperty
 
 from ..cycles import kinds
 from ..properties import MODELS
+from ..side_task.settings import remembered_by_scenes
 
 
 @dataclasses.dataclass(frozen=True)
@@ -84,14 +85,4 @@ def arguments(scene):
     }
 
 
-_register_classes, _unregister_classes = bpy.utils.register_classes_factory((CompareProperties,))
-
-
-def register():
-    _register_classes()
-    bpy.types.Scene.mesograin_compare = PointerProperty(type=CompareProperties)
-
-
-def unregister():
-    del bpy.types.Scene.mesograin_compare
-    _unregister_classes()
+register, unregister = remembered_by_scenes("mesograin_compare", CompareProperties)
