@@ -126,23 +126,39 @@ void add_body_difference(const char* name, const scene::Material& material, doub
 void add_planar_body(const std::array<const SurfaceKernel*, 3>& kernels, const BodySurface& surface, double resolution,
                      MaterialInputs& inputs) {
   constexpr int distance_count = 200;
+  // Some kernels take long: they are evaluated once, as far as the largest body reaches across, and interpolated.
+  constexpr int known_count = 512;
+  const double known_step = std::log1p(2.0 * table_radius(radius_count - 1) / resolution) / (known_count - 1.0);
+  std::vector<double> known_distances;
+  for (int j = 0; j < known_count; ++j) known_distances.push_back(resolution * std::expm1(j * known_step));
+  const auto known =
+      for_each_channel(kernels, [&](const SurfaceKernel* kernel) { return kernel->evaluate(known_distances, 1.0); });
+  const auto kernels_at = [&](double logarithm) {
+    const std::size_t cell = std::min(static_cast<std::size_t>(logarithm / known_step), known_distances.size() - 2);
+    const double t = std::min(logarithm / known_step - static_cast<double>(cell), 1.0);
+    glm::dvec3 values;
+    for (int channel = 0; channel < 3; ++channel)
+      values[channel] = (1.0 - t) * known[channel][cell] + t * known[channel][cell + 1];
+    return values;
+  };
   const std::vector<double> cosines = body_cosines();
   Table table{cosine_count, radius_count, {}};
   for (int row = 0; row < radius_count; ++row) {
     const double radius = table_radius(row);
     std::vector<double> distances;
-    distances.reserve(static_cast<std::size_t>(distance_count));
-    for (int j = 0; j < distance_count; ++j)
-      distances.push_back(resolution * std::expm1(std::log1p(2.0 * radius / resolution) * j / (distance_count - 1.0)));
-    std::array<std::vector<double>, 3> values;
-    for (int channel = 0; channel < 3; ++channel) values[channel] = kernels[channel]->evaluate(distances, 1.0);
+    std::vector<glm::dvec3> values;
+    for (int j = 0; j < distance_count; ++j) {
+      const double logarithm = std::log1p(2.0 * radius / resolution) * j / (distance_count - 1.0);
+      distances.push_back(resolution * std::expm1(logarithm));
+      values.push_back(kernels_at(logarithm));
+    }
     for (double cosine : cosines) {
       glm::dvec3 exitance(0.0);
       glm::dvec3 before(0.0);
       for (std::size_t j = 0; j < distances.size(); ++j) {
         const double s = distances[j] / radius;
         const double ring = distances[j] * entering_ring(surface, cosine, std::max(-1.0, 1.0 - 0.5 * s * s));
-        const glm::dvec3 here = ring * glm::dvec3(values[0][j], values[1][j], values[2][j]);
+        const glm::dvec3 here = ring * values[j];
         if (j > 0) exitance += 0.5 * (distances[j] - distances[j - 1]) * (before + here);
         before = here;
       }

@@ -1,4 +1,5 @@
 // The published half-space profiles, in forms without cancellation.
+#include <array>
 #include <cmath>
 
 #include "physics/physics.h"
@@ -9,7 +10,18 @@ namespace {
 
 constexpr int beam_depths = 100;
 
-double beam_depth(int index, double sigma_t) { return -std::log1p(-(index + 0.5) / beam_depths) / sigma_t; }
+// In mean free paths, each standing for as much of the beam's light.
+const std::array<double, beam_depths>& beam_optical_depths() {
+  static const std::array<double, beam_depths> depths = [] {
+    std::array<double, beam_depths> values{};
+    for (int i = 0; i < beam_depths; ++i) values[i] = -std::log1p(-(i + 0.5) / beam_depths);
+    return values;
+  }();
+  return depths;
+}
+
+// No length here is so long or short that its square leaves the range of double.
+double hypotenuse(double a, double b) { return std::sqrt(a * a + b * b); }
 
 double flux_term(double depth, double distance, double decay) {
   return depth * (1.0 + decay * distance) * std::exp(-decay * distance) / (distance * distance * distance);
@@ -30,8 +42,8 @@ GrosjeanDiffusion grosjean(const BodyMedium& medium, const BodySurface& surface)
 // C_phi phi + C_E E_n of a dipole at depth z (d'Eon & Irving 2011 eq. 14; pbrt-v4 BeamDiffusionMS).
 double dipole_exitance(const GrosjeanDiffusion& medium, const BodySurface& surface, double depth, double distance) {
   const double image = depth + medium.boundary;
-  const double real_distance = std::hypot(distance, depth);
-  const double virtual_distance = std::hypot(distance, image);
+  const double real_distance = hypotenuse(distance, depth);
+  const double virtual_distance = hypotenuse(distance, image);
   const double fluence =
       image_difference(real_distance, virtual_distance, medium.boundary * (depth + image), medium.decay) /
       (4.0 * PI * medium.diffusion);
@@ -55,17 +67,17 @@ double PlanarKernel::radiant_exitance(double distance) const {
     const double depth = 1.0 / sigma_t;
     const double image = depth * (1.0 + 4.0 / 3.0 * surface_.diffusion.a);
     return albedo / (4.0 * PI) *
-           (flux_term(depth, std::hypot(distance, depth), decay) +
-            flux_term(image, std::hypot(distance, image), decay));
+           (flux_term(depth, hypotenuse(distance, depth), decay) +
+            flux_term(image, hypotenuse(distance, image), decay));
   }
   const GrosjeanDiffusion medium = grosjean(medium_, surface_);
   if (profile_ == PlanarProfile::better_dipole)
     return albedo * albedo * dipole_exitance(medium, surface_, 1.0 / sigma_t, distance);
   double sum = 0.0;
-  for (int i = 0; i < beam_depths; ++i) {
-    const double depth = beam_depth(i, sigma_t);
+  for (const double optical_depth : beam_optical_depths()) {
+    const double depth = optical_depth / sigma_t;
     // The empirical near-source correction of Habel et al. 2013 (their section 5.1).
-    const double correction = -std::expm1(-2.0 * sigma_t * (std::hypot(distance, depth) + depth));
+    const double correction = -std::expm1(-2.0 * sigma_t * (hypotenuse(distance, depth) + depth));
     sum += correction * dipole_exitance(medium, surface_, depth, distance);
   }
   return albedo * albedo * sum / beam_depths;
@@ -86,8 +98,8 @@ double PlanarKernel::total() const {
   if (profile_ == PlanarProfile::dipole) return scale_ * dipole_total(one_minus_albedo, boundary.a);
   if (profile_ == PlanarProfile::better_dipole)
     return scale_ * better_dipole_total(one_minus_albedo, boundary.a, boundary.c_phi, boundary.c_e);
-  // 2 pi int R r dr over r = e^u, which both ends of the profile bear.
-  constexpr int steps = 400;
+  // 2 pi int R r dr over r = e^u, in which the profile is smooth and both its ends vanish: few steps are exact.
+  constexpr int steps = 100;
   const double lowest = std::log(1e-4 / sigma_t);
   const double highest =
       std::log(60.0 / std::min(sigma_t, std::max(grosjean(medium_, surface_).decay, 1e-3 * sigma_t)));

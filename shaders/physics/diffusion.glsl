@@ -3,10 +3,10 @@
 #include "physics/elementary.glsl"
 
 // exp(-k d_r)/d_r - exp(-k d_v)/d_v: the fluence of a source and its negative image (Jensen et al. 2001 eq. 3, without its factors) at
-// distances d_r < d_v, which far away agree in every digit. `delta_squared` is d_v^2 - d_r^2, known by itself.
+// distances d_r < d_v, which far away agree in every digit. `delta_squared` is d_v^2 - d_r^2, known by itself; no difference is taken.
 pure real image_difference(real real_distance, real virtual_distance, real delta_squared, real decay) {
   real delta = delta_squared / (real_distance + virtual_distance);
-  return exp(-decay * real_distance) / real_distance * -expm1(-(decay * delta + log1p(delta / real_distance)));
+  return exp(-decay * real_distance) / real_distance * ((delta - real_distance * expm1(-decay * delta)) / virtual_distance);
 }
 
 // Jensen et al. 2001, the integral of their eq. 4 over the plane (their section 4.3 table). `boundary` is A = (1 + F_dr)/(1 - F_dr).
