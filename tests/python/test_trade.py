@@ -13,6 +13,7 @@ from addon_rooms import ADDON, room
 
 arguments = room("trade.arguments")
 curve = room("trade.curve")
+reading = room("report.reading")
 
 BUILDER = ADDON / "mesograin" / "report" / "build.py"
 
@@ -148,8 +149,8 @@ def folder(tmp_path_factory):
     for each in points:
         native.write_exr(folder / each["picture"], (1.0 + each["error"]) * pixels)
     results = {
-        "format": "mesograin-trade",
-        "format_version": 1,
+        "format": reading.TRADE_FORMAT[0],
+        "format_version": reading.TRADE_FORMAT[1],
         "complete": True,
         "created": "2024-01-02T03:04:05+00:00",
         "command": "./mesograin trade disc.blend --set 'g=0.1'",

@@ -8,15 +8,13 @@ import bpy
 from .. import export, native_module
 from ..cycles import kinds, nodes, reference
 from ..cycles.stage import StageError
+from ..report.reading import RESULTS_FORMAT
 from . import definitions, measure, origin, pictures
 from .ours import Ours
 from .request import Case, Request, cases
 from .results import Output
 
 __all__ = ["Case", "Request", "cases", "compare"]
-
-FORMAT = "mesograin-results"
-FORMAT_VERSION = 1
 
 
 def compare(request, progress):
@@ -38,8 +36,8 @@ def compare(request, progress):
     planned = cases(request.models, request.references)
     progress.plan(step for case in planned for step in measure.steps(case, request, size))
     results = {
-        "format": FORMAT,
-        "format_version": FORMAT_VERSION,
+        "format": RESULTS_FORMAT[0],
+        "format_version": RESULTS_FORMAT[1],
         "complete": False,
         **origin.describe(request.command, size),
         "settings": {

@@ -35,12 +35,14 @@ class CasePictures:
 
 
 RESULTS, TRADE = "results.json", "trade.json"
+RESULTS_FORMAT, TRADE_FORMAT = ("mesograin-results", 1), ("mesograin-trade", 2)
+"""(`format`, `format_version`) of the files, for who writes them and who reads them."""
 
 
 def read(folder):
     """(results, [CasePictures]) of a comparison's folder. Raises UnreadableError with a sentence."""
     folder = Path(folder)
-    results = _load(folder / RESULTS, "mesograin-results", "a comparison")
+    results = _load(folder / RESULTS, RESULTS_FORMAT, "a comparison")
     native = _native()
     return results, [_pictures(native, folder, case) for case in results["cases"]]
 
@@ -49,7 +51,7 @@ def read_trade(folder):
     """(results, {point's name, or "reference": (h, w, 4) linear pixels}) of a trade curve's folder. Raises
     UnreadableError with a sentence."""
     folder = Path(folder)
-    results = _load(folder / TRADE, "mesograin-trade", "a trade curve")
+    results = _load(folder / TRADE, TRADE_FORMAT, "a trade curve")
     native = _native()
     wanted = {"reference": "pictures/reference.exr", **{point["name"]: point["picture"] for point in results["points"]}}
     try:
@@ -65,11 +67,11 @@ def _load(path, form, what):
         raise UnreadableError(f"{path} cannot be read ({error.strerror}).") from error
     except ValueError as error:
         raise UnreadableError(f"{path} is not JSON ({error}).") from error
-    if not isinstance(results, dict) or results.get("format") != form:
+    if not isinstance(results, dict) or results.get("format") != form[0]:
         raise UnreadableError(f"{path} holds no results of {what}.")
-    if results.get("format_version") != 1:
+    if results.get("format_version") != form[1]:
         raise UnreadableError(
-            f"{path} has format version {results.get('format_version')}; this report reads version 1."
+            f"{path} has format version {results.get('format_version')}; this report reads version {form[1]}."
         )
     return results
 

@@ -17,9 +17,9 @@ from ..comparison.ours import Ours
 from ..comparison.results import Output
 from ..cycles import kinds, nodes, reference
 from ..cycles.cache import Cache
+from ..report.reading import TRADE_FORMAT
 from . import curve
 
-FORMAT, FORMAT_VERSION = "mesograin-trade", 2
 RESULTS = "trade.json"
 SEED = 11
 """Of the traced renders that are measured; the converged one has others, so that their noise is independent."""
@@ -100,8 +100,8 @@ def measure(request, progress):
     mask = masks.select((), truth.mean, truth, mirror)[0]
     chosen = kinds.our_side(request.reference, nodes.features())
     results = {
-        "format": FORMAT,
-        "format_version": FORMAT_VERSION,
+        "format": TRADE_FORMAT[0],
+        "format_version": TRADE_FORMAT[1],
         "complete": False,
         **origin.describe(request.command, request.size),
         "settings": {
@@ -226,7 +226,7 @@ class _Book:
 def _fingerprint(request, results, truth):
     """Of all that determines a point's numbers: the converged render's own keys hold the scene and its materials."""
     described = [
-        FORMAT_VERSION,
+        TRADE_FORMAT,
         [shot["key"] for shot in truth.provenance],
         results["material"],
         results["versions"],
