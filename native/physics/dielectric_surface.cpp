@@ -15,7 +15,6 @@ namespace {
 
 constexpr int radial_nodes = 16;
 constexpr int azimuthal_nodes = 14;  // over half a turn: the other half is its mirror image
-constexpr int table_size = 64;
 constexpr int balance_nodes = 20;
 constexpr int balance_steps = 12;
 
@@ -59,6 +58,16 @@ bool has_rough_surface(const scene::Material& material) {
   return has_dielectric_surface(material) && material.roughness > 0.0;
 }
 
+std::vector<double> coordinate_cosines(double eta, int count) {
+  std::vector<double> cosines;
+  for (int i = 0; i < count; ++i) {
+    const double coordinate = static_cast<double>(i) / (count - 1);
+    const double lesser = coordinate * coordinate;
+    cosines.push_back(eta < 1.0 ? refracted_cosine(lesser, 1.0 / eta) : lesser);
+  }
+  return cosines;
+}
+
 Passage rough_passage(const scene::Material& material) {
   const double eta = material.eta;
   const RoughDielectric surface(eta, material.roughness, material.masking);
@@ -69,7 +78,7 @@ Passage rough_passage(const scene::Material& material) {
     measure.push_back(2.0 * PI * outside.back() * 2.0 * node.x * node.weight);
   }
   const std::size_t nodes = outside.size();
-  for (int i = 0; i < table_size; ++i) outside.push_back(std::pow(static_cast<double>(i) / (table_size - 1), 2.0));
+  for (const double mu : coordinate_cosines(eta, Passage::table_size)) outside.push_back(mu);
   const std::size_t count = outside.size();
 
   std::vector<double> inside, smooth, rough;

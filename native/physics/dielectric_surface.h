@@ -34,9 +34,13 @@ bool has_dielectric_surface(const scene::Material& material);
 /// Whether it is rough, too.
 bool has_rough_surface(const scene::Material& material);
 
+/// The cosines outside at which half_space_coordinate (shaders/physics/half_space.glsl) is 0, 1/(count-1), ..., 1.
+std::vector<double> coordinate_cosines(double eta, int count);
+
 /// What the models multiply light by that passes a rough dielectric surface, one way or the other.
 struct Passage {
-  std::vector<double> transmittance;  ///< by sqrt(mu), mu the cosine outside, evenly from 0 to 1
+  static constexpr int table_size = 64;
+  std::vector<double> transmittance;  ///< at coordinate_cosines(eta, table_size)
   double entering_ratio = 1.0;        ///< what a convex body takes in of parallel light, over a smooth one's
 };
 

@@ -5,6 +5,7 @@
 
 #include "physics/channels.h"
 #include "physics/dielectric_inputs.h"
+#include "physics/dielectric_surface.h"
 #include "physics/fresnel_moments.h"
 #include "physics/half_space.h"
 #include "physics/medium.h"
@@ -19,22 +20,28 @@ using scene::Boundary;
 using scene::Material;
 using scene::Profile;
 
-constexpr int half_space_table_size = 64;
+// That of the passages, which lie in the table, too.
+constexpr int half_space_table_size = Passage::table_size;
 constexpr int view_table_size = 128;
 
 std::array<Medium, 3> half_space_media(const Material& material) {
   return {half_space_medium(material, 0), half_space_medium(material, 1), half_space_medium(material, 2)};
 }
 
-// The cosines inside at which the shader's coordinate (half_space_coordinate) is 0, 1/(n-1), ..., 1.
+// The cosines inside of the table's rows and columns.
 std::vector<double> table_cosines(double eta) {
-  std::vector<double> mu;
-  for (int i = 0; i < half_space_table_size; ++i) {
-    const double coordinate = static_cast<double>(i) / (half_space_table_size - 1);
-    const double lesser = coordinate * coordinate;
-    mu.push_back(eta > 1.0 ? refracted_cosine(lesser, eta) : lesser);
-  }
-  return mu;
+  std::vector<double> cosines = coordinate_cosines(eta, half_space_table_size);
+  for (double& mu : cosines) mu = refracted_cosine(mu, eta);
+  return cosines;
+}
+
+// A rough surface lets through by the same coordinates: one look into the table gives what is scattered and both
+// passages.
+void add_passages(const Table& passage, Table& table) {
+  for (int row = 0; row < table.height; ++row)
+    for (int column = 0; column < table.width; ++column)
+      table.texels[static_cast<std::size_t>(row * table.width + column)].a =
+          passage.texels[static_cast<std::size_t>(row)].r * passage.texels[static_cast<std::size_t>(column)].r;
 }
 
 void add_single_scattering(const Material& material, MaterialInputs& inputs) {
@@ -57,11 +64,14 @@ void add_half_space(const Material& material, double eta, bool first_order, Mate
   const bool isotropic = material.g == 0.0;
   const std::vector<double> mu = table_cosines(eta);
   inputs.defines.emplace_back("MULTIPLE_TABLE");
-  inputs.tables["multiple_scattering"] = pack(
-      for_each_channel(
-          half_space_media(material),
-          [&](const Medium& medium) { return HalfSpace(medium, eta).interior_table(mu, first_order && isotropic); }),
-      half_space_table_size, half_space_table_size);
+  Table table = pack(for_each_channel(half_space_media(material),
+                                      [&](const Medium& medium) {
+                                        return HalfSpace(medium, eta).interior_table(mu, first_order && isotropic);
+                                      }),
+                     half_space_table_size, half_space_table_size);
+  const auto passage = inputs.tables.find("passage");
+  if (passage != inputs.tables.end()) add_passages(passage->second, table);
+  inputs.tables["multiple_scattering"] = std::move(table);
   if (first_order && !isotropic) add_single_scattering(material, inputs);
 }
 

@@ -3,12 +3,13 @@
 // smooth surface. A smooth surface is a mirror, in which a light without extent shows nothing.
 //
 // What is chosen at compile time (physics::add_dielectric):
-//   ROUGH_SURFACE        `passage`: what a rough surface lets through, by the cosine outside
+//   ROUGH_SURFACE        `passage`: what a rough surface lets through
 //   SPECULAR             what the surface reflects is seen
 //   MASKING_SEPARABLE    masking and shadowing of facets are independent
 #include "models/interface.glsl"
 #include "physics/prelude.glsl"
 #include "physics/dielectric.glsl"
+#include "physics/half_space.glsl"
 
 struct Surface {
   float eta;
@@ -24,7 +25,7 @@ uniform sampler2D passage;
 float surface_transmittance(float mu, float mu_refracted) {
 #ifdef ROUGH_SURFACE
   float last = float(textureSize(passage, 0).x - 1);
-  return texture(passage, vec2((sqrt(mu) * last + 0.5) / (last + 1.0), 0.5)).x;
+  return texture(passage, vec2((half_space_coordinate(mu, mu_refracted) * last + 0.5) / (last + 1.0), 0.5)).x;
 #else
   return fresnel_transmittance(mu, mu_refracted, surface.eta);
 #endif

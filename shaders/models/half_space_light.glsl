@@ -2,7 +2,8 @@
 //
 // What is chosen at compile time (physics::material_inputs):
 //   REFRACTION           a dielectric interface: Fresnel on both ways, refracted directions, 1/eta^2
-//   MULTIPLE_TABLE       `multiple_scattering`: what the half-space solver left in a table over both directions
+//   MULTIPLE_TABLE       `multiple_scattering`: what the half-space solver left in a table over both directions; in alpha, if
+//                        ROUGH_SURFACE, what the surface lets through, both passages in one
 //   MULTIPLE_CONSTANT    `material.diffuse`: a constant radiance per irradiance
 //   VIEW_TABLE           `multiple_scattering`: as MULTIPLE_TABLE, over the viewer's direction alone
 //   SINGLE_SCATTERING    first-order scattering in closed form, where the table does not hold it already
@@ -54,10 +55,20 @@ HalfSpaceLight half_space_light(SurfacePoint point, LightSample light) {
 #ifdef REFRACTION
   float mu_i_refracted = refracted_cosine(mu_i, material.eta);
   float mu_o_refracted = refracted_cosine(mu_o, material.eta);
-  float transmittance = surface_transmittance(mu_i, mu_i_refracted) * surface_transmittance(mu_o, mu_o_refracted);
 #else
   float mu_i_refracted = mu_i;
   float mu_o_refracted = mu_o;
+#endif
+#ifdef MULTIPLE_TABLE
+  vec2 coordinate = vec2(half_space_coordinate(mu_i, mu_i_refracted), half_space_coordinate(mu_o, mu_o_refracted));
+  vec4 scattered = texture(multiple_scattering, texel_coordinate(coordinate));
+#endif
+
+#if defined(MULTIPLE_TABLE) && defined(ROUGH_SURFACE)
+  float transmittance = scattered.a;
+#elif defined(REFRACTION)
+  float transmittance = surface_transmittance(mu_i, mu_i_refracted) * surface_transmittance(mu_o, mu_o_refracted);
+#else
   float transmittance = 1.0;
 #endif
 
@@ -68,8 +79,7 @@ HalfSpaceLight half_space_light(SurfacePoint point, LightSample light) {
   float factor =
       half_space_factor(mu_i_refracted, mu_o_refracted, transmittance, material.inverse_eta_squared);
 #ifdef MULTIPLE_TABLE
-  vec2 coordinate = vec2(half_space_coordinate(mu_i, mu_i_refracted), half_space_coordinate(mu_o, mu_o_refracted));
-  result.multiple += factor * texture(multiple_scattering, texel_coordinate(coordinate)).rgb * irradiance;
+  result.multiple += factor * scattered.rgb * irradiance;
 #endif
 #ifdef SINGLE_SCATTERING
   float versine = refracted_versine(light.to_light, mu_i, mu_i_refracted, point.to_viewer, mu_o, mu_o_refracted, point.normal,
