@@ -83,9 +83,6 @@ vec2 seen_from_light(float ring, float azimuth, float cosine, float turn, out fl
   return vec2(across, ring * sin(azimuth));
 }
 
-// A division may round up to 1, whose logarithm is no distance.
-const float LARGEST_BELOW_ONE = 1.0 - 1.0 / 16777216.0;
-
 // Single samples that found much where little was expected would stand out as dots for thousands of frames.
 const float MOST_A_SAMPLE_COUNTS = 64.0;
 
@@ -152,14 +149,44 @@ vec3 on_the_grain(Gathered gathered, vec3 sphere, float lobe) {
 }
 
 #ifdef SINGLE_MARCHED
+// Where the light that reaches a point inside the grain came in.
+struct Entry {
+  float lit;     // 0 or 1; between them where the map can't tell
+  float above;   // how far above the point, over the grain's radius
+  vec3 normal;
+};
+
+// By the map, but by the sphere that fits where the map can't tell them apart: at the terminator a texel is as deep as it is long, and the
+// silhouette has corners that light would show.
+Entry entry_above(LightMapTexel mapped, LightFrame frame, vec3 point, vec3 centre, float radius) {
+  float map_above = mapped.position.z / body.radius - point.z;
+  vec2 from_axis = point.xy - centre.xy;
+  float height = sqrt(max(radius * radius - dot(from_axis, from_axis), 0.0));
+  float sphere_above = centre.z + height - point.z;
+  vec3 sphere_normal = vec3(from_axis, height) / radius;
+
+  float texel = light_map_texel_width(frame) / body.radius;
+  float tolerance = light_map_tolerance(frame, sphere_normal) / body.radius;
+  float apart = mapped.lit ? abs(sphere_above - map_above) / tolerance : (radius - length(from_axis)) / texel;
+  float same = distance(point, centre) < radius ? 1.0 - smoothstep(1.0, 2.0, apart) : 0.0;
+
+  float inside = mapped.lit && point.z * body.radius >= mapped.exit_depth && map_above >= -light_map_tolerance(frame, mapped.normal) / body.radius ? 1.0 : 0.0;
+  Entry entry;
+  entry.lit = mix(inside, 1.0, same);
+  entry.above = mapped.lit ? mix(map_above, sphere_above, same) : sphere_above;
+  entry.normal = mapped.lit ? normalize(mix(mapped.normal, sphere_normal, same)) : sphere_normal;
+  return entry;
+}
+
 // Radiance inside, just below the surface, per irradiance: light that was scattered once on the view ray's way through the grain.
-vec3 single_scattering(LightFrame frame, int light, BodyFit fit, vec3 position, vec3 normal, vec3 to_viewer, int count, uint first, uvec2 offset) {
+vec3 single_scattering(LightFrame frame, int light, BodyFit fit, vec3 position, vec3 normal, vec3 fit_normal, vec3 to_viewer, int count, uint first, uvec2 offset) {
   float mu_o_refracted = fit.mu_o_refracted;
   vec3 inwards = (fit.mu_o * normal - to_viewer) / body.eta - mu_o_refracted * normal;
 
   // No farther than through the ball that holds the grain. Rounding may leave a point on the silhouette outside, which has no way at all.
   float reach = grain_reach / body.radius;
   float along = dot(position, inwards);
+  vec3 centre = position - fit.radius * fit_normal;
   float longest = max(sqrt(max(along * along + reach * reach - dot(position, position), 0.0)) - along, 0.0);
 
   // How fast the light's way in grows along the view ray where that begins: as below a plane that is tilted like the entry above the point,
@@ -191,11 +218,10 @@ vec3 single_scattering(LightFrame frame, int light, BodyFit fit, vec3 position, 
     float channel = 3.0 * low_discrepancy(first + uint(i), offset).y;
     vec2 chosen = channel < 1.0 ? vec2(rate.r, mean_way.r) : channel < 2.0 ? vec2(rate.g, mean_way.g) : vec2(rate.b, mean_way.b);
 #endif
-    float kept = chosen.x * chosen.y;
-    float t = kept < 1e-2 ? random * longest : -log(1.0 - random * kept) / chosen.x;
+    float t = attenuated_distance(random, chosen.x, longest, chosen.y);
     Spectrum on_plane = exp(-rate * t);
     Spectrum densities = on_plane / mean_way;
-    #ifdef GREY
+#ifdef GREY
     float density = densities;
 #else
     float density = (densities.r + densities.g + densities.b) / 3.0;
@@ -203,9 +229,9 @@ vec3 single_scattering(LightFrame frame, int light, BodyFit fit, vec3 position, 
     Spectrum drawn = on_plane / density;
     plane += drawn;
     vec3 point = position + t * inwards;
-    LightMapTexel entry = light_map_at(frame, light, point.xy * body.radius);
-    float above = entry.position.z / body.radius - point.z;
-    if (!entry.lit || point.z * body.radius < entry.exit_depth || above < -light_map_tolerance(frame, entry.normal) / body.radius) continue;
+    Entry entry = entry_above(light_map_at(frame, light, point.xy * body.radius), frame, point, centre, fit.radius);
+    if (entry.lit == 0.0) continue;
+    float above = entry.above;
 
     // The place in the unit sphere that has this normal above it, at this depth.
     float tilt = length(entry.normal.xy);
@@ -218,13 +244,10 @@ vec3 single_scattering(LightFrame frame, int light, BodyFit fit, vec3 position, 
     vec3 turn = direction + single.sign_g * inwards;
     float phase = henyey_greenstein(0.5 * dot(turn, turn), single.absolute_g, single.one_minus_absolute_g);
     // Where the light's way in hardly grows, far samples are too rare for what they find; each may count as many, but not as any number.
-    sum += lighting.x * phase * drawn * min(exp(rate * t - sigma_t * (t + way_in)), Spectrum(MOST_A_SAMPLE_COUNTS));
+    sum += entry.lit * lighting.x * phase * drawn * min(exp(rate * t - sigma_t * (t + way_in)), Spectrum(MOST_A_SAMPLE_COUNTS));
   } while (++i < count);
   // What the lit plane's own integral says the samples should have found.
-  vec3 found = single.sigma_s * sum * mean_way / max(plane, Spectrum(1e-30));
-  // Never above the albedo times the phase function's peak, but for what refraction focuses: a bound against single precision at silhouettes.
-  float peak = (1.0 + single.absolute_g) / (4.0 * PI * single.one_minus_absolute_g * single.one_minus_absolute_g);
-  return min(found, 4.0 * peak * single.sigma_s / max(single.sigma_t, vec3(1e-30)));
+  return single.sigma_s * sum * mean_way / max(plane, Spectrum(1e-30));
 }
 #endif
 
@@ -259,7 +282,7 @@ vec3 evaluate_model(SurfacePoint point, LightSample light) {
   vec3 radiance = on_the_grain(gathered, sphere, lobe);
 #ifdef SINGLE_MARCHED
   vec3 to_viewer = to_light_space(frame, point.to_viewer);
-  vec3 inside = single_scattering(frame, light.index, fit, position, normal, to_viewer, single_share, uint(sample_index * single_share), offset.zw);
+  vec3 inside = single_scattering(frame, light.index, fit, position, normal, fit_normal, to_viewer, single_share, uint(sample_index * single_share), offset.zw);
   radiance += fit.transmittance / (body.eta * body.eta) * inside;
 #endif
   radiance *= light.irradiance;

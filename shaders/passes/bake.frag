@@ -1,9 +1,11 @@
 // A texel of an unwrapped grain, seen from straight above or from the camera.
 
+#include "passes/curved_surface.glsl"
 #include "passes/lit_point.glsl"
 
 in vec3 grain_position;
 in vec3 grain_normal;
+in float grain_plane_offset;
 
 uniform int from_camera;
 
@@ -23,7 +25,7 @@ vec3 bent_to_viewer(vec3 position, vec3 normal) {
 
 void main() {
   SurfacePoint point;
-  point.position = grain_position;
+  point.position = on_curved_surface(grain_position, grain_normal, grain_plane_offset);
   point.normal = normalize(grain_normal);
   point.to_viewer = from_camera != 0 ? bent_to_viewer(point.position, point.normal) : point.normal;
   radiance = vec4(lit_point(point), 1.0);

@@ -1,5 +1,7 @@
 // Unwraps a mesh: every vertex lies at its UV, u to the right and v up; shading happens in grain space as ever.
 
+#include "passes/curved_surface.glsl"
+
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec2 uv;
@@ -10,9 +12,11 @@ uniform vec2 jitter;  // in normalised device coordinates
 
 out vec3 grain_position;
 out vec3 grain_normal;
+out float grain_plane_offset;
 
 void main() {
   grain_position = (object_to_grain * vec4(position, 1.0)).xyz;
   grain_normal = normal_to_grain * normal;
+  grain_plane_offset = tangent_plane_offset(grain_position, grain_normal);
   gl_Position = vec4(2.0 * uv - 1.0 + jitter, 0.0, 1.0);
 }

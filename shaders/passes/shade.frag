@@ -1,15 +1,17 @@
 // A pixel of the grain as the camera sees it.
 
+#include "passes/curved_surface.glsl"
 #include "passes/lit_point.glsl"
 
 in vec3 grain_position;
 in vec3 grain_normal;
+in float grain_plane_offset;
 
 out vec4 radiance;
 
 void main() {
   SurfacePoint point;
-  point.position = grain_position;
+  point.position = on_curved_surface(grain_position, grain_normal, grain_plane_offset);
   point.to_viewer = direction_to_viewer(grain_position);
   point.normal = normalize(grain_normal);
 

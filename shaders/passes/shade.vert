@@ -1,6 +1,8 @@
 // Brings a mesh to clip space, and to grain space for shading: the world's axes, the origin in the middle of the grain.
 // Both matrices are composed in double precision, so a grain far from the world's origin loses nothing.
 
+#include "passes/curved_surface.glsl"
+
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 
@@ -11,10 +13,12 @@ uniform vec2 jitter;  // in normalised device coordinates
 
 out vec3 grain_position;
 out vec3 grain_normal;
+out float grain_plane_offset;
 
 void main() {
   grain_position = (object_to_grain * vec4(position, 1.0)).xyz;
   grain_normal = normal_to_grain * normal;
+  grain_plane_offset = tangent_plane_offset(grain_position, grain_normal);
   gl_Position = object_to_clip * vec4(position, 1.0);
   gl_Position.xy += jitter * gl_Position.w;
 }

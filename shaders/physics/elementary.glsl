@@ -45,6 +45,17 @@ pure real mean_attenuation(real x) {
   return -expm1(-x) / x;
 }
 
+// A division or a product may round up to 1, whose exponential distance is none.
+const real LARGEST_BELOW_ONE = 1.0 - 1.0 / 16777216.0;
+
+// Distance within `longest` whose density falls as exp(-rate distance), by inversion; `random` in [0, 1), `mean_way` is
+// longest mean_attenuation(rate longest), the integral of exp(-rate distance).
+pure real attenuated_distance(real random, real rate, real longest, real mean_way) {
+  real kept = rate * mean_way;
+  if (kept < 1e-2) return random * longest;
+  return -log(1.0 - min(random * kept, LARGEST_BELOW_ONE)) / rate;
+}
+
 // Arc tangent: reflected to |x| <= 1, halved twice to |x| <= tan(pi/16), then its series (Abramowitz & Stegun 4.4.42).
 pure real arc_tangent(real x) {
   real y = abs(x);

@@ -50,5 +50,13 @@ TEST(Elementary, MeanAttenuationHasItsLimit) {
   for (double x = 1e-15; x < 700.0; x *= 1.5) EXPECT_NEAR(mean_attenuation(x) * x / -std::expm1(-x), 1.0, 1e-11) << x;
 }
 
+TEST(Elementary, AttenuatedDistanceInvertsItsDistribution) {
+  for (const double rate : {0.02, 0.5, 3.0, 40.0})
+    for (double random = 0.0; random < 1.0; random += 0.01) {
+      const double distance = attenuated_distance(random, rate, 1.5, 1.5 * mean_attenuation(rate * 1.5));
+      EXPECT_NEAR(std::expm1(-rate * distance) / std::expm1(-rate * 1.5), random, 1e-9) << rate;
+    }
+}
+
 }  // namespace
 }  // namespace mesograin::physics

@@ -92,6 +92,19 @@ TEST(FloatElementary, MeanAttenuation) {
                grid({geometric(1e-20, 1e6, 2000) + std::vector<double>{0.0}}), 1e-5);
 }
 
+// What the largest random numbers and thicknesses round to must stay a distance: the logarithm of nothing is none.
+TEST(FloatElementary, AttenuatedDistanceEndsWithinTheWay) {
+  const std::vector<double> random = even(0.0, 1.0, 101) + map(geometric(0x1p-24, 0.1, 200), from_one);
+  std::vector<ProbeInput> inputs = grid({random, geometric(1e-6, 1e6, 500), {0.3, 1.0, 1.7}});
+  std::erase_if(inputs, [](const ProbeInput& input) { return input[0] >= 1.0F; });
+  const std::vector<float> distances =
+      evaluate_on_gpu("attenuated_distance(x[0], x[1], x[2], x[2] * mean_attenuation(x[1] * x[2]))", inputs);
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    ASSERT_GE(distances[i], 0.0F) << inputs[i][0] << " " << inputs[i][1];
+    ASSERT_LE(distances[i], 1.01F * inputs[i][2]) << inputs[i][0] << " " << inputs[i][1];
+  }
+}
+
 TEST(FloatElementary, ArcTangent) {
   const std::vector<double> x = geometric(1e-20, 1e20, 2000);
   expect_close(MESOGRAIN_EXPRESSION(arc_tangent(x[0])), grid({x + map(x, negated) + std::vector<double>{0.0}}), 1e-6);

@@ -152,3 +152,28 @@ def test_extreme_media_stay_finite(model, sigma_s, sigma_a, eta, g):
     assert numpy.isfinite(pixels).all()
     assert pixels.min() >= 0.0
     assert pixels[..., :3].max() < 1.0
+
+
+def test_facets_under_smooth_normals_do_not_show():
+    """A coarse sphere is shaded as a fine one, terminator included: what differs is not jagged from pixel to pixel."""
+    pictures = []
+    for segments in (96, 256):
+        view = native.View(128, 128)
+        light = native.DirectionalLight((0.8, 0.5, 0.3), (1.0, 1.0, 1.0))
+        mesh = accuracy.sphere(native, segments, segments // 2)
+        instance = native.Instance(mesh, material(0.9, 20.0, 1.0), numpy.eye(4))
+        view.set_scene(native.Scene(instances=[instance], lights=[light]))
+        view.set_camera(native.Camera.look_at((0.0, 6.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 1.0), 21.0))
+        view.set_taps(64)
+        view.render(8)
+        pictures.append(view.read())
+    inside = native.default_mask(numpy.minimum(pictures[0][..., 3], pictures[1][..., 3]))
+    mean = pictures[1][inside][:, 0].mean()
+
+    def around(image):
+        return [numpy.roll(image, step, axis) for step in (1, -1) for axis in (0, 1)]
+
+    difference = (pictures[0] - pictures[1])[..., 0]
+    jagged = (difference - sum(around(difference)) / 4.0)[numpy.logical_and.reduce([inside, *around(inside)])]
+    assert numpy.abs(jagged).max() < 0.018 * mean
+    assert numpy.sqrt((jagged**2).mean()) < 0.0014 * mean
