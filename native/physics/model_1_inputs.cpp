@@ -38,10 +38,9 @@ std::vector<double> table_cosines(double eta) {
 // A rough surface lets through by the same coordinates: one look into the table gives what is scattered and both
 // passages.
 void add_passages(const Table& passage, Table& table) {
-  for (int row = 0; row < table.height; ++row)
-    for (int column = 0; column < table.width; ++column)
-      table.texels[static_cast<std::size_t>(row * table.width + column)].a =
-          passage.texels[static_cast<std::size_t>(row)].r * passage.texels[static_cast<std::size_t>(column)].r;
+  std::size_t texel = 0;
+  for (const glm::vec4& row : passage.texels)
+    for (const glm::vec4& column : passage.texels) table.texels[texel++].a = row.r * column.r;
 }
 
 void add_single_scattering(const Material& material, MaterialInputs& inputs) {
