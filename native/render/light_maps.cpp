@@ -27,9 +27,8 @@ struct LightMaps::LightSpace {
 namespace {
 
 struct DeviceLightFrame {
-  glm::vec4 x_axis;
-  glm::vec4 y_axis;
-  glm::vec4 z_axis;
+  glm::vec4 x_axis;  // w: texel width
+  glm::vec4 map;     // centre, resolution
 };
 
 }  // namespace
@@ -91,8 +90,8 @@ int LightMaps::update(const gl::VertexArray& device_mesh, const gl::Program& pro
   for (int layer = 0; layer < layers; ++layer) {
     const LightSpace space = fit(to_light[static_cast<std::size_t>(layer)], resolution_);
     draw(device_mesh, program, space, layer, depth);
-    frames.push_back({glm::vec4(space.x_axis, space.centre.x), glm::vec4(space.y_axis, space.centre.y),
-                      glm::vec4(space.z_axis, space.half_width)});
+    frames.push_back(
+        {glm::vec4(space.x_axis, 2.0 * space.half_width / resolution_), glm::vec4(space.centre, resolution_, 0.0)});
   }
   frames_.emplace(frames);
   to_light_ = to_light;

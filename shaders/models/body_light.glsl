@@ -37,7 +37,7 @@ struct BodyFit {
   float transmittance;  // towards the viewer
 };
 
-BodyFit fit_body(SurfacePoint point, LightSample light, LightFrame frame) {
+BodyFit fit_body(SurfacePoint point, Outwards outwards, LightSample light, LightFrame frame) {
   BodyFit fit;
   vec3 position = to_light_space(frame, point.position);
   float cosine = dot(point.normal, light.to_light);
@@ -54,14 +54,9 @@ BodyFit fit_body(SurfacePoint point, LightSample light, LightFrame frame) {
   fit.radius = clamp((0.5 * way_in / body.radius + uncertainty) / (abs(cosine) + uncertainty), 0.125, 2.0);
   fit.cosine = mix(-abs(cosine), cosine, fit.visible);
 
-  fit.mu_o = clamp(dot(point.normal, point.to_viewer), 0.0, 1.0);
-#ifdef REFRACTION
-  fit.mu_o_refracted = refracted_cosine(fit.mu_o, body.eta);
-  fit.transmittance = surface_transmittance(fit.mu_o, fit.mu_o_refracted);
-#else
-  fit.mu_o_refracted = fit.mu_o;
-  fit.transmittance = 1.0;
-#endif
+  fit.mu_o = outwards.mu;
+  fit.mu_o_refracted = outwards.mu_refracted;
+  fit.transmittance = outwards.transmittance;
   return fit;
 }
 

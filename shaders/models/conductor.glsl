@@ -11,10 +11,15 @@ struct Material {
 };
 uniform Material material;
 
-vec3 evaluate_model(SurfacePoint point, LightSample light) {
+Outwards look_outwards(SurfacePoint point) {
+  float mu = clamp(dot(point.normal, point.to_viewer), 0.0, 1.0);
+  return Outwards(mu, mu, 0.0);
+}
+
+vec3 evaluate_model(SurfacePoint point, Outwards outwards, LightSample light) {
   float mu_i = dot(point.normal, light.to_light);
   if (mu_i <= 0.0) return vec3(0.0);
-  float mu_o = max(dot(point.normal, point.to_viewer), 0.0);
+  float mu_o = outwards.mu;
   vec3 sum = light.to_light + point.to_viewer;
   vec3 half_vector = sum * inversesqrt(max(dot(sum, sum), 1e-12));
   float alpha = max(material.roughness, GGX_SMALLEST_ALPHA);

@@ -3,6 +3,7 @@
 // smooth surface. A smooth surface is a mirror, in which a light without extent shows nothing.
 //
 // What is chosen at compile time (physics::add_dielectric):
+//   REFRACTION           light is refracted and, if the surface is smooth, follows Fresnel
 //   ROUGH_SURFACE        `passage`: what a rough surface lets through
 //   SPECULAR             what the surface reflects is seen
 //   MASKING_SEPARABLE    masking and shadowing of facets are independent
@@ -31,19 +32,28 @@ float surface_transmittance(float mu, float mu_refracted) {
 #endif
 }
 
+Outwards look_outwards(SurfacePoint point) {
+  float mu = clamp(dot(point.normal, point.to_viewer), 0.0, 1.0);
+#ifdef REFRACTION
+  float mu_refracted = refracted_cosine(mu, surface.eta);
+  return Outwards(mu, mu_refracted, surface_transmittance(mu, mu_refracted));
+#else
+  return Outwards(mu, mu, 1.0);
+#endif
+}
+
 #ifdef SPECULAR
 // Radiance to the viewer that the surface reflects.
-vec3 specular_reflection(SurfacePoint point, LightSample light) {
+vec3 specular_reflection(SurfacePoint point, Outwards outwards, LightSample light) {
   float mu_i = dot(point.normal, light.to_light);
   float alpha = dielectric_alpha(surface.roughness, light.angle);
   if (mu_i <= 0.0 || alpha <= 0.0) return vec3(0.0);
-  float mu_o = max(dot(point.normal, point.to_viewer), 0.0);
 #ifdef MASKING_SEPARABLE
   const bool correlated = false;
 #else
   const bool correlated = true;
 #endif
-  return light.irradiance * (mu_i * dielectric_reflection(point.normal, light.to_light, mu_i, point.to_viewer, mu_o, surface.eta,
+  return light.irradiance * (mu_i * dielectric_reflection(point.normal, light.to_light, mu_i, point.to_viewer, outwards.mu, surface.eta,
                                                           max(alpha, GGX_SMALLEST_ALPHA), correlated));
 }
 #endif

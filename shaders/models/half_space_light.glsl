@@ -41,12 +41,11 @@ struct HalfSpaceLight {
   vec3 multiple;  // everything else
 };
 
-HalfSpaceLight half_space_light(SurfacePoint point, LightSample light) {
+HalfSpaceLight half_space_light(SurfacePoint point, Outwards outwards, LightSample light) {
   HalfSpaceLight result = HalfSpaceLight(vec3(0.0), vec3(0.0));
-  float mu_i = dot(point.normal, light.to_light);
-  if (mu_i <= 0.0) return result;
-  mu_i = min(mu_i, 1.0);
-  float mu_o = clamp(dot(point.normal, point.to_viewer), 0.0, 1.0);
+  // No branch: where the light comes from behind, the irradiance is 0.
+  float mu_i = clamp(dot(point.normal, light.to_light), 0.0, 1.0);
+  float mu_o = outwards.mu;
   vec3 irradiance = light.irradiance * mu_i;
 
 #if defined(VIEW_TABLE)
@@ -54,11 +53,10 @@ HalfSpaceLight half_space_light(SurfacePoint point, LightSample light) {
 #else
 #ifdef REFRACTION
   float mu_i_refracted = refracted_cosine(mu_i, material.eta);
-  float mu_o_refracted = refracted_cosine(mu_o, material.eta);
 #else
   float mu_i_refracted = mu_i;
-  float mu_o_refracted = mu_o;
 #endif
+  float mu_o_refracted = outwards.mu_refracted;
 #ifdef MULTIPLE_TABLE
   vec2 coordinate = vec2(half_space_coordinate(mu_i, mu_i_refracted), half_space_coordinate(mu_o, mu_o_refracted));
   vec4 scattered = texture(multiple_scattering, texel_coordinate(coordinate));
@@ -67,7 +65,7 @@ HalfSpaceLight half_space_light(SurfacePoint point, LightSample light) {
 #if defined(MULTIPLE_TABLE) && defined(ROUGH_SURFACE)
   float transmittance = scattered.a;
 #elif defined(REFRACTION)
-  float transmittance = surface_transmittance(mu_i, mu_i_refracted) * surface_transmittance(mu_o, mu_o_refracted);
+  float transmittance = surface_transmittance(mu_i, mu_i_refracted) * outwards.transmittance;
 #else
   float transmittance = 1.0;
 #endif

@@ -1,4 +1,4 @@
-// What every model is given and gives: one signature, so that a pass can call any of them.
+// What every model is given and gives: the same signatures, so that a pass can call any of them.
 // All vectors are in grain space: the world's axes, the scene's unit, the origin in the middle of the grain.
 
 struct SurfacePoint {
@@ -14,7 +14,17 @@ struct LightSample {
   float angle;      // of the disc that to_light is drawn from, edge to edge, in radians
 };
 
+// What the point and its viewer make of it, before any light.
+struct Outwards {
+  float mu;             // cosine between normal and viewer, 0 to 1
+  float mu_refracted;   // inside
+  float transmittance;  // of the surface, for light that comes from inside
+};
+
 uniform int light_count;
 
+// Once for all lights.
+Outwards look_outwards(SurfacePoint point);
+
 // Radiance that leaves the point towards the viewer because of this light; the cosine on the light's side is inside.
-vec3 evaluate_model(SurfacePoint point, LightSample light);
+vec3 evaluate_model(SurfacePoint point, Outwards outwards, LightSample light);

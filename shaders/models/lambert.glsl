@@ -7,6 +7,9 @@ struct Material {
 };
 uniform Material material;
 
-vec3 evaluate_model(SurfacePoint point, LightSample light) {
+// Nothing depends on the viewer.
+Outwards look_outwards(SurfacePoint point) { return Outwards(1.0, 1.0, 1.0); }
+
+vec3 evaluate_model(SurfacePoint point, Outwards outwards, LightSample light) {
   return material.reflectance * (1.0 / PI) * light.irradiance * max(dot(point.normal, light.to_light), 0.0);
 }

@@ -3,13 +3,23 @@
 // Each light has a light space: grain space turned so that z points towards the light. Its map is an orthographic
 // picture of the grain from there, so equal texels are equal projected areas: a sum over texels already holds the
 // cosine on the light's side.
+#include "models/interface.glsl"
 
 struct LightFrame {
-  vec4 x_axis;  // xyz: light space's x axis in grain space; w: centre of the map, x
-  vec4 y_axis;  // likewise y
-  vec4 z_axis;  // xyz: towards the light; w: half the map's width
+  vec3 x_axis;  // of light space, in grain space
+  vec3 y_axis;
+  vec3 z_axis;  // towards the light
+  vec2 centre;  // of the map
+  float texel_width;
+  float resolution;  // texels on a side
 };
-layout(std430, binding = 1) readonly buffer LightFrames { LightFrame light_frames[]; };
+
+// Software renderers read a storage buffer number by number: only what cannot be told from the rest is here.
+struct StoredLightFrame {
+  vec4 x_axis;  // w: texel width
+  vec4 map;     // xy: centre; z: resolution
+};
+layout(std430, binding = 1) readonly buffer LightFrames { StoredLightFrame light_frames[]; };
 
 // Per texel: z of the first front face, its normal's x and y, z of the first back face; all in light space.
 uniform sampler2DArray light_maps;
@@ -22,13 +32,17 @@ struct LightMapTexel {
 };
 
 // A light's frame, to be read once: the functions below take it from there.
-LightFrame light_frame(int light) { return light_frames[light]; }
-
-vec3 to_light_space(LightFrame frame, vec3 vector) {
-  return vec3(dot(frame.x_axis.xyz, vector), dot(frame.y_axis.xyz, vector), dot(frame.z_axis.xyz, vector));
+LightFrame light_frame(LightSample light) {
+  vec4 x_axis = light_frames[light.index].x_axis;
+  vec3 map = light_frames[light.index].map.xyz;
+  return LightFrame(x_axis.xyz, cross(light.to_light, x_axis.xyz), light.to_light, map.xy, x_axis.w, map.z);
 }
 
-float light_map_texel_width(LightFrame frame) { return 2.0 * frame.z_axis.w / float(textureSize(light_maps, 0).x); }
+vec3 to_light_space(LightFrame frame, vec3 vector) {
+  return vec3(dot(frame.x_axis, vector), dot(frame.y_axis, vector), dot(frame.z_axis, vector));
+}
+
+float light_map_texel_width(LightFrame frame) { return frame.texel_width; }
 
 // How far a surface of this normal may lie from its own tangent plane in the map, along z: what is nearer than this is the same surface.
 float light_map_tolerance(LightFrame frame, vec3 normal) {
@@ -36,9 +50,8 @@ float light_map_tolerance(LightFrame frame, vec3 normal) {
 }
 
 LightMapTexel light_map_at(LightFrame frame, int light, vec2 xy) {
-  float resolution = float(textureSize(light_maps, 0).x);
-  vec2 in_texels = ((xy - vec2(frame.x_axis.w, frame.y_axis.w)) * (0.5 / frame.z_axis.w) + 0.5) * resolution;
-  vec2 texel = clamp(floor(in_texels), 0.0, resolution - 1.0);
+  vec2 in_texels = (xy - frame.centre) / frame.texel_width + 0.5 * frame.resolution;
+  vec2 texel = clamp(floor(in_texels), 0.0, frame.resolution - 1.0);
   vec4 stored = texelFetch(light_maps, ivec3(ivec2(texel), light), 0);
 
   LightMapTexel result;
@@ -46,9 +59,8 @@ LightMapTexel light_map_at(LightFrame frame, int light, vec2 xy) {
   float height = sqrt(max(1.0 - dot(stored.yz, stored.yz), 1e-4));
   result.normal = vec3(stored.yz, height);
   // Within half a texel the surface is its tangent plane; near the silhouette that plane runs away and is cut short.
-  float texel_width = 2.0 * frame.z_axis.w / resolution;
-  vec2 offset = (in_texels - texel - 0.5) * texel_width;
-  float rise = clamp(-dot(stored.yz, offset) / height, -4.0 * texel_width, 4.0 * texel_width);
+  vec2 offset = (in_texels - texel - 0.5) * frame.texel_width;
+  float rise = clamp(-dot(stored.yz, offset) / height, -4.0 * frame.texel_width, 4.0 * frame.texel_width);
   result.position = vec3(xy, stored.x + rise);
   result.exit_depth = stored.w;
   return result;

@@ -3,11 +3,11 @@
 #include "models/half_space_light.glsl"
 #include "models/interface.glsl"
 
-vec3 evaluate_model(SurfacePoint point, LightSample light) {
-  HalfSpaceLight result = half_space_light(point, light);
+vec3 evaluate_model(SurfacePoint point, Outwards outwards, LightSample light) {
+  HalfSpaceLight result = half_space_light(point, outwards, light);
   vec3 radiance = result.single + result.multiple;
 #ifdef SPECULAR
-  radiance += specular_reflection(point, light);
+  radiance += specular_reflection(point, outwards, light);
 #endif
   return radiance;
 }

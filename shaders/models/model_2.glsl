@@ -12,9 +12,9 @@
 uniform sampler2D single_difference;
 #endif
 
-vec3 evaluate_model(SurfacePoint point, LightSample light) {
-  BodyFit fit = fit_body(point, light, light_frame(light.index));
-  HalfSpaceLight half_space = half_space_light(point, light);
+vec3 evaluate_model(SurfacePoint point, Outwards outwards, LightSample light) {
+  BodyFit fit = fit_body(point, outwards, light, light_frame(light));
+  HalfSpaceLight half_space = half_space_light(point, outwards, light);
   vec4 difference = look_up_body(body_table, fit);
   float flow = flow_along_surface(fit, point, light, difference.a);
   vec3 lobe = light.irradiance * diffused_lobe(fit);
@@ -27,7 +27,7 @@ vec3 evaluate_model(SurfacePoint point, LightSample light) {
   radiance += corrected(fit.visible * half_space.single, look_up_body(single_difference, fit).rgb, phase * lobe);
 #endif
 #ifdef SPECULAR
-  radiance += fit.visible * specular_reflection(point, light);
+  radiance += fit.visible * specular_reflection(point, outwards, light);
 #endif
   return radiance;
 }

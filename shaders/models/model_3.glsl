@@ -251,9 +251,9 @@ vec3 single_scattering(LightFrame frame, int light, BodyFit fit, vec3 position, 
 }
 #endif
 
-vec3 evaluate_model(SurfacePoint point, LightSample light) {
-  LightFrame frame = light_frame(light.index);
-  BodyFit fit = fit_body(point, light, frame);
+vec3 evaluate_model(SurfacePoint point, Outwards outwards, LightSample light) {
+  LightFrame frame = light_frame(light);
+  BodyFit fit = fit_body(point, outwards, light, frame);
   vec3 position = to_light_space(frame, point.position) / body.radius;
   vec3 normal = to_light_space(frame, point.normal);
 
@@ -274,7 +274,7 @@ vec3 evaluate_model(SurfacePoint point, LightSample light) {
 #else
   float lobe = diffused_lobe(fit) * flow_along_surface(fit, point, light, table.a);
   LightSample unit_light = LightSample(light.to_light, vec3(1.0), light.index, light.angle);
-  vec3 sphere = corrected(fit.visible * half_space_light(point, unit_light).multiple, table.rgb, vec3(lobe));
+  vec3 sphere = corrected(fit.visible * half_space_light(point, outwards, unit_light).multiple, table.rgb, vec3(lobe));
 #endif
   float tilt = sqrt(max((1.0 - fit.cosine) * (1.0 + fit.cosine), 0.0));
   vec3 fit_normal = vec3(normal.xy * (tilt * inversesqrt(max(dot(normal.xy, normal.xy), 1e-12))), fit.cosine);
@@ -287,7 +287,7 @@ vec3 evaluate_model(SurfacePoint point, LightSample light) {
 #endif
   radiance *= light.irradiance;
 #ifdef SPECULAR
-  radiance += fit.visible * specular_reflection(point, light);
+  radiance += fit.visible * specular_reflection(point, outwards, light);
 #endif
   return radiance;
 }

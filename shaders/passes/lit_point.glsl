@@ -17,10 +17,12 @@ vec3 direction_to_viewer(vec3 position) { return normalize(viewer.xyz - viewer.w
 vec3 lit_point(SurfacePoint point) {
   vec3 sum = vec3(0.0);
   if (light_count == 0) return sum;
+  Outwards outwards = look_outwards(point);
   // Software renderers run a loop's body once more, masked, to find that a condition at its head has failed: it is at the foot.
   int i = 0;
   do {
-    sum += evaluate_model(point, LightSample(lights[i].to_light.xyz, lights[i].irradiance.rgb, i, lights[i].to_light.w));
+    LightSample light = LightSample(lights[i].to_light.xyz, lights[i].irradiance.rgb, i, lights[i].to_light.w);
+    sum += evaluate_model(point, outwards, light);
   } while (++i < light_count);
   return sum;
 }
