@@ -54,6 +54,7 @@ Renders every model and the Cycles reference that means the same, and writes pic
   --most-seeds K            how many seeds --until may lead to (default: 64)
   --mask NAME ...           leaves pixels out of the numbers, one mask after another: silhouette:PIXELS,
                             crop:LEFT,TOP,RIGHT,BOTTOM, mean_deviation[:DEVIATIONS], otsu[:MEDIAN_SIZE]
+  --part PART               a part of the light alone: specular, what the surface reflects, or subsurface, what was inside
   --set NAME=VALUE          a material parameter for every material, on both sides: reflectance, sigma_a, sigma_s, g, eta,
                             roughness, scale, profile; RGB as one number or three with commas; may be repeated
   --frames N                frames timed for frame_ms (default: 9)
@@ -117,7 +118,7 @@ Compares every case that a TOML file lists, each in a Blender of its own; docs/s
   --out DIR               where cases, tables and plots go
   --jobs N                cases side by side (default: 1)
   --list                  print the cases, with their groups, and run none
-  --no-plots              write the tables and no plots
+  --no-report             write the tables, no page and no plots
   --case I                run case I alone, counted from 0
   --group I               run only the cases of group I, which share a reference, counted from 0
   --merge                 merge and plot what is there, run nothing

@@ -1,5 +1,6 @@
 # The comparison as a whole: files complete and consistent, failures recorded, interruption clean.
 import csv
+import dataclasses
 import errno
 import io
 import json
@@ -16,8 +17,8 @@ import pytest
 from cycles_scenes import REFEREE, depsgraph, make_sphere
 
 from mesograin import native_module
-from mesograin.comparison import progress, results, run, significance
-from mesograin.cycles import reference, shot
+from mesograin.comparison import ours, progress, results, run, significance
+from mesograin.cycles import kinds, nodes, reference, shot
 from mesograin.cycles.cache import Cache
 
 COMMAND = pathlib.Path(__file__).resolve().parents[2] / "addon/mesograin/comparison/command.py"
@@ -126,7 +127,7 @@ def noisy_cycles(monkeypatch):
     """Puts quick noise round a picture of our own where Cycles renders; returns the list of seeds rendered."""
     rendered = []
 
-    def stand_in(native, scene, on_progress):
+    def stand_in(native, scene, on_progress, light):
         seed = scene.cycles.seed
         rendered.append(seed)
         height, width = scene.render.resolution_y, scene.render.resolution_x
@@ -406,3 +407,47 @@ def test_bad_input_is_one_sentence_and_an_exit_code(scene, start, words, code, s
     _, said = process.communicate(timeout=300)
     assert process.returncode == code and "Traceback" not in said
     assert sentence in said
+
+
+SPLIT = {"references": ("volume_dielectric",), "size": (40, 40), "samples": 32}
+
+
+def test_what_the_surface_reflects_is_compared_alone(tmp_path):
+    make_sphere(SUNS[:1], sigma_s=(0.9,) * 3, sigma_a=(0.1,) * 3, eta=1.5, roughness=0.3)
+    for case in compare(tmp_path, models=("model_1", "model_3"), part="specular", **SPLIT)["cases"]:
+        assert case["status"] == "done" and case["part"] == "specular" and case["name"].endswith(".specular")
+        assert case["metrics"]["relative_l1"] < 0.006 and case["metrics"]["bias"] == pytest.approx(1.0, abs=0.002)
+    mirror = compare(tmp_path, models=("model_1",), part="specular", settings={"roughness": 0.0}, **SPLIT)["cases"][0]
+    assert "raise the roughness" in mirror["error"]
+
+
+def test_what_was_inside_is_compared_alone_where_the_sun_is_mirrored_too(tmp_path):
+    make_sphere(SUNS, sigma_s=(4.0,) * 3, sigma_a=(0.2,) * 3)
+    case = compare(tmp_path, models=("model_2",), part="subsurface", reference_samples=64, **SPLIT)["cases"][0]
+    assert case["status"] == "done" and case["part"] == "subsurface"
+    assert [step["name"] for step in case["mask_steps"]] == ["silhouette:2"]
+    assert case["metrics"]["bias"] == pytest.approx(1.0, abs=0.1)
+
+
+def test_the_parts_add_up_to_the_whole():
+    make_sphere(SUNS, sigma_s=(0.9,) * 3, sigma_a=(0.1,) * 3, roughness=0.3)
+    whole = kinds.KINDS["volume_dielectric"]
+    pixels = {
+        light: shot.take(depsgraph(), dataclasses.replace(whole, light=light), (24, 24), 8, 1).pixels
+        for light in ("all", "reflected", "entered")
+    }
+    summed = pixels["reflected"][..., :3] + pixels["entered"][..., :3]
+    assert pixels["reflected"][..., :3].sum() > 0.01 * summed.sum() and pixels["entered"].min() > -1e-4
+    np.testing.assert_allclose(summed, pixels["all"][..., :3], rtol=1e-5, atol=1e-5)
+
+    mine = ours.Ours(depsgraph(), (24, 24), {}, parts=1)
+    specular = kinds.our_side("volume_dielectric", nodes.features(), "specular")
+    for model in ("model_1", "model_2", "model_3"):
+        seen = {}
+        for part, chosen in (("all", {**specular, "sigma_s": (0.9,) * 3}), ("specular", specular),
+                             ("subsurface", {**specular, "sigma_s": (0.9,) * 3, "specular": False})):
+            mine.begin({"model": model, **chosen})
+            (seen[part],) = mine.refine(4)
+        assert seen["specular"][..., :3].sum() > 0.01 * seen["all"][..., :3].sum()
+        summed = seen["specular"][..., :3] + seen["subsurface"][..., :3]
+        np.testing.assert_allclose(summed, seen["all"][..., :3], rtol=2e-4, atol=1e-5)

@@ -39,7 +39,7 @@ def counted(monkeypatch):
     """Puts a quick stand-in where Cycles renders; returns the list of scenes it was given."""
     rendered = []
 
-    def stand_in(native, scene, on_progress):
+    def stand_in(native, scene, on_progress, light):
         rendered.append(scene.cycles.seed)
         on_progress(1.0)
         return np.full((scene.render.resolution_y, scene.render.resolution_x, 4), 1.0 + scene.cycles.seed, np.float32)

@@ -30,9 +30,16 @@ scale = float(settings["scale"])
 result = {{"model": words[words.index("--models") + 1], "reference": "volume_index_matched",
           "metrics": {{"relative_l1": 1 / scale, "rse_mean": 0.1 / scale, "bias": 1.0, "max_error_at": [1, 2, 0]}},
           "noise_floor": {{"relative_l1": 0.01}}, "mask": {{"pixels": 9, "nan": 0, "inf": 0}},
+          "files": {{"model": "model.exr", "model_png": "model.png", "error_png": "error.png"}},
           "frame_ms": time.time(), "reference_seconds": 1.5}}
+for name in ("model", "error"):
+    with open(os.path.join(out, name + ".png"), "wb") as file:
+        file.write(name.encode())
+made = {{"versions": {{"mesograin": "0.1.0", "blender": "3.4.1 (abc)", "python": "3.11", "numpy": "1.24"}},
+        "device": {{"renderer": "llvmpipe", "version": "4.5"}},
+        "cpu": {{"name": "A CPU", "cores": 2, "machine": "x86_64"}}}}
 with open(os.path.join(out, "results.json"), "w") as file:
-    json.dump({{"cases": [result]}}, file)
+    json.dump({{**made, "cases": [result]}}, file)
 """
 
 SWEEP = """\
@@ -62,8 +69,8 @@ def words(folder, *more, out="out"):
         str(folder / out),
         "--blender",
         str(folder / "blender"),
-        *([] if "--plots" in more else ["--no-plots"]),
-        *(word for word in more if word != "--plots"),
+        *([] if "--report" in more else ["--no-report"]),
+        *(word for word in more if word != "--report"),
     ]
 
 

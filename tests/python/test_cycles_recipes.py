@@ -8,8 +8,9 @@ kinds = room("cycles.kinds")
 limits = room("cycles.limits")
 recipes = room("cycles.recipes")
 
-BLENDER_3 = kinds.NodeFeatures("ShaderNodeBsdfGlossy", "separable", "RANDOM_WALK_FIXED_RADIUS", False, "SHARP", False)
-BLENDER_4 = kinds.NodeFeatures("ShaderNodeBsdfAnisotropic", "correlated", "RANDOM_WALK", True, "GGX", True)
+BLENDER_3 = kinds.NodeFeatures("ShaderNodeBsdfGlossy", "separable", "RANDOM_WALK_FIXED_RADIUS", False, "SHARP", False,
+                               False)
+BLENDER_4 = kinds.NodeFeatures("ShaderNodeBsdfAnisotropic", "correlated", "RANDOM_WALK", True, "GGX", True, True)
 
 
 def grain(**parameters):

@@ -1,7 +1,9 @@
 """Sweeps end to end with a stand-in for Blender that can be told to fail: resuming, failures, merging, scripts."""
 import csv
+import html
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -35,14 +37,38 @@ def test_every_case_runs_once_and_the_table_holds_them_in_order(sweep):
 
 
 def test_plots_have_the_data_in_them(sweep):
-    run(sweep, "--plots")
-    run(sweep, "--plots", out="again")
-    plot = "relative_l1-over-scale.svg"
+    run(sweep, "--report")
+    run(sweep, "--report", out="again")
+    plot = "plots/relative_l1-over-scale.svg"
     assert (sweep / "out" / plot).read_bytes() == (sweep / "again" / plot).read_bytes()
-    text = (sweep / "out/relative_l1-over-scale.svg").read_text()
+    text = (sweep / "out" / plot).read_text()
     for word in ("scale (multiplies", "relative L1", "model_1", "model_2", "Test"):
         assert word in text
-    assert (sweep / "out/bias-over-scale.png").read_bytes()[:4] == b"\x89PNG"
+    assert (sweep / "out/plots/bias-over-scale.png").read_bytes()[:4] == b"\x89PNG"
+
+
+def test_the_page_holds_every_case_definition_and_link(sweep):
+    done = run(sweep, "--report", STAND_IN_FAILS="2.0")
+    assert f"The page: {sweep}/out/report.html" in done.stdout and done.stderr == ""
+    page = (sweep / "out/report.html").read_text()
+    text = " ".join(html.unescape(re.sub(r"<[^>]*>", " ", page)).split())
+    assert "Relative L1 from 25.0 % (a model_1 scale=4) to 100 % (a model_1 scale=1)." in text
+    assert "a model_2 scale=2 failed: compare: the reference could not be rendered." in text
+    assert f"./mesograin sweep {sweep}/s.toml --out {sweep}/out" in text and "llvmpipe" in text
+    assert "This was not finished" in text and "4 of 6 cases" in text
+    body = page[page.index("<tbody>"):page.index("</tbody>")]
+    assert body.count("<tr>") == 4 and body.count("data:image/png;base64,") == 8
+    assert page.count("<svg") == 3, "a plot of each metric, in the page"
+    for name in re.findall(r'popovertarget="([^"]+)"', page):
+        assert f'popover id="{name}"' in page
+    for target in re.findall(r'(?:src|href)="([^"#][^"]*)"', page):
+        inside = target.startswith("data:image/png;base64,") or target.endswith(".exr")
+        assert inside or (sweep / "out" / target).exists()
+
+
+def test_without_a_report_the_tables_are_written_alone(sweep):
+    assert run(sweep).returncode == 0
+    assert not (sweep / "out/report.html").exists() and not (sweep / "out/plots").exists()
 
 
 def test_a_failing_case_is_recorded_and_the_rest_go_on(sweep):

@@ -72,6 +72,7 @@ def compare(depsgraph, name, size, samples, view_from, overrides, model, kind, r
         "model": model,
         "reference": kind,
         "reference_title": kinds.KINDS[kind].title,
+        "judged_by": kinds.KINDS[kind].judged_by,
         "view_from": view_from,
         "size": list(size),
         **numbers,

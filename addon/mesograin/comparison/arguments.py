@@ -47,7 +47,8 @@ def build():
         metavar="KIND",
         help=(
             f"kinds of reference, of {', '.join(REFERENCES)}; each model is compared with those that answer it "
-            "(default: diffuse for lambert, glossy for conductor, volume_index_matched for the others)"
+            "(default: diffuse for lambert, glossy for conductor, volume_index_matched for the others; of a part, those"
+            " that have it)"
         ),
     )
     parser.add_argument(
@@ -94,6 +95,16 @@ def build():
         help=f"how many seeds --until may lead to (default: {MOST_SEEDS})",
     )
     parser.add_argument(
+        "--part",
+        choices=kinds.PARTS,
+        default=None,
+        metavar="PART",
+        help=(
+            "compare a part of the light alone: specular, what the surface reflects, or subsurface, what was inside"
+            " (default: the whole)"
+        ),
+    )
+    parser.add_argument(
         "--mask",
         nargs="+",
         type=_mask,
@@ -118,7 +129,12 @@ def build():
 
 def parse(words):
     """argparse.Namespace of the command line after `--`. Raises SystemExit(2) after one sentence on standard error."""
-    return build().choose(words)
+    parser = build()
+    chosen = parser.choose(words)
+    for kind in chosen.references or ():
+        if not kinds.has(kind, chosen.part):
+            parser.error(kinds.missing_part(kind, chosen.part))
+    return chosen
 
 
 def _mask(text):

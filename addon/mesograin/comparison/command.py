@@ -26,8 +26,10 @@ def _run(chosen, words):
             raise CommandError(f"The reference cache cannot be emptied: {error}.", NO_OUTPUT) from error
         print(f"{count} references removed from {cache.folder}, {size / 2**20:.1f} MiB.")
         return OK
-    if not cases(chosen.models, chosen.references):
-        raise CommandError(f"None of the references {', '.join(chosen.references)} answers {', '.join(chosen.models)}.")
+    if not cases(chosen.models, chosen.references, chosen.part):
+        of = f"the {chosen.part} part of " if chosen.part else ""
+        asked = f"of the references {', '.join(chosen.references)} " if chosen.references else "of the references "
+        raise CommandError(f"None {asked}answers {of}{', '.join(chosen.models)}.")
 
     request = Request(
         models=tuple(chosen.models),
@@ -40,6 +42,7 @@ def _run(chosen, words):
         until=chosen.until,
         most_seeds=chosen.most_seeds,
         masks=tuple(chosen.masks),
+        part=chosen.part,
         settings=chosen.settings,
         frames=chosen.frames,
         cache=cache,

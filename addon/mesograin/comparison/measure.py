@@ -32,8 +32,8 @@ class Measurement:
 
 def steps(case, request, size):
     """What `measure` will begin, as `Progress.plan` takes it: (what, kind, guessed seconds) each."""
-    kind = kinds.KINDS[case.reference]
-    yield f"{case.model}: reference ({case.reference})", case.reference, _guess(kind, request, size, request.seeds)
+    named = f"{case.reference}, {case.part} part" if case.part else case.reference
+    yield f"{case.model}: reference ({named})", case.kind.recipe, _guess(case.kind, request, size, request.seeds)
     million = size[0] * size[1] * 1e-6
     yield f"{case.model}: our picture", case.model, 0.3 * request.samples * million / (os.cpu_count() or 1)
 
@@ -53,7 +53,7 @@ def measure(case, chosen, request, depsgraph, size, overrides, ours, progress):
     Raises ReferenceError, StageError, native.Error or progress.Cancelled.
     """
     sampling = reference.Sampling(
-        depsgraph, case.reference, size, request.reference_samples, request.cache, overrides
+        depsgraph, case.reference, size, request.reference_samples, request.cache, overrides, part=case.part
     )
     progress.begin()
     sampling.add(range(1, request.seeds + 1), progress.update)
@@ -72,7 +72,8 @@ def measure(case, chosen, request, depsgraph, size, overrides, ours, progress):
     mirror = shape = None
     if sampling.kind.smooth_interface:
         normals, mirrored = sampling.geometry()
-        mirror = masks.mirror_patch(mirrored, [(direction, angle) for direction, angle, _ in suns])
+        if sampling.kind.light == "all":
+            mirror = masks.mirror_patch(mirrored, [(direction, angle) for direction, angle, _ in suns])
     until = None
     if request.until is not None:
         theirs, until = _until(case, request, size, sampling, image, mirror, progress)
@@ -144,7 +145,7 @@ def _until(case, request, size, sampling, image, mirror, progress):
             return theirs, entry
         wanted = _wanted_seeds(count, ratio, request)
         what = f"{case.model}: reference ({case.reference}), seeds {count + 1} to {wanted}"
-        progress.insert([(what, case.reference, _guess(sampling.kind, request, size, wanted - count))])
+        progress.insert([(what, sampling.kind.recipe, _guess(sampling.kind, request, size, wanted - count))])
         progress.begin()
         sampling.add(range(count + 1, wanted + 1), progress.update)
         progress.end()

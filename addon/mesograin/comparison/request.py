@@ -11,14 +11,20 @@ from .arguments import MOST_SEEDS
 
 @dataclass(frozen=True)
 class Case:
-    """One model against one kind of reference."""
+    """One model against one kind of reference, or against a part of it."""
 
     model: str
     reference: str
+    part: str = None
 
     @property
     def name(self):
-        return f"{self.model}.{self.reference}"
+        return ".".join(filter(None, (self.model, self.reference, self.part)))
+
+    @property
+    def kind(self):
+        """The kinds.Kind that renders the reference."""
+        return kinds.kind_of(self.reference, self.part)
 
 
 @dataclass(frozen=True)
@@ -28,7 +34,7 @@ class Request:
     references: names in `kinds.KINDS`, or None for each model's default. seeds: of the reference, independent of each
     other. until: adds seeds until the reference's noise is at most this fraction of the measured error, but no more
     than `most_seeds` in all; None for `seeds` as they are. masks: of `mask_names.parse`, applied in this order.
-    command: the line that repeats it."""
+    part: of `kinds.PARTS`, or None for the whole. command: the line that repeats it."""
 
     models: tuple
     out: Path
@@ -40,18 +46,20 @@ class Request:
     until: float = None
     most_seeds: int = MOST_SEEDS
     masks: tuple = ()
+    part: str = None
     settings: dict = field(default_factory=dict)
     frames: int = 9
     cache: Cache = field(default_factory=Cache)
     command: str = ""
 
 
-def cases(models, references=None):
-    """The cases asked for: each model with each of `references` that answers it, or with its default one."""
+def cases(models, references=None, part=None):
+    """The cases asked for: each model with each of `references` that answers it, or with its default one; of a part,
+    with those that have it."""
     found = []
     for model in dict.fromkeys(models):
-        if references is None:
-            found.append(Case(model, kinds.default_kind(model)))
-        else:
-            found += [Case(model, kind) for kind in dict.fromkeys(references) if model in kinds.KINDS[kind].models]
+        kind = kinds.default_kind(model, part)
+        asked = ([kind] if kind else []) if references is None else dict.fromkeys(references)
+        answering = [kind for kind in asked if model in kinds.KINDS[kind].models and kinds.has(kind, part)]
+        found += [Case(model, kind, part) for kind in answering]
     return found

@@ -33,7 +33,7 @@ def compare(request, progress):
     for warning in ours.warnings:
         progress.say(warning)
 
-    planned = cases(request.models, request.references)
+    planned = cases(request.models, request.references, request.part)
     progress.plan(step for case in planned for step in measure.steps(case, request, size))
     results = {
         "format": RESULTS_FORMAT[0],
@@ -77,13 +77,14 @@ class _Comparison:
     def record(self, case):
         """The case's entry in the results, whether it succeeds or not."""
         native = native_module.get()
-        chosen = {"model": case.model, **kinds.our_side(case.reference, nodes.features())}
+        chosen = {"model": case.model, **kinds.our_side(case.reference, nodes.features(), case.part)}
         entry = {
             "name": case.name,
             "scene": origin.scene_name(),
             "model": case.model,
             "reference": case.reference,
-            "reference_title": kinds.KINDS[case.reference].title,
+            "reference_title": case.kind.title,
+            "part": case.part or "whole",
             "boundary": chosen.get("boundary", ""),
             "material": self._materials(chosen),
             "versions": origin.versions(),

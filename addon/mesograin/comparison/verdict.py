@@ -1,7 +1,6 @@
 # What a case's numbers come to, in a few words.
 """See `verdict`."""
 
-from ..cycles import kinds
 from .significance import NO_DIFFERENCE
 
 
@@ -11,7 +10,7 @@ def verdict(entry):
     without the reference's noise."""
     if entry["status"] != "done":
         return "failed"
-    metric = kinds.KINDS[entry["reference"]].judged_by
+    metric = entry["judged_by"]
     metrics, noise, test = entry["metrics"], entry["noise_floor"][metric], entry["significance"]
     if metrics[metric] is None:
         return "the reference is black"

@@ -2,7 +2,7 @@
 """The table of reference kinds. Adding one is adding a row here and a recipe in `recipes`."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 TRANSLUCENT_MODELS = ("model_1", "model_2", "model_3")
 
@@ -16,6 +16,7 @@ class NodeFeatures:
     subsurface_method: str  # the random walk whose mean free path is the radius / 4 pi
     subsurface_refracts: bool  # the walk starts along the view ray refracted by IOR, not on a cosine lobe
     glass_distribution: str  # of the Glass BSDF: `SHARP` where there is one, else one that roughness 0 makes sharp
+    facets_have_fresnel: bool  # the Glass BSDF reflects by each facet
     has_phase_choice: bool  # Volume Scatter offers several phase functions
 
 
@@ -29,6 +30,8 @@ class Kind:
     estimate of the time left. judged_by: the metric that says how far a model is off, pixel by pixel or in blocks.
     least_sun: radians; on both sides suns are taken at least as wide. smooth_interface: the sun's mirror image is
     masked, and the error is told over the angle to the sun. referee: rendered by mesograin-referee, not by Cycles.
+    parts: of PARTS, what the whole consists of. light: that the picture shows, 'all', 'reflected' by the surface, or
+    what 'entered' through it. recipe: the row of `recipes` and `limits`, if it is not the name.
     """
 
     name: str
@@ -42,6 +45,12 @@ class Kind:
     least_sun: float = 0.0
     smooth_interface: bool = False
     referee: bool = False
+    parts: tuple = ("subsurface",)
+    light: str = "all"
+    recipe: str = ""
+
+    def __post_init__(self):
+        object.__setattr__(self, "recipe", self.recipe or self.name)
 
     @property
     def tracer(self):
@@ -49,13 +58,16 @@ class Kind:
         return "mesograin-referee" if self.referee else "Cycles"
 
 
+PARTS = ("specular", "subsurface")
+"""What a grain shows: light that its surface reflects, and light that was inside."""
+
 # The opaque kinds see direct light alone, as the models that they answer do; inside a medium everything counts.
 # New kinds are added at the end: Blender files remember a choice of kinds by their numbers.
 KINDS = {
     kind.name: kind
     for kind in (
-        Kind("diffuse", "Cycles Diffuse BSDF", ("lambert",), 0, 64, False, 0.6),
-        Kind("glossy", "Cycles Glossy BSDF, GGX", ("conductor",), 0, 64, False, 0.6),
+        Kind("diffuse", "Cycles Diffuse BSDF", ("lambert",), 0, 64, False, 0.6, parts=()),
+        Kind("glossy", "Cycles Glossy BSDF, GGX", ("conductor",), 0, 64, False, 0.6, parts=("specular",)),
         Kind("volume_index_matched", "Cycles volume, index-matched", TRANSLUCENT_MODELS, 1024, 128, True, 5.0),
         Kind("subsurface", "Cycles Subsurface Scattering, random walk", TRANSLUCENT_MODELS, 1024, 128, False, 5.0),
         Kind(
@@ -79,6 +91,7 @@ KINDS = {
             judged_by="relative_l1_blocks",
             least_sun=math.radians(20.0),
             smooth_interface=True,
+            parts=PARTS,
         ),
         Kind(
             "photon",
@@ -101,13 +114,52 @@ MIRRORED = Kind("mirrored", "Mirrored view", (), 0, 16, False, 0.3)
 """Nor are these: the normal n, and the way to the viewer mirrored at it, in world space, as 0.5 + 0.5 n."""
 
 
-def default_kind(model):
-    """Name of the reference that answers this model when none is asked for."""
-    return next(kind.name for kind in KINDS.values() if model in kind.models)
+def default_kind(model, part=None):
+    """Name of the reference that answers this model, or a part of it, when none is asked for; None if none does."""
+    return next((kind.name for kind in KINDS.values() if model in kind.models and has(kind.name, part)), None)
 
 
-def our_side(kind, features):
+def has(kind, part):
+    """Whether a kind of reference has a part, or None for the whole."""
+    return part is None or part in KINDS[kind].parts
+
+
+def missing_part(kind, part):
+    """One sentence on why a kind of reference has no such part, and which have it; no full stop."""
+    only = KINDS[kind].parts
+    why = f"all that it shows is the {only[0]} part" if only else "its light is reflected without direction, once"
+    having = ", ".join(name for name in KINDS if has(name, part))
+    return f"the reference {kind} has no {part} part: {why}; those that have it are {having}"
+
+
+def kind_of(name, part=None):
+    """The Kind that renders a part of a kind of reference, or None for the whole. Where all that it shows is that part,
+    that is the whole."""
+    whole = KINDS[name]
+    if part is None or whole.parts == (part,):
+        return whole
+    if part == "subsurface":
+        return replace(whole, title=f"{whole.title}, subsurface part", light="entered")
+    # What the surface reflects knows nothing of the inside, so the roughness and the suns are the material's own.
+    return replace(
+        whole,
+        title="Cycles rough dielectric, specular part",
+        bounces=0,
+        samples=64,
+        cost=0.6,
+        judged_by="relative_l1",
+        least_sun=0.0,
+        smooth_interface=False,
+        light="reflected",
+        recipe="dielectric_specular",
+    )
+
+
+def our_side(kind, features, part=None):
     """The Mesograin parameters that make our side solve what this kind of reference solves, as {name: value}."""
+    if kind == "volume_dielectric" and part == "specular":
+        # Nothing comes back from inside a medium that does not scatter.
+        return {"boundary": "dielectric", "specular": True, "masking": features.glossy_masking, "sigma_s": (0.0,) * 3}
     if kind == "glossy":
         return {"masking": features.glossy_masking}
     if kind == "volume_index_matched":

@@ -14,6 +14,9 @@ PHASE_LIMIT = 0.999
 IOR_RANGE = (1.01, 3.8)
 """Cycles clamps the IOR of the Subsurface Scattering node to this."""
 
+PRINCIPLED_IOR = 1.78
+"""Up to here the Principled BSDF of Blender 3 can be told a dielectric's reflectance: 0.08 at normal incidence."""
+
 LOSSY_ALBEDO = 0.99
 """Above this albedo a thick random walk notably outlives Cycles' 256 bounces."""
 
@@ -30,8 +33,8 @@ class Limit:
 
 
 def limits(values, kind):
-    """What Cycles cannot express of `values` (GrainValues) in this kind of reference: a list of Limit, often empty."""
-    if kind == "glossy":
+    """What Cycles cannot express of `values` (GrainValues) in a `Kind.recipe`: a list of Limit, often empty."""
+    if kind in ("glossy", "dielectric_specular"):
         return _glossy(values)
     if kind == "volume_index_matched":
         return _volume(values)

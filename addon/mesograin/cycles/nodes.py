@@ -87,6 +87,8 @@ def features():
             subsurface_method=fixed if fixed in methods else "RANDOM_WALK",
             subsurface_refracts="Roughness" in subsurface.inputs,
             glass_distribution="SHARP" if "SHARP" in glass else "GGX",
+            # That came with the same rewrite.
+            facets_have_fresnel=merged,
             has_phase_choice=hasattr(tree.nodes.new("ShaderNodeVolumeScatter"), "phase"),
         )
     finally:

@@ -105,6 +105,48 @@ def _volume_dielectric(values, features):
     return _recipe(nodes, surface=("Glass", "BSDF"), volume=_VOLUME, material=_VOLUME_SETTINGS)
 
 
+def _dielectric_specular(values, features):
+    # Cycles squares the node's roughness to get GGX's alpha.
+    if not features.facets_have_fresnel and 1.0 <= values.eta <= limits.PRINCIPLED_IOR:
+        return _principled_specular(values)
+    glass = {
+        "type": "ShaderNodeBsdfGlass",
+        "properties": {"distribution": "GGX"},
+        "inputs": {"Color": (1.0, 1.0, 1.0), "Roughness": values.roughness**0.5, "IOR": values.eta},
+        "optional": {"Thin Film Thickness": 0.0, "Thin Film IOR": 1.33},
+    }
+    return _recipe({"Glass": glass}, surface=("Glass", "BSDF"))
+
+
+def _principled_specular(values):
+    """The Principled BSDF of Blender 3: black, with GGX facets whose Fresnel reflectance rises from `specular` * 0.08
+    at normal incidence, scaled so that 0.08 * specular = ((eta - 1) / (eta + 1))^2 makes it that of a dielectric."""
+    inputs = dict.fromkeys(
+        ("Subsurface", "Subsurface Anisotropy", "Metallic", "Specular Tint", "Anisotropic", "Anisotropic Rotation",
+         "Sheen", "Sheen Tint", "Clearcoat", "Clearcoat Roughness", "Transmission", "Transmission Roughness",
+         "Emission Strength"), 0.0
+    )
+    black = (0.0, 0.0, 0.0)
+    node = {
+        "type": "ShaderNodeBsdfPrincipled",
+        "properties": {"distribution": "GGX"},
+        "inputs": {
+            **inputs,
+            "Base Color": black,
+            "Subsurface Color": black,
+            "Subsurface Radius": (1.0, 1.0, 1.0),
+            "Subsurface IOR": 1.4,
+            "Emission": black,
+            "Alpha": 1.0,
+            "IOR": values.eta,
+            "Specular": ((values.eta - 1.0) / (values.eta + 1.0)) ** 2 / 0.08,
+            "Roughness": values.roughness**0.5,
+        },
+        "optional": {},
+    }
+    return _recipe({"Principled": node}, surface=("Principled", "BSDF"))
+
+
 def _subsurface(values, features):
     colour = tuple(inversion.colour_of_albedo(albedo, values.g) for albedo in values.albedo)
     radius = tuple(inversion.radius_of_extinction(sigma_t, values.g) for sigma_t in values.sigma_t)
@@ -206,6 +248,7 @@ _RECIPES = {
     "subsurface": _subsurface,
     "subsurface_burley": _subsurface_burley,
     "volume_dielectric": _volume_dielectric,
+    "dielectric_specular": _dielectric_specular,
     "coverage": _coverage,
     "normal": _normal,
     "mirrored": _mirrored,

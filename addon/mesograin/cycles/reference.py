@@ -52,11 +52,12 @@ class Sampling:
     size: (width, height) in pixels. samples: per pixel and seed; the kind's default if None.
     cache: a `Cache`, or None for none. overrides: {parameter: value} for every material, coefficients per scene unit.
     unwrapping: an `unwrapping.Unwrapping` for a baked texture instead of a picture; alpha is then 1 where it was baked.
+    part: of `kinds.PARTS`, one that this kind has, or None for the whole.
     Raises ReferenceError for what Cycles cannot render at all, before anything is rendered.
     """
 
-    def __init__(self, depsgraph, kind, size, samples=None, cache=None, overrides=None, unwrapping=None):
-        self.kind = kinds.KINDS[kind]
+    def __init__(self, depsgraph, kind, size, samples=None, cache=None, overrides=None, unwrapping=None, part=None):
+        self.kind = kinds.kind_of(kind, part)
         self.samples = samples or self.kind.samples
         self._depsgraph, self._size, self._cache, self._overrides = depsgraph, size, cache, overrides or {}
         self._unwrapping = unwrapping
@@ -137,7 +138,7 @@ def _check(depsgraph, kind, overrides):
         degrees = math.degrees(kind.least_sun)
         notes.append(f"Suns are taken {degrees:.0f} degrees wide on both sides, since Cycles cannot find smaller ones.")
     for name, material in sorted(materials.items()):
-        for limit in limits(shot.grain_values(depsgraph, overrides, material), kind.name):
+        for limit in limits(shot.grain_values(depsgraph, overrides, material), kind.recipe):
             sentence = f"Material '{name}': {limit.sentence}"
             if limit.fatal:
                 raise ReferenceError(sentence)

@@ -11,7 +11,7 @@ import bpy
 import numpy
 
 from .. import export, native_module
-from . import fingerprint, nodes, recipes, settings
+from . import fingerprint, nodes, passes, recipes, settings
 from .console import Console
 from .grain_values import GrainValues
 from .stage import Stage
@@ -54,7 +54,7 @@ def take(
     used = {}
 
     def build(material):
-        recipe = recipes.recipe(kind.name, grain_values(depsgraph, overrides or {}, material), nodes.features())
+        recipe = recipes.recipe(kind.recipe, grain_values(depsgraph, overrides or {}, material), nodes.features())
         made = nodes.build("Mesograin reference", recipe)
         used[made.name] = recipe
         return made
@@ -63,6 +63,8 @@ def take(
         determined_by = fingerprint.describe(stage.scene, used, description)
         if unwrapping:
             determined_by["unwrapping"] = unwrapping.describe(stage)
+        if kind.light != "all":
+            determined_by["light"] = kind.light
         key = fingerprint.key(determined_by)
         found = read_cached(native, cache, key)
         if found:
@@ -72,12 +74,13 @@ def take(
         if unwrapping:
             pixels = unwrapping.render(stage, size, on_progress)
         else:
-            pixels = render_stage(native, stage.scene, on_progress)
+            pixels = render_stage(native, stage.scene, on_progress, kind.light)
         seconds = time.monotonic() - started
     provenance = {
         "made_by": f"Mesograin {native.__version__}",
         "blender": f"{determined_by['blender']} ({determined_by['build']})",
         "reference": kind.name,
+        "light": kind.light,
         "samples": samples,
         "seed": seed,
         "bounces": kind.bounces,
@@ -122,8 +125,10 @@ def read_cached(native, cache, key):
         return None
 
 
-def render_stage(native, scene, on_progress):
-    """What Cycles renders of a staged scene, (h, w, 4) float32."""
+def render_stage(native, scene, on_progress, light="all"):
+    """What Cycles renders of a staged scene, (h, w, 4) float32. light: of `kinds.Kind`."""
+    if light != "all":
+        passes.ask_for(scene)
     with tempfile.TemporaryDirectory(prefix="mesograin-") as folder:
         scene.render.filepath = str(Path(folder) / "reference")
         with Console(on_progress) as console:
@@ -138,5 +143,7 @@ def render_stage(native, scene, on_progress):
             reason = next((line for line in reversed(console.lines) if "rror" in line), "Cycles gave no reason")
             raise ReferenceError(f"Cycles could not render the reference: {reason}.")
         pixels, channels, _ = native.read_exr(files[0])
+    if light != "all":
+        return passes.read(pixels, channels, light)
     order = [channels.index(name) for name in "RGBA"]
     return numpy.ascontiguousarray(pixels[..., order])

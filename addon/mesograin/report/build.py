@@ -1,5 +1,5 @@
-# Writes report.html beside a results.json or a trade.json: python3 build.py FOLDER [--out FILE]. Needs jinja2,
-# matplotlib, numpy and the native module.
+# Writes report.html beside the results of a comparison, a sweep or a trade curve: python3 build.py FOLDER [--out FILE].
+# Needs jinja2, matplotlib, numpy and, but for sweeps, the native module.
 """The command; one sentence and exit code 1 for whatever is missing."""
 
 import argparse
@@ -29,12 +29,14 @@ def main(words):
             f"{error.name} is needed by {sys.executable}: install python3-jinja2, python3-matplotlib and python3-numpy."
         )
 
-    from report import page_builder, reading, trade_page
+    from report import page_builder, reading, sweep_page, trade_page
 
     out = chosen.out or chosen.folder / "report.html"
     try:
         if (chosen.folder / reading.TRADE).exists():
             html = trade_page.build(*reading.read_trade(chosen.folder), out.parent)
+        elif reading.is_sweep(chosen.folder):
+            html = sweep_page.build(*reading.read_sweep(chosen.folder), out.parent)
         else:
             html = page_builder.build(*reading.read(chosen.folder), out.parent)
         partial = out.with_name(out.name + ".part")

@@ -48,7 +48,7 @@ def build(results, cases, folder):
         results=results,
         cases=views,
         leading=[
-            {"key": key, "title": title, "form": how, "definition": _definition(results["definitions"], key)}
+            {"key": key, "title": title, "form": how, "definition": definition(results["definitions"], key)}
             for key, title, how in LEADING
         ],
         cost=plot(plots.cost([of.case for of in done]), Path(folder) / PLOTS, "cost"),
@@ -156,7 +156,7 @@ def _view(of, definitions, pictures, folder):
             "title": title,
             "text": form(look_up(case, key), how),
             "value": look_up(case, key),
-            "definition": _definition(definitions, key),
+            "definition": definition(definitions, key),
         }
         for key, title, how in LEADING
     ]
@@ -190,7 +190,8 @@ def look_up(case, key):
     return value
 
 
-def _definition(definitions, key):
+def definition(definitions, key):
+    """The sentence for a number by its dotted path; "" if there is none."""
     group, _, name = key.rpartition(".")
     if group in ("noise_floor", "our_noise") and group in definitions:
         return f"{definitions[group]}; here for {name}: {definitions.get(name, '')}"

@@ -1,7 +1,8 @@
-# Reads results.json or trade.json and the EXR files it names.
-"""See `read` and `read_trade`."""
+# Reads the results of a comparison, a sweep or a trade curve, and the pictures they name.
+"""See `read`, `read_sweep` and `read_trade`."""
 
 import base64
+import csv
 import importlib.machinery
 import importlib.util
 import json
@@ -34,8 +35,19 @@ class CasePictures:
     png: dict = None
 
 
-RESULTS, TRADE = "results.json", "trade.json"
-RESULTS_FORMAT, TRADE_FORMAT = ("mesograin-results", 1), ("mesograin-trade", 2)
+@dataclass(frozen=True)
+class SweepRow:
+    """A case of a sweep. entry: its row in results.json. timings: {name: number} of timings.csv. files: {name: path
+    from the sweep's folder}. png: {name in `files`: data URI}."""
+
+    entry: dict
+    timings: dict
+    files: dict
+    png: dict
+
+
+RESULTS, TRADE, ORIGIN, TIMINGS = "results.json", "trade.json", "origin.json", "timings.csv"
+RESULTS_FORMAT, SWEEP_FORMAT, TRADE_FORMAT = ("mesograin-results", 1), ("mesograin-sweep", 1), ("mesograin-trade", 2)
 """(`format`, `format_version`) of the files, for who writes them and who reads them."""
 
 
@@ -45,6 +57,35 @@ def read(folder):
     results = _load(folder / RESULTS, RESULTS_FORMAT, "a comparison")
     native = _native()
     return results, [_pictures(native, folder, case) for case in results["cases"]]
+
+
+def is_sweep(folder):
+    """Whether a folder's results.json is that of a sweep."""
+    try:
+        return json.loads((Path(folder) / RESULTS).read_text(encoding="utf-8")).get("format") == SWEEP_FORMAT[0]
+    except (OSError, ValueError, AttributeError):
+        return False
+
+
+def read_sweep(folder):
+    """(results, origin, [SweepRow]) of a sweep's folder. Raises UnreadableError with a sentence."""
+    folder = Path(folder)
+    results = _load(folder / RESULTS, SWEEP_FORMAT, "a sweep")
+    origin = _json(folder / ORIGIN)
+    with open(folder / TIMINGS, newline="", encoding="utf-8") as file:
+        timings = list(csv.DictReader(file))
+    return results, origin, [_sweep_row(folder, *pair) for pair in zip(results["rows"], timings, strict=True)]
+
+
+def _sweep_row(folder, entry, timings):
+    numbers = {name: float(value) for name, value in timings.items() if name != "label" and value}
+    files = {name: f"{entry['folder']}/{path}" for name, path in entry["files"].items()}
+    shown = {name: path for name, path in files.items() if name in ("model_png", "reference_png", "error_png")}
+    try:
+        png = {name: _data_uri(folder / path) for name, path in shown.items()}
+    except OSError as error:
+        raise UnreadableError(f"{error.filename} cannot be read ({error.strerror}).") from error
+    return SweepRow(entry, numbers, files, png)
 
 
 def read_trade(folder):
@@ -60,13 +101,17 @@ def read_trade(folder):
         raise UnreadableError(str(error)) from error
 
 
-def _load(path, form, what):
+def _json(path):
     try:
-        results = json.loads(path.read_text(encoding="utf-8"))
+        return json.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise UnreadableError(f"{path} cannot be read ({error.strerror}).") from error
     except ValueError as error:
         raise UnreadableError(f"{path} is not JSON ({error}).") from error
+
+
+def _load(path, form, what):
+    results = _json(path)
     if not isinstance(results, dict) or results.get("format") != form[0]:
         raise UnreadableError(f"{path} holds no results of {what}.")
     if results.get("format_version") != form[1]:

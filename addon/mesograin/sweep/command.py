@@ -1,6 +1,7 @@
-# The command line of `sweep`: reads the plan, runs what is missing, merges and plots.
+# The command line of `sweep`: reads the plan, runs what is missing, merges and writes the page.
 """Run as `python3 command.py FILE.toml --out DIR`; see --help."""
 import os
+import shlex
 import shutil
 import signal
 import sys
@@ -9,7 +10,8 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
 from mesograin.command_line.parser import Parser  # noqa: E402
-from mesograin.sweep import emit, merge, plan, plots, run  # noqa: E402
+from mesograin.comparison import report_page  # noqa: E402
+from mesograin.sweep import emit, merge, plan, run  # noqa: E402
 from mesograin.sweep.folder import Folder  # noqa: E402
 
 DONE, FAILED, USAGE, UNWRITABLE, INTERRUPTED = 0, 1, 2, 3, 130
@@ -40,9 +42,9 @@ def parser():
         metavar="I",
         help="run only the cases of group I, which share a reference, counted from 0, and do not merge",
     )
-    made.add_argument("--no-plots", action="store_true", help="write the tables and no plots")
+    made.add_argument("--no-report", action="store_true", help="write the tables, no page and no plots")
     made.add_argument("--list", action="store_true", help="print the cases and run none")
-    made.add_argument("--merge", action="store_true", help="merge and plot what is there and run nothing")
+    made.add_argument("--merge", action="store_true", help="merge what is there, write the page and run nothing")
     made.add_argument(
         "--emit",
         choices=("slurm", "parallel"),
@@ -96,8 +98,13 @@ def sweep(chosen, swept, folder):
             )
     if chosen.case is None and chosen.group is None:
         rows, missing = merge.merge(swept, folder)
-        pictures = [] if chosen.no_plots else plots.draw(swept, rows, folder.out)
-        print(f"{len(rows)} results in {folder.out / 'results.csv'}, {len(pictures)} plots beside it")
+        merge.describe(swept, folder, shlex.join(["./mesograin", "sweep", chosen.file, "--out", str(chosen.out)]))
+        print(f"{len(rows)} results in {folder.out / 'results.csv'}")
+        if rows and not chosen.no_report:
+            try:
+                print(f"The page: {report_page.write(folder.out)}")
+            except report_page.ReportError as error:
+                return complain(f"no report: {error}", FAILED)
         if missing and chosen.merge:
             print(f"{len(missing)} of {len(swept.cases)} cases have no result yet, such as: {missing[0].label}")
             failed = failed or len(missing)

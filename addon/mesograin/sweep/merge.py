@@ -1,8 +1,12 @@
 # Puts the results of a sweep's cases into one table, in the plan's order, whoever ran them.
-"""See `merge`."""
+"""See `merge` and `describe`."""
 import csv
+import datetime
 import os
 
+from ..comparison import definitions
+from ..report.reading import ORIGIN, SWEEP_FORMAT
+from ..report.reading import TIMINGS as TIMINGS_FILE
 from .folder import RESULTS, write
 
 TIMINGS = ("frame_ms", "reference_seconds")
@@ -12,8 +16,9 @@ TIMINGS = ("frame_ms", "reference_seconds")
 def merge(plan, folder):
     """Writes results.json, results.csv and timings.csv into the sweep's folder; returns the rows and the cases missing.
 
-    A row is {'label', 'scene', 'model', 'reference', 'parameters', 'metrics', 'noise_floor', 'mask', 'significance',
-    'folder'}; docs/comparing.md defines them.
+    A row is {'label', 'scene', 'model', 'reference', 'part', 'parameters', 'metrics',
+    'noise_floor', 'mask', 'significance',
+    'folder', 'files'}; docs/comparing.md defines them.
     """
     rows, timings, missing, failures = [], [], [], []
     for case in plan.cases:
@@ -30,23 +35,46 @@ def merge(plan, folder):
                 "scene": os.path.basename(case.scene),
                 "model": result["model"],
                 "reference": result["reference"],
+                "part": result.get("part", "whole"),
                 "parameters": parameters,
                 "metrics": result["metrics"],
                 "noise_floor": result["noise_floor"],
                 "mask": result["mask"],
                 "significance": result.get("significance"),
                 "folder": str(folder.place(case)),
+                "files": result.get("files", {}),
             }
             rows.append(row)
             timings.append({"label": case.label, **{name: result.get(name) for name in TIMINGS}})
-    write(folder.out / RESULTS, {"title": plan.title, "axes": plan.axes, "rows": rows, "failures": failures})
+    names = sorted({name for row in rows for name in row["metrics"]})
+    write(folder.out / RESULTS, {
+        "format": SWEEP_FORMAT[0],
+        "format_version": SWEEP_FORMAT[1],
+        "title": plan.title,
+        "axes": plan.axes,
+        "definitions": definitions.all_definitions(names),
+        "rows": rows,
+        "failures": failures,
+    })
     _write_csv(folder.out / "results.csv", [_flat(row) for row in rows])
-    _write_csv(folder.out / "timings.csv", timings)
+    _write_csv(folder.out / TIMINGS_FILE, timings)
     return rows, missing
 
 
+def describe(plan, folder, command):
+    """Writes origin.json, which differs from run to run: when, by which command and on what the sweep was run. The
+    versions and the machine are those of its first finished case."""
+    first = next((folder.results(case) for case in plan.cases if folder.finished(case)), {})
+    write(folder.out / ORIGIN, {
+        "created": datetime.datetime.now(datetime.timezone.utc).isoformat(timespec="seconds"),
+        "command": command,
+        "cases": len(plan.cases),
+        **{name: first.get(name) for name in ("versions", "device", "cpu")},
+    })
+
+
 def _flat(row):
-    flat = {name: row[name] for name in ("label", "scene", "model", "reference")}
+    flat = {name: row[name] for name in ("label", "scene", "model", "reference", "part")}
     for name, value in row["parameters"].items():
         flat[name] = " ".join(repr(channel) for channel in value) if isinstance(value, list) else value
     for group in ("metrics", "noise_floor", "mask", "significance"):

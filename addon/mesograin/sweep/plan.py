@@ -9,7 +9,7 @@ import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..cycles.kinds import KINDS, default_kind
+from ..cycles.kinds import KINDS, PARTS, default_kind, has, missing_part
 
 MODELS = tuple(dict.fromkeys(model for kind in KINDS.values() for model in kind.models))
 REFERENCES = tuple(KINDS)
@@ -100,6 +100,7 @@ SETTINGS = {
     "samples": Whole(1, 1 << 20),
     "reference_samples": Whole(1, 1 << 20),
     "seeds": Whole(1, 1024),
+    "part": Choice(PARTS),
 }
 TOP_LEVEL = ("title", "scenes", "models", "references", "material", "grid", "list", *SETTINGS)
 
@@ -237,9 +238,16 @@ class _Reader:
     def pairs(self):
         """[(model, reference)]: each model with those of the references that answer it, or with its default one."""
         models = self.names("models", MODELS)
+        part = self.value((), "part", self.table["part"], SETTINGS["part"]) if "part" in self.table else None
         if "references" not in self.table:
-            return [(model, default_kind(model)) for model in models]
+            for model in models:
+                if not default_kind(model, part):
+                    raise self.error((), "models", f"no reference has a {part} part of {model}")
+            return [(model, default_kind(model, part)) for model in models]
         references = self.names("references", REFERENCES)
+        for kind in references:
+            if not has(kind, part):
+                raise self.error((), "references", missing_part(kind, part))
         for model in models:
             if not any(model in KINDS[kind].models for kind in references):
                 answering = ", ".join(name for name, kind in KINDS.items() if model in kind.models)
