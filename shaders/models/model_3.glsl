@@ -86,6 +86,17 @@ vec2 seen_from_light(float ring, float azimuth, float cosine, float turn, out fl
 // Single samples that found much where little was expected would stand out as dots for thousands of frames.
 const float MOST_A_SAMPLE_COUNTS = 64.0;
 
+// No light map tells a surface from its neighbours in a texel: what is as near as this to the sphere that fits is the sphere. Else a grain
+// whose mean free path is less than a texel would find its own light too far away.
+float known_height(LightFrame frame, vec3 normal) {
+  return 0.5 * light_map_texel_width(frame) / (body.radius * max(abs(normal.z), 0.1));
+}
+
+// Where the map says `mapped` and the sphere says `sphere`.
+float surface_height(float mapped, float sphere, float known) {
+  return mix(sphere, mapped, smoothstep(known, 2.0 * known, abs(mapped - sphere)));
+}
+
 struct Gathered {
   Spectrum grain;   // exitance per irradiance, by these samples
   Spectrum sphere;  // the same of the sphere that fits
@@ -102,6 +113,7 @@ Gathered gather(LightFrame frame, int light, BodyFit fit, vec3 position, vec3 no
   float narrowest = max(abs(normal.z), 0.05);
   float radius = fit.radius;
   vec3 centre = position - radius * normal;
+  float known = known_height(frame, normal);
   // A sphere turns within tan(angle/2) of its radius, an edge at once: light knows no difference within a few mean free paths.
   float turn = min(radius * tilt / (1.0 + narrowest), sampling.turn) + 1e-6;
 
@@ -125,16 +137,21 @@ Gathered gather(LightFrame frame, int light, BodyFit fit, vec3 position, vec3 no
     float area;
     vec2 spread = seen_from_light(ring, azimuth, narrowest, turn, area);
     float weight = area / max(drawn.y, 1e-30);
+    // Where map, mesh and shading normal disagree, lit points may seem much nearer than they were drawn: they would weigh without bounds.
+    float nearest = 0.5 * drawn.x;
     vec2 place = position.xy + spread.x * across + spread.y * vec2(-across.y, across.x);
 
     vec2 from_axis = place - centre.xy;
     float height_squared = radius * radius - dot(from_axis, from_axis);
+    LightMapTexel entry = light_map_at(frame, light, place * body.radius);
+    float entry_height = entry.position.z / body.radius;
     if (height_squared > 0.0) {
       float rise = sqrt(height_squared);
-      sum.sphere += weight * SPECTRUM(kernel_at(distance(vec3(place, centre.z + rise), position), rise / radius));
+      float sphere_height = centre.z + rise;
+      sum.sphere += weight * SPECTRUM(kernel_at(max(distance(vec3(place, sphere_height), position), nearest), rise / radius));
+      entry_height = surface_height(entry_height, sphere_height, known);
     }
-    LightMapTexel entry = light_map_at(frame, light, place * body.radius);
-    if (entry.lit) sum.grain += weight * SPECTRUM(kernel_at(distance(entry.position / body.radius, position), entry.normal.z));
+    if (entry.lit) sum.grain += weight * SPECTRUM(kernel_at(max(distance(vec3(place, entry_height), position), nearest), entry.normal.z));
   } while (++i < count);
   float share = exp(-depth_here) * within / float(max(count, 1));
   return Gathered(share * sum.grain, share * sum.sphere);
