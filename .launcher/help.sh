@@ -54,6 +54,7 @@ Renders every model and the Cycles reference that means the same, and writes pic
   --most-seeds K            how many seeds --until may lead to (default: 64)
   --mask NAME ...           leaves pixels out of the numbers, one mask after another: silhouette:PIXELS,
                             crop:LEFT,TOP,RIGHT,BOTTOM, mean_deviation[:DEVIATIONS], otsu[:MEDIAN_SIZE]
+  --controls                also tests the verdict: the reference's renderer in our place, with the same and a wrong material
   --part PART               a part of the light alone: specular, what the surface reflects, or subsurface, what was inside
   --set NAME=VALUE          a material parameter for every material, on both sides: reflectance, sigma_a, sigma_s, g, eta,
                             roughness, scale, profile; RGB as one number or three with commas; may be repeated

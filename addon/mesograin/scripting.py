@@ -97,7 +97,8 @@ class Comparison:
 
 def compare(models=arguments.DEFAULT_MODELS, references=None, out="//comparison", size=None, samples=64,
             reference_samples=None, seeds=2, until=None, most_seeds=arguments.MOST_SEEDS, masks=(), part=None,
-            settings=None, frames=9, cache=None, cache_limit=None, report=True, on_progress=None, command=None):
+            controls=False, settings=None, frames=9, cache=None, cache_limit=None, report=True, on_progress=None,
+            command=None):
     """Renders the current scene with every model and with the Cycles materials that mean the same, and measures.
 
     models: of 'lambert', 'conductor', 'model_1', 'model_2', 'model_3'; every material is rendered with each.
@@ -110,6 +111,7 @@ def compare(models=arguments.DEFAULT_MODELS, references=None, out="//comparison"
     this fraction of the measured error. masks: such as 'silhouette:4', 'crop:LEFT,TOP,RIGHT,BOTTOM', 'mean_deviation',
     'otsu', one after another.
     part: 'specular' or 'subsurface' compares that part of the light alone, None the whole.
+    controls: also tests the significance test: the reference's own renderer with the same and with a wrong material.
     settings: {parameter: value} for every material on both sides: reflectance, sigma_a, sigma_s (1/mm; one number or
     three), g, eta, roughness (GGX alpha), scale, profile. frames: how many are timed for `frame_ms`.
     cache: folder of rendered references, None for the usual one. cache_limit: bytes that it may take.
@@ -136,12 +138,13 @@ def compare(models=arguments.DEFAULT_MODELS, references=None, out="//comparison"
             most_seeds=_count("most_seeds", most_seeds),
             masks=tuple(_mask(text) for text in ((masks,) if isinstance(masks, str) else masks)),
             part=part and _names("part", part, kinds.PARTS)[0],
+            controls=bool(controls),
             settings=_settings(settings or {}),
             frames=_count("frames", frames),
             cache=Cache(cache, cache_limit),
             command=command or call(models=models, references=references, out=str(out), size=size, samples=samples,
                                     reference_samples=reference_samples, seeds=seeds, until=until, masks=masks or None,
-                                    part=part, settings=settings))
+                                    part=part, controls=controls or None, settings=settings))
         for kind in request.references or ():
             if not kinds.has(kind, request.part):
                 raise ComparisonError(f"part: {kinds.missing_part(kind, request.part)}.")

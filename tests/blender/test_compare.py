@@ -451,3 +451,15 @@ def test_the_parts_add_up_to_the_whole():
         assert seen["specular"][..., :3].sum() > 0.01 * seen["all"][..., :3].sum()
         summed = seen["specular"][..., :3] + seen["subsurface"][..., :3]
         np.testing.assert_allclose(summed, seen["all"][..., :3], rtol=2e-4, atol=1e-5)
+
+
+def test_the_verdict_is_tested_where_the_truth_is_known(tmp_path):
+    make_sphere(SUNS, roughness=0.4, sigma_s=(0.9,) * 3, sigma_a=(0.1,) * 3)
+    asked = {"references": ("diffuse", "glossy", "volume_index_matched"), "models": ("lambert", "conductor", "model_1")}
+    found = compare(tmp_path, controls=True, size=(32, 32), samples=16, reference_samples=32, **asked)
+    changes = [case["controls"]["wrong"]["change"] for case in found["cases"]]
+    assert changes == [{"reflectance": [0.25] * 3}, {"reflectance": [0.25] * 3}, {"scale": 2.0}]
+    for case in found["cases"]:
+        assert case["controls"]["identical"]["verdict"] == "no significant difference"
+        assert case["controls"]["wrong"]["verdict"] == "differs"
+    assert "deliberately wrong" in found["definitions"]["controls"]

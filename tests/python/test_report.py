@@ -106,6 +106,7 @@ def write_folder(tmp_path):
             "relative_l1": "sum |i - r| / sum r",
             "noise_floor": "what noise scores",
             "significance.verdict": "whether <noise> explains it",
+            "controls": "where the truth is known",
             "mask.pixels": "pixels compared",
         },
         "cases": cases,
@@ -128,6 +129,8 @@ def write_significance(folder, case):
         case["files"][name] = f"{case['name']}/{name}.exr"
         native.write_exr(folder / case["files"][name], pixels)
     case["significance"] = SIGNIFICANCE
+    found = {**SIGNIFICANCE, "verdict": "no significant difference"}
+    case["controls"] = {"identical": SIGNIFICANCE, "wrong": {**found, "change": {"scale": 2.0}}}
     case["our_noise"] = {"relative_l1": 0.0123}
     case["judged_by"] = "relative_l1_blocks"
     case["mask_steps"] = [{"name": "silhouette:2", "pixels": 900, "removed": 100},
@@ -210,6 +213,9 @@ def test_significance_is_shown_where_it_was_tested(built):
     assert 'data-mode="scores"' not in first and "scores-legend" not in first
     assert 'data-mode="scores"' in second and "4.4" in second and 'popovertarget="define-verdict"' in second
     text = " ".join(html.unescape(re.sub(r"<[^>]*>", " ", second)).split())
+    assert "✗ The same material with other seeds is called different in 10.0 % of the pixels and 25.0 %" in text
+    assert "✗ A wrong one, scale 2, is not called different." in text and "✗" not in first
+    assert "where the truth is known" in html.unescape(page) and 'popover id="define-controls"' in page
     assert "Differs significantly in 10.0 % of 900 pixels and 25.0 % of 20 blocks of 8×8" in text
     assert "noise was 0.200 of the error in relative_l1: it is 0.310 of it; 4 seeds were not enough." in text
     assert (built / "plots/model_1.volume.by_angle.svg").is_file() and "by_angle" not in first

@@ -105,6 +105,14 @@ def build():
         ),
     )
     parser.add_argument(
+        "--controls",
+        action="store_true",
+        help=(
+            "also test the significance test on each case: the reference's own renderer in our place, with the same"
+            " material (must not differ) and with a wrong one such as twice the scale (must); three times the time"
+        ),
+    )
+    parser.add_argument(
         "--mask",
         nargs="+",
         type=_mask,

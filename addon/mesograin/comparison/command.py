@@ -43,6 +43,7 @@ def _run(chosen, words):
         most_seeds=chosen.most_seeds,
         masks=tuple(chosen.masks),
         part=chosen.part,
+        controls=chosen.controls,
         settings=chosen.settings,
         frames=chosen.frames,
         cache=cache,

@@ -50,6 +50,10 @@ OTHERS = {
         " error is called different with probability false_alarm_rate or less"
     ),
     "significance.share": "significant pixels / pixels tested",
+    "controls": (
+        "the same test where the truth is known: the reference's own renderer stands in our place, with other seeds,"
+        " once with the same material (not to be called different), once with a deliberately wrong one (to be)"
+    ),
     "until": "seeds were added until noise_floor / metric_corrected was at most fraction, or most_seeds were there",
     "mask.pixels": (
         "pixels compared: coverage 1 in the reference, less those within 2 pixels (or as many as asked for) of one"

@@ -10,7 +10,7 @@ import numpy
 
 from .. import native_module
 from ..cycles import kinds, reference
-from . import masks, profile, significance
+from . import controls, masks, profile, significance
 
 
 @dataclass(frozen=True)
@@ -36,6 +36,9 @@ def steps(case, request, size):
     yield f"{case.model}: reference ({named})", case.kind.recipe, _guess(case.kind, request, size, request.seeds)
     million = size[0] * size[1] * 1e-6
     yield f"{case.model}: our picture", case.model, 0.3 * request.samples * million / (os.cpu_count() or 1)
+    if request.controls:
+        guess = _guess(case.kind, request, size, 2 * request.seeds)
+        yield f"{case.model}: controls of the test ({named})", case.kind.recipe, guess
 
 
 def _guess(kind, request, size, seeds):
@@ -80,6 +83,10 @@ def measure(case, chosen, request, depsgraph, size, overrides, ours, progress):
 
     mask, whole, mask_steps = masks.select(request.masks, image, theirs, mirror)
     verdict, scores = significance.test(images, theirs.images, mask)
+    control = None
+    if request.controls:
+        materials = ours.parameters(chosen)
+        control = controls.test(case, request, depsgraph, size, overrides, materials, theirs, mask, progress)
     if sampling.kind.smooth_interface:
         shape = profile.profile(image, theirs.images, mask, normals, suns[0][0])
     numbers = {
@@ -91,6 +98,7 @@ def measure(case, chosen, request, depsgraph, size, overrides, ours, progress):
         "profile": shape,
         "our_noise": compare(theirs.mean, images, mask)["noise_floor"],
         "significance": verdict,
+        "controls": control,
         "until": until,
         "samples": our_samples,
         "our_seeds": len(images),

@@ -34,7 +34,8 @@ class Request:
     references: names in `kinds.KINDS`, or None for each model's default. seeds: of the reference, independent of each
     other. until: adds seeds until the reference's noise is at most this fraction of the measured error, but no more
     than `most_seeds` in all; None for `seeds` as they are. masks: of `mask_names.parse`, applied in this order.
-    part: of `kinds.PARTS`, or None for the whole. command: the line that repeats it."""
+    part: of `kinds.PARTS`, or None for the whole. controls: whether the test itself is tested.
+    command: the line that repeats it."""
 
     models: tuple
     out: Path
@@ -47,6 +48,7 @@ class Request:
     most_seeds: int = MOST_SEEDS
     masks: tuple = ()
     part: str = None
+    controls: bool = False
     settings: dict = field(default_factory=dict)
     frames: int = 9
     cache: Cache = field(default_factory=Cache)

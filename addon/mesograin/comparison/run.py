@@ -9,7 +9,7 @@ from .. import export, native_module
 from ..cycles import kinds, nodes, reference
 from ..cycles.stage import StageError
 from ..report.reading import RESULTS_FORMAT
-from . import definitions, measure, origin, pictures
+from . import controls, definitions, measure, origin, pictures
 from .ours import Ours
 from .request import Case, Request, cases
 from .results import Output
@@ -46,7 +46,7 @@ def compare(request, progress):
             "seeds": request.seeds,
             "until": request.until,
             "masks": [[name, *numbers] for name, numbers in request.masks],
-            "material_settings": _plain(request.settings),
+            "material_settings": controls.plain(request.settings),
         },
         "definitions": definitions.OTHERS,
         "cases": [],
@@ -115,11 +115,7 @@ class _Comparison:
         return {**found.numbers, **pictures.write(case, found, self.output, common, ours)}
 
     def _materials(self, chosen):
-        return {name: _plain(values) for name, values in self.ours.parameters(chosen).items()}
-
-
-def _plain(parameters):
-    return {name: list(value) if isinstance(value, tuple) else value for name, value in parameters.items()}
+        return {name: controls.plain(values) for name, values in self.ours.parameters(chosen).items()}
 
 
 def _size(scene):

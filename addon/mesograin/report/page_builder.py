@@ -10,7 +10,7 @@ import numpy
 from markupsafe import Markup
 
 from . import colours, payload, plots
-from .wording import compared, form, mask_steps, parameters, significance, until, verdict
+from .wording import compared, controls, form, mask_steps, parameters, significance, until, verdict
 
 PAGE = Path(__file__).resolve().parent / "page"
 PLOTS = "plots"
@@ -172,6 +172,7 @@ def _view(of, definitions, pictures, folder):
     ]
     view["verdict"] = verdict(case)
     view["significance"] = significance(case)
+    view["controls"] = controls(case)
     view["compared"] = compared(case["mask"], of.mask.size)
     unfiltered = look_up(case, "unfiltered.metrics.relative_l1")
     view["unfiltered"] = None if unfiltered is None else form(unfiltered, "percent")

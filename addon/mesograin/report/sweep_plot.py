@@ -3,7 +3,7 @@
 
 import math
 
-from .plots import new_figure
+from .plots import log_axis, new_figure
 
 METRICS = {
     "relative_l1": "relative L1:  Σ|i − r| / Σr",
@@ -47,6 +47,7 @@ def over(results, axis, metric):
         numbers = [point[0] for line in lines.values() for point in line]
         if min(numbers) > 0 and max(numbers) / min(numbers) > 20:
             axes.set_xscale("log")
+            log_axis(axes.xaxis, numbers, 1.2, lambda value, _: f"{value:g}")
         if metric == "bias":
             axes.axhline(1.0, color=palette.quiet, linewidth=0.8, zorder=0)
         else:

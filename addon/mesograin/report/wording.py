@@ -51,6 +51,24 @@ def significance(case):
     return f"Differs significantly in {places}; {seeds}."
 
 
+def controls(case):
+    """What the test says where the truth is known: [(whether it is right, sentence)]; empty if that was not asked."""
+    found = case.get("controls")
+    if not found:
+        return []
+    change = ", ".join(f"{name} {_text(value)}" for name, value in found["wrong"]["change"].items())
+    told = []
+    for name, what, expected in (("identical", "The same material with other seeds", "no significant difference"),
+                                 ("wrong", f"A wrong one, {change},", "differs")):
+        test = found[name]
+        where = f"{form(test['share'], 'percent')} of the pixels"
+        if test["share_blocks"] is not None:
+            where += f" and {form(test['share_blocks'], 'percent')} of the blocks"
+        verdict = f"is called different in {where}" if test["verdict"] == "differs" else "is not called different"
+        told.append((test["verdict"] == expected, f"{what} {verdict}."))
+    return told
+
+
 def compared(mask, pixels):
     """How many pixels were compared, and what took the others away. mask: of results.json, pixels: of the picture."""
     away = [f"{pixels - mask['pixels']} by the mask ({mask['source']})"]
