@@ -110,6 +110,7 @@ def cost(cases):
         axes.set_xscale("log")
         axes.set_yscale("log")
         shown = [case for case in cases if case["metrics"]["relative_l1"]]
+        labelled = []
         for number, case in enumerate(sorted(shown, key=lambda case: case["frame_ms"])):
             at, error, floor = case["frame_ms"], case["metrics"]["relative_l1"], case["noise_floor"]["relative_l1"]
             if floor:
@@ -119,7 +120,10 @@ def cost(cases):
             # Above and below by turns: models of one kind are often as far off as each other.
             label = case["name"] if len({other["reference"] for other in shown}) > 1 else case["model"]
             side = 1 if number % 2 == 0 else -1
-            axes.annotate(label, (at, error), (0, 8 * side), textcoords="offset points", ha="center",
+            near = [other for other in labelled if other[0] == side and at < 2.5 * other[1] and
+                    abs(numpy.log10(error / other[2])) < 0.4]
+            labelled.append((side, at, error))
+            axes.annotate(label, (at, error), (0, (8 + 11 * len(near)) * side), textcoords="offset points", ha="center",
                           va="bottom" if side > 0 else "top", fontsize=8.5)
         axes.set_xlabel("time of a frame, ms")
         axes.set_ylabel("relative L1")
