@@ -174,6 +174,11 @@ void add_body_uniforms(const scene::Material& material, double grain_radius, Mat
   // The sphere was solved for a smooth surface; all that a rough one changes about what it takes in is how much.
   const double taken_in = has_rough_surface(material) ? rough_passage(material).entering_ratio : 1.0;
   inputs.uniforms["body.radius"] = static_cast<float>(grain_radius);
+  // A reduced mean free path of the densest channel, but no more than the grain's own detail.
+  double densest = 0.0;
+  for (int channel = 0; channel < 3; ++channel)
+    densest = std::max(densest, body_medium(material, channel, grain_radius).reduced_sigma_t());
+  inputs.uniforms["body.clear"] = static_cast<float>(grain_radius * std::min(1.0 / densest, 0.125));
   inputs.uniforms["body.eta"] = static_cast<float>(surface.eta);
   const ExitLobe lobe = exit_lobe(surface);
   inputs.uniforms["body.exit_slope"] = static_cast<float>(lobe.slope);

@@ -6,6 +6,7 @@
 #include "models/dielectric.glsl"
 #include "models/interface.glsl"
 #include "models/light_map.glsl"
+#include "models/pixel_random.glsl"
 #include "physics/prelude.glsl"
 #include "physics/fresnel.glsl"
 #include "physics/half_space.glsl"
@@ -17,6 +18,7 @@
 
 struct Body {
   float radius;  // of the sphere with the grain's mean chord
+  float clear;   // what light passes through nearly unhindered, in scene units
   float eta;
   float exit_slope;
   float exit_factor;  // diffused light leaves as factor (1 + slope mu') times the transmittance, mu' inside
@@ -41,17 +43,21 @@ BodyFit fit_body(SurfacePoint point, Outwards outwards, LightSample light, Light
   BodyFit fit;
   vec3 position = to_light_space(frame, point.position);
   float cosine = dot(point.normal, light.to_light);
-  LightMapTexel entry = light_map_at(frame, light.index, position.xy);
+  // Light inside knows no edge sharper than a mean free path: the look is at a place nearby on the tangent plane, another with every sample.
+  vec2 along = body.clear * (2.0 * low_discrepancy(uint(sample_index), pcg4d(uvec4(uvec2(gl_FragCoord.xy), 1u, uint(light.index))).xy) - 1.0);
+  vec3 place = position + vec3(abs(cosine) * along, -sign(cosine) * dot(to_light_space(frame, point.normal).xy, along));
+  LightMapTexel entry = light_map_at(frame, light.index, place.xy);
 
-  fit.above = entry.lit ? max(entry.position.z - position.z, 0.0) : 0.0;
+  fit.above = entry.lit ? max(entry.position.z - place.z, 0.0) : 0.0;
   float own = light_map_tolerance(frame, entry.normal);
-  fit.visible = light_map_visibility(frame, entry, position, cosine);
-  float way_in = mix(fit.above, max(position.z - entry.exit_depth, 0.0), entry.lit ? fit.visible : 0.0);
+  fit.visible = light_map_visibility(frame, entry, place, cosine, body.clear);
+  float way_in = mix(fit.above, max(entry.position.z - entry.exit_depth, 0.0), entry.lit ? fit.visible : 0.0);
 
   // A sphere of radius r has chords 2 r |cosine|. Where both vanish, and where the map is too coarse to tell, the grain's own radius stands
   // in.
   float uncertainty = 0.05 + (entry.lit ? min(own / body.radius, 1.0) : 1.0);
-  fit.radius = clamp((0.5 * way_in / body.radius + uncertainty) / (abs(cosine) + uncertainty), 0.125, 2.0);
+  float steepness = entry.lit ? entry.normal.z : abs(cosine);
+  fit.radius = clamp((0.5 * way_in / body.radius + uncertainty) / (steepness + uncertainty), 0.125, 2.0);
   fit.cosine = mix(-abs(cosine), cosine, fit.visible);
 
   fit.mu_o = outwards.mu;

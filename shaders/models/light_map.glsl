@@ -67,9 +67,10 @@ LightMapTexel light_map_at(LightFrame frame, int light, vec2 xy) {
 }
 
 // How much of the light reaches the surface at `position` (light space), whose normal makes this cosine with it, 0 to 1: another part of the
-// grain may stand in it. `first` is the map there; it holds one tangent plane a texel, so a point is its own occluder by as much.
-float light_map_visibility(LightFrame frame, LightMapTexel first, vec3 position, float cosine) {
+// grain may stand in it, but what is thinner than `clear` hides little. `first` is the map there; it holds one tangent plane a texel, so a
+// point is its own occluder by as much.
+float light_map_visibility(LightFrame frame, LightMapTexel first, vec3 position, float cosine, float clear) {
   float above = first.lit ? max(first.position.z - position.z, 0.0) : 0.0;
   float own = light_map_tolerance(frame, first.normal);
-  return cosine > 0.0 ? 1.0 - smoothstep(own, 2.0 * own, above) : 0.0;
+  return cosine > 0.0 ? 1.0 - smoothstep(own, 2.0 * own + clear, above) : 0.0;
 }

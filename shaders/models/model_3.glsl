@@ -51,12 +51,6 @@ uniform sampler2D kernel_inverse;
 uniform int taps;  // for one pixel and sample, over all lights
 uniform float grain_reach;  // no point of the grain is farther than this from the origin, in scene units
 
-// Two coordinates of point `index` of the R2 sequence (Roberts 2018) from `offset`, exact for any index.
-vec2 low_discrepancy(uint index, uvec2 offset) {
-  uvec2 bits = uvec2(3242174889u, 2447445414u) * index + offset;
-  return vec2(bits >> 8u) * (1.0 / 16777216.0);
-}
-
 #ifdef SINGLE_MARCHED
 vec4 at_nodes(sampler2D table, vec2 coordinate) {
   vec2 size = vec2(textureSize(table, 0));
