@@ -16,23 +16,35 @@ GLuint Framebuffer::Traits::create() {
 
 void Framebuffer::Traits::destroy(GLuint name) { glDeleteFramebuffers(1, &name); }
 
+namespace {
+
+bool has_stencil(const Texture* depth) {
+  GLint bits = 0;
+  if (depth != nullptr) glGetTextureLevelParameteriv(depth->name(), 0, GL_TEXTURE_STENCIL_SIZE, &bits);
+  return bits > 0;
+}
+
+}  // namespace
+
 Framebuffer::Framebuffer(std::initializer_list<const Texture*> colours, const Texture* depth)
     : width_(depth != nullptr ? depth->width() : (*colours.begin())->width()),
       height_(depth != nullptr ? depth->height() : (*colours.begin())->height()),
       colours_(static_cast<int>(colours.size())),
-      has_depth_(depth != nullptr) {
+      has_depth_(depth != nullptr),
+      has_stencil_(has_stencil(depth)) {
   std::vector<GLenum> attachments;
   for (const Texture* colour : colours) {
     attachments.push_back(GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(attachments.size()));
     glNamedFramebufferTexture(handle_.name(), attachments.back(), colour->name(), 0);
   }
-  if (depth != nullptr) glNamedFramebufferTexture(handle_.name(), GL_DEPTH_ATTACHMENT, depth->name(), 0);
+  const GLenum place = has_stencil_ ? GL_DEPTH_STENCIL_ATTACHMENT : GL_DEPTH_ATTACHMENT;
+  if (depth != nullptr) glNamedFramebufferTexture(handle_.name(), place, depth->name(), 0);
   glNamedFramebufferDrawBuffers(handle_.name(), static_cast<GLsizei>(attachments.size()), attachments.data());
   require_complete();
 }
 
 Framebuffer::Framebuffer(const TextureArray& colours, int layer, const Texture& depth)
-    : width_(colours.width()), height_(colours.height()), colours_(1), has_depth_(true) {
+    : width_(colours.width()), height_(colours.height()), colours_(1), has_depth_(true), has_stencil_(false) {
   glNamedFramebufferTextureLayer(handle_.name(), GL_COLOR_ATTACHMENT0, colours.name(), 0, layer);
   glNamedFramebufferTexture(handle_.name(), GL_DEPTH_ATTACHMENT, depth.name(), 0);
   glNamedFramebufferDrawBuffer(handle_.name(), GL_COLOR_ATTACHMENT0);
@@ -56,7 +68,10 @@ void Framebuffer::clear(const float (&colour)[4]) const {
 
 void Framebuffer::clear_depth() const {
   constexpr float far_plane = 1.0F;
-  if (has_depth_) glClearNamedFramebufferfv(handle_.name(), GL_DEPTH, 0, &far_plane);
+  if (has_stencil_)
+    glClearNamedFramebufferfi(handle_.name(), GL_DEPTH_STENCIL, 0, far_plane, 0);
+  else if (has_depth_)
+    glClearNamedFramebufferfv(handle_.name(), GL_DEPTH, 0, &far_plane);
 }
 
 void Framebuffer::read(float* pixels) const {

@@ -1,4 +1,5 @@
-// Where a pass draws: colour textures and, if there is one, a depth texture, all of one size.
+// Where a pass draws: colour textures and, if there is one, a depth texture, with a stencil or without, all of one
+// size.
 #pragma once
 
 #include <initializer_list>
@@ -20,7 +21,7 @@ class Framebuffer {
   /// Makes it the target of drawing and sets the viewport to its size.
   void bind() const;
 
-  /// Clears every colour, to zero unless said otherwise, and the depth to the far plane.
+  /// Clears every colour, to zero unless said otherwise, the depth to the far plane and the stencil to 0.
   void clear(const float (&colour)[4] = {0.0F, 0.0F, 0.0F, 0.0F}) const;
   void clear_depth() const;
 
@@ -40,6 +41,7 @@ class Framebuffer {
   int height_;
   int colours_;
   bool has_depth_;
+  bool has_stencil_;
 };
 
 }  // namespace mesograin::gl

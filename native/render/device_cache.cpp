@@ -60,6 +60,11 @@ void DeviceCache::prune() {
   std::erase_if(materials_, [](const MaterialEntry& entry) { return entry.device.use_count() == 1; });
 }
 
+const gl::Program& DeviceCache::surface_program() {
+  return program("surface", gl::ShaderSource({"passes/surface.vert"}, {}),
+                 gl::ShaderSource({"passes/surface.frag"}, {}));
+}
+
 const gl::Program& DeviceCache::light_map_program() {
   return program("light_map", gl::ShaderSource({"passes/light_map.vert"}, {}),
                  gl::ShaderSource({"passes/light_map.frag"}, {}));
@@ -72,8 +77,9 @@ const gl::Program& DeviceCache::count_program() {
 const gl::Program& DeviceCache::shading(const DeviceMaterial& material, Shading shading) {
   const std::string model(scene::model_names[static_cast<std::size_t>(material.model())]);
   const std::string pass = shading == Shading::unwrapped ? "bake" : "shade";
+  const std::string vertex = shading == Shading::unwrapped ? "passes/bake.vert" : "passes/full_screen.vert";
   return program(fmt::format("{} {} {}", pass, model, fmt::join(material.defines(), " ")),
-                 gl::ShaderSource({"passes/" + pass + ".vert"}, {}),
+                 gl::ShaderSource({vertex}, {}),
                  gl::ShaderSource({"passes/" + pass + ".frag", "models/" + model + ".glsl"}, material.defines()));
 }
 

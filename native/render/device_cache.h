@@ -59,6 +59,9 @@ class DeviceCache {
   /// The program that shades with a material; compiled on first use.
   const gl::Program& shading(const DeviceMaterial& material, Shading shading);
 
+  /// The program that finds what the camera sees of a mesh, for `shading` to shade.
+  const gl::Program& surface_program();
+
   /// The program that draws a light map; compiled when the first material needs one.
   const gl::Program& light_map_program();
 

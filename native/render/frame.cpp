@@ -17,6 +17,10 @@
 namespace mesograin::render {
 namespace {
 
+// How many draws the stencil's bits tell apart, beside no draw.
+constexpr GLuint stencil_bits = 0xFF;
+constexpr std::size_t most_in_stencil = stencil_bits;
+
 struct DeviceLight {
   glm::vec4 to_light;
   glm::vec4 irradiance;
@@ -38,9 +42,12 @@ glm::dvec3 sample_cone(const glm::dvec3& axis, double angle, const glm::dvec2& p
 }  // namespace
 
 Frame::Targets::Targets(int width, int height)
-    : sample(GL_RGBA32F, width, height),
-      depth(GL_DEPTH_COMPONENT32F, width, height),
+    : position(GL_RGBA32F, width, height),
+      normal(GL_RGBA32F, width, height),
+      depth(GL_DEPTH32F_STENCIL8, width, height),
+      sample(GL_RGBA32F, width, height),
       sum(GL_RGBA32F, width, height),
+      surfaces({&position, &normal}, &depth),
       shade({&sample}, &depth),
       accumulate({&sum}) {}
 
@@ -97,6 +104,10 @@ Frame::Draw Frame::make_draw(const scene::Instance& instance, std::size_t index)
   draw.mean_free_paths_across = 2.0 * draw.radius * std::max({reduced.r, reduced.g, reduced.b});
   if (draw.material->light_maps()) draw.light_maps = take_light_maps(instance.mesh, draw.object_to_grain());
   return draw;
+}
+
+glm::dmat4 Frame::object_to_clip(const Draw& draw) const {
+  return camera_.camera_to_clip * (camera_.world_to_camera * draw.object_to_world);
 }
 
 std::unique_ptr<LightMaps> Frame::take_light_maps(const scene::MeshPointer& mesh, const glm::dmat4& object_to_grain) {
@@ -227,8 +238,6 @@ void Frame::update_light_maps(const std::vector<glm::dvec3>& to_light) {
 void Frame::shade(const std::vector<glm::dvec3>& to_light) {
   targets_->shade.bind();
   targets_->shade.clear();
-  glEnable(GL_DEPTH_TEST);
-  glDepthFunc(GL_LESS);
   glDisable(GL_BLEND);
 
   // Uniform over the pixel: the box filter, one pixel wide.
@@ -240,36 +249,114 @@ void Frame::shade(const std::vector<glm::dvec3>& to_light) {
   const gl::Buffer lights(device_lights);
   lights.bind_storage(0);
 
-  const glm::dmat4 camera_to_world = glm::inverse(camera_.world_to_camera);
-  // A perspective projection takes its w from depth; an orthographic one is affine and sees along one direction.
-  const bool orthographic = camera_.camera_to_clip[2][3] == 0.0;
+  if (bake_) {
+    shade_unwrapped(jitter);
+    return;
+  }
+  for (std::size_t first = 0; first < draws_.size(); first += most_in_stencil) {
+    draw_surfaces(first, jitter);
+    shade_surfaces(first);
+  }
+}
 
-  const DeviceMaterial* bound = nullptr;
-  for (const Draw& draw : draws_) {
-    if (draw.program == nullptr) continue;
-    const gl::Program& program = *draw.program;
-    if (draw.material.get() != bound) {
-      bound = draw.material.get();
-      bound->bind(program);
-      program.set("jitter", jitter);
-      program.set("light_count", static_cast<int>(lights_.size()));
-      program.set("sample_index", samples_);
-      program.set("taps", taps_);
-      program.set("from_camera", static_cast<int>(bake_ == ViewFrom::active_camera));
-    }
-    if (draw.light_maps) draw.light_maps->bind(program);
+void Frame::draw_surfaces(std::size_t first, const glm::vec2& jitter) {
+  targets_->surfaces.bind();
+  targets_->surfaces.clear_depth();
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_LESS);
+  glEnable(GL_STENCIL_TEST);
+  glStencilOp(GL_KEEP, GL_KEEP, GL_REPLACE);
+  const gl::Program& program = cache_.surface_program();
+  program.use();
+  program.set("jitter", jitter);
+  for (std::size_t i = 0; i < draws_.size(); ++i) {
+    const Draw& draw = draws_[i];
+    const bool told = i >= first && i - first < most_in_stencil;
+    glStencilFunc(GL_ALWAYS, told ? static_cast<GLint>(i - first + 1) : 0, stencil_bits);
     const glm::dmat4 object_to_grain = draw.object_to_grain();
     const glm::dmat3 linear(object_to_grain);
-    program.set("grain_reach", static_cast<float>(draw.reach));
-    program.set("object_to_clip", glm::mat4(camera_.camera_to_clip * (camera_.world_to_camera * draw.object_to_world)));
+    program.set("object_to_clip", glm::mat4(object_to_clip(draw)));
     program.set("object_to_grain", glm::mat4(object_to_grain));
     program.set("normal_to_grain", glm::mat3(glm::transpose(glm::inverse(linear))));
-    program.set("viewer", orthographic ? glm::vec4(glm::normalize(glm::dvec3(camera_to_world[2])), 0.0)
-                                       : glm::vec4(glm::dvec3(camera_to_world[3]) - draw.centre, 1.0));
     const glm::dmat3 to_camera = glm::dmat3(camera_.world_to_camera) * linear;
     glFrontFace(glm::determinant(to_camera) < 0.0 ? GL_CW : GL_CCW);
     draw.mesh->draw();
   }
+  glDisable(GL_STENCIL_TEST);
+  glDisable(GL_DEPTH_TEST);
+}
+
+void Frame::shade_surfaces(std::size_t first) {
+  targets_->shade.bind();
+  glEnable(GL_STENCIL_TEST);
+  glStencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
+  glEnable(GL_SCISSOR_TEST);
+  glFrontFace(GL_CCW);
+  for (std::size_t i = first; i < std::min(first + most_in_stencil, draws_.size()); ++i) {
+    const Draw& draw = draws_[i];
+    set_shading(draw);
+    draw.program->set("surface_position", targets_->position);
+    draw.program->set("surface_normal", targets_->normal);
+    glStencilFunc(GL_EQUAL, static_cast<GLint>(i - first + 1), stencil_bits);
+    confine_to(draw);
+    full_screen_.draw();
+  }
+  glDisable(GL_SCISSOR_TEST);
+  glDisable(GL_STENCIL_TEST);
+}
+
+void Frame::shade_unwrapped(const glm::vec2& jitter) {
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_LESS);
+  for (const Draw& draw : draws_) {
+    if (draw.program == nullptr) continue;
+    set_shading(draw);
+    const glm::dmat4 object_to_grain = draw.object_to_grain();
+    draw.program->set("jitter", jitter);
+    draw.program->set("from_camera", static_cast<int>(bake_ == ViewFrom::active_camera));
+    draw.program->set("object_to_grain", glm::mat4(object_to_grain));
+    draw.program->set("normal_to_grain", glm::mat3(glm::transpose(glm::inverse(glm::dmat3(object_to_grain)))));
+    draw.mesh->draw();
+  }
+  glDisable(GL_DEPTH_TEST);
+}
+
+void Frame::set_shading(const Draw& draw) const {
+  const gl::Program& program = *draw.program;
+  draw.material->bind(program);
+  if (draw.light_maps) draw.light_maps->bind(program);
+  program.set("light_count", static_cast<int>(lights_.size()));
+  program.set("sample_index", samples_);
+  program.set("taps", taps_);
+  program.set("grain_reach", static_cast<float>(draw.reach));
+  const glm::dmat4 camera_to_world = glm::inverse(camera_.world_to_camera);
+  // A perspective projection takes its w from depth; an orthographic one is affine and sees along one direction.
+  const bool orthographic = camera_.camera_to_clip[2][3] == 0.0;
+  program.set("viewer", orthographic ? glm::vec4(glm::normalize(glm::dvec3(camera_to_world[2])), 0.0)
+                                     : glm::vec4(glm::dvec3(camera_to_world[3]) - draw.centre, 1.0));
+}
+
+void Frame::confine_to(const Draw& draw) const {
+  const glm::dmat4 to_clip = object_to_clip(draw);
+  const glm::dvec2 size(width_, height_);
+  glm::dvec2 lower = size;
+  glm::dvec2 upper(0.0);
+  for (unsigned corner = 0; corner < 8; ++corner) {
+    const glm::bvec3 high((corner & 1U) != 0, (corner & 2U) != 0, (corner & 4U) != 0);
+    const glm::dvec4 clip =
+        to_clip * glm::dvec4(glm::mix(glm::dvec3(draw.source->lower()), glm::dvec3(draw.source->upper()), high), 1.0);
+    if (!(clip.w > 0.0)) {
+      glScissor(0, 0, width_, height_);
+      return;
+    }
+    const glm::dvec2 pixel = (0.5 * glm::dvec2(clip) / clip.w + 0.5) * size;
+    lower = glm::min(lower, pixel);
+    upper = glm::max(upper, pixel);
+  }
+  // The jitter moves the picture by up to half a pixel.
+  const glm::ivec2 first(glm::clamp(glm::floor(lower - 1.0), glm::dvec2(0.0), size));
+  const glm::ivec2 end(glm::clamp(glm::ceil(upper + 1.0), glm::dvec2(0.0), size));
+  glScissor(first.x, first.y, std::max(end.x - first.x, 0), std::max(end.y - first.y, 0));
 }
 
 void Frame::accumulate() {

@@ -64,9 +64,12 @@ class Frame {
  private:
   struct Targets {
     Targets(int width, int height);
-    gl::Texture sample;
+    gl::Texture position;
+    gl::Texture normal;
     gl::Texture depth;
+    gl::Texture sample;
     gl::Texture sum;
+    gl::Framebuffer surfaces;
     gl::Framebuffer shade;
     gl::Framebuffer accumulate;
   };
@@ -91,9 +94,25 @@ class Frame {
   std::unique_ptr<LightMaps> take_light_maps(const scene::MeshPointer& mesh, const glm::dmat4& object_to_grain);
   void update_light_maps(const std::vector<glm::dvec3>& to_light);
   void shade(const std::vector<glm::dvec3>& to_light);
+
+  /// Finds what the camera sees. The stencil tells which draw: 1 for `first`, and so on up to the last it can hold.
+  void draw_surfaces(std::size_t first, const glm::vec2& jitter);
+
+  /// Shades those of the draws that the stencil tells apart.
+  void shade_surfaces(std::size_t first);
+
+  /// Shades the instances that are baked, where their UVs lie.
+  void shade_unwrapped(const glm::vec2& jitter);
+
+  /// Makes everything ready but for the geometry.
+  void set_shading(const Draw& draw) const;
+
+  /// Draws on no pixel that the instance's bounds do not cover; everywhere if they reach behind the camera.
+  void confine_to(const Draw& draw) const;
   void accumulate();
   std::vector<glm::dvec3> sample_light_directions() const;
   double pixels_across(const Draw& draw) const;
+  glm::dmat4 object_to_clip(const Draw& draw) const;
 
   DeviceCache& cache_;
   int width_;

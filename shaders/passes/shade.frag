@@ -1,25 +1,25 @@
-// A pixel of the grain as the camera sees it.
+// A pixel of the grain as the camera sees it: light on what surface.frag found there.
 
-#include "passes/curved_surface.glsl"
 #include "passes/lit_point.glsl"
 
-in vec3 grain_position;
-in vec3 grain_normal;
-in float grain_plane_offset;
+uniform sampler2D surface_position;  // xyz: on the triangle; w: how far the curved surface rises above it, along the normal
+uniform sampler2D surface_normal;    // xyz: of unit length; w: 1 on front faces, -1 on back faces
 
 out vec4 radiance;
 
 void main() {
+  vec4 on_triangle = texelFetch(surface_position, ivec2(gl_FragCoord.xy), 0);
+  vec4 facing = texelFetch(surface_normal, ivec2(gl_FragCoord.xy), 0);
   SurfacePoint point;
-  point.position = on_curved_surface(grain_position, grain_normal, grain_plane_offset);
-  point.to_viewer = direction_to_viewer(grain_position);
-  point.normal = normalize(grain_normal);
+  point.position = on_triangle.xyz + on_triangle.w * facing.xyz;
+  point.to_viewer = direction_to_viewer(on_triangle.xyz);
+  point.normal = facing.xyz;
 
   // The side that is seen is the side that is lit, so that open meshes have two. On a closed grain's silhouette a back
   // face can win the depth test against the front face beside it; its normal is at grazing and must not be turned.
   const float grazing = -0.1;
   float cosine = dot(point.normal, point.to_viewer);
-  if (!gl_FrontFacing && cosine < grazing) {
+  if (facing.w < 0.0 && cosine < grazing) {
     point.normal = -point.normal;
     cosine = -cosine;
   }

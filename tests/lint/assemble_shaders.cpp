@@ -82,7 +82,7 @@ void write_shading(Writer& writer) {
     }
     const std::string name = fmt::format("{}+{}", model, fmt::join(defines, "+"));
     if (!written.insert(name).second) continue;
-    writer.write(name, ShaderSource({"passes/shade.vert"}, {}),
+    writer.write(name, ShaderSource({"passes/full_screen.vert"}, {}),
                  ShaderSource({"passes/shade.frag", "models/" + model + ".glsl"}, defines));
     // The two passes ask the same of a model, so one of its choices stands for all of them.
     if (written.insert(model).second)
@@ -95,6 +95,7 @@ void write_passes(Writer& writer) {
   for (const std::string pass : {"accumulate", "resolve"})
     writer.write(pass, ShaderSource({"passes/full_screen.vert"}, {}), ShaderSource({"passes/" + pass + ".frag"}, {}));
   writer.write("count", ShaderSource({"passes/bake.vert"}, {}), ShaderSource({"passes/count.frag"}, {}));
+  writer.write("surface", ShaderSource({"passes/surface.vert"}, {}), ShaderSource({"passes/surface.frag"}, {}));
   writer.write("light_map", ShaderSource({"passes/light_map.vert"}, {}), ShaderSource({"passes/light_map.frag"}, {}));
 }
 

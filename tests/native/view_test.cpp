@@ -86,6 +86,31 @@ TEST_F(ViewTest, CoverageOfAnEdgePixelIsItsCoveredArea) {
   EXPECT_NEAR(pixel(pixels, 4, 0, 0)[3], 0.0625F, 0.005F);
 }
 
+TEST_F(ViewTest, MoreGrainsThanAStencilHoldsKeepTheirOwnMaterials) {
+  constexpr int side = 20;
+  scene::Scene scene{{}, {{{0, 0, 1}, {pi, pi, pi}}}};
+  for (int i = 0; i < side * side; ++i) {
+    const glm::dvec3 place(i % side - 0.5 * (side - 1), 0.5 * (side - 1) - i / side, 0.0);
+    lambert_.reflectance = glm::dvec3((i + 1.0) / (side * side));
+    scene.instances.push_back({square(0.5), lambert_, glm::translate(glm::dmat4(1.0), place)});
+  }
+  View view(side, side);
+  view.set_scene(scene);
+  view.set_camera({glm::translate(glm::dmat4(1.0), glm::dvec3(0, 0, -4)),
+                   glm::ortho(-0.5 * side, 0.5 * side, -0.5 * side, 0.5 * side, 0.1, 10.0)});
+  const std::vector<float> pixels = picture(view);
+  for (int i = 0; i < side * side; ++i)
+    EXPECT_FLOAT_EQ(pixel(pixels, side, i % side, i / side)[0], (i + 1.0F) / (side * side)) << i;
+}
+
+TEST_F(ViewTest, ACameraInsideAGrainSeesItEverywhere) {
+  View view(16, 16);
+  view.set_scene({{{std::make_shared<scene::Mesh>(scene::unit_sphere(64, 32)), lambert_}}, one_square_.lights});
+  view.set_camera(scene::Camera::look_at({0, 0, 0.5}, {0, 0, 0}, {0, 1, 0}, 45.0));
+  const std::vector<float> pixels = picture(view);
+  for (std::size_t i = 3; i < pixels.size(); i += 4) EXPECT_EQ(pixels[i], 1.0F);
+}
+
 TEST_F(ViewTest, AGrainAKilometreAwayIsAsExactAsOneAtTheOrigin) {
   const glm::dvec3 far_away(1e6, -2e6, 3e6);  // a kilometre in millimetres
   scene::Scene far_scene = one_square_;

@@ -1,0 +1,18 @@
+// What the camera sees of a grain, before any light: each pixel is then shaded once. A triangle's edge would cost whole blocks of pixels,
+// and what another triangle hides later would be shaded for nothing.
+
+#include "passes/curved_surface.glsl"
+
+in vec3 grain_position;
+in vec3 grain_normal;
+in float grain_plane_offset;
+
+layout(location = 0) out vec4 surface_position;
+layout(location = 1) out vec4 surface_normal;
+
+void main() {
+  vec3 normal = normalize(grain_normal);
+  float rise = dot(on_curved_surface(grain_position, grain_normal, grain_plane_offset) - grain_position, normal);
+  surface_position = vec4(grain_position, rise);
+  surface_normal = vec4(normal, gl_FrontFacing ? 1.0 : -1.0);
+}
