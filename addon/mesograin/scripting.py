@@ -137,7 +137,7 @@ def compare(models=arguments.DEFAULT_MODELS, references=None, out="//comparison"
             until=_fraction("until", until),
             most_seeds=_count("most_seeds", most_seeds),
             masks=tuple(_mask(text) for text in ((masks,) if isinstance(masks, str) else masks)),
-            part=part and _names("part", part, kinds.PARTS)[0],
+            part=_part(part),
             controls=bool(controls),
             settings=_settings(settings or {}),
             frames=_count("frames", frames),
@@ -165,6 +165,12 @@ def compare(models=arguments.DEFAULT_MODELS, references=None, out="//comparison"
     warnings = [sentence for sentence in warnings if not any(case.error and case.error in sentence for case in cases)]
     page = _write_report(request.out, warnings) if report else None
     return Comparison(cases, request.out, page, found, tuple(warnings))
+
+
+def _part(part):
+    if part is not None and part not in kinds.PARTS:
+        raise ComparisonError(f"part takes {' or '.join(kinds.PARTS)}, or None for the whole; {part!r} came.")
+    return part
 
 
 def _mask(text):

@@ -86,6 +86,8 @@ def test_keys_tell_cases_apart_and_follow_the_scenes_content(write, tmp_path):
         ("[material]\neta = 1.3", "[other]\neta = 1.3", 8, "'other' is not known here"),
         ('models = ["model_1", "model_3"]', "models = []", 3, "models must be a list with some of lambert"),
         ('scenes = ["a.blend"]', 'scenes = "a.blend"', 2, "scenes must be a list with one or more .blend files"),
+        ("samples = 16", 'samples = 16\npart = "gloss"', 7, "part must be one of specular, subsurface; got 'gloss'"),
+        ("samples = 16", 'samples = 16\npart = "specular"', 4, "volume_index_matched has no specular part: all"),
         ("samples = 16", "samples = 16\nmaterial.g = 2", 7, "g must be a number from -1 to 1; got 2"),
         ("samples = 16", "samples = 16\nmaterial = { g = 2 }", 7, "g must be a number from -1 to 1; got 2"),
     ],
@@ -122,6 +124,15 @@ def test_models_meet_the_references_that_answer_them(write):
     pairs = list(dict.fromkeys((case.model, case.reference) for case in cases))
     assert pairs == [("lambert", "diffuse"), ("model_1", "subsurface"), ("model_1", "volume_index_matched")]
     assert len({case.label for case in cases}) == len(cases)
+
+
+def test_a_part_is_compared_with_the_references_that_have_it(write):
+    text = GOOD.replace('references = ["volume_index_matched"]\n', 'part = "specular"\n')
+    found = plan.read(write(text.replace('"model_1", "model_3"', '"conductor", "model_3"')))
+    assert [case.reference for case in found.cases[::4]] == ["glossy", "volume_dielectric"]
+    assert all(("part", "specular") in case.settings for case in found.cases)
+    with pytest.raises(plan.PlanError, match="line 3 .*no reference has a specular part of lambert"):
+        plan.read(write(text.replace('"model_1"', '"lambert"')))
 
 
 def test_broken_toml_names_the_line(write):

@@ -34,6 +34,10 @@ def compare(request, progress):
         progress.say(warning)
 
     planned = cases(request.models, request.references, request.part)
+    if request.references is None:
+        for model in dict.fromkeys(request.models):
+            if not any(case.model == model for case in planned):
+                progress.say(f"{model} is left out: no reference has a {request.part} part of it.")
     progress.plan(step for case in planned for step in measure.steps(case, request, size))
     results = {
         "format": RESULTS_FORMAT[0],
