@@ -79,7 +79,7 @@ def test_a_smooth_interface_is_judged_in_blocks_under_a_wide_sun(tmp_path):
     assert "20 degrees" in found["reference"]["notes"][0]
     by_name = {point["name"]: point for point in found["points"]}
     ours = by_name["model_2.samples8"]
-    assert ours["metrics"]["bias"] == pytest.approx(1.0, abs=0.12)
+    assert ours["metrics"]["bias"] == pytest.approx(1.0, abs=0.25), "few samples: a wrong boundary is 30 % off"
     assert ours["error"] < by_name["cycles.samples1"]["error"] and ours["metrics"]["relative_l1"] > 1.3 * ours["error"]
     silhouette = trade(tmp_path / "whole", traced_samples=(1,), models=())["reference"]["mask"]["pixels"]
     assert found["reference"]["mask"]["pixels"] < silhouette, "the sun's mirror image is left out"
