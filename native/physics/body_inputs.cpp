@@ -7,6 +7,7 @@
 
 #include "physics/channels.h"
 #include "physics/dielectric_surface.h"
+#include "physics/entering_ring.h"
 #include "physics/physics.h"
 #include "physics/quadrature.h"
 #include "physics/sphere_exitance.h"
@@ -46,7 +47,7 @@ struct Answer {
 };
 
 Answer answer(const BodyMedium& medium, const BodySurface& surface, const SphereSingleScattering& single,
-              const Orders& orders) {
+              const SphereUnscattered& unscattered, const Orders& orders) {
   const std::vector<double> cosines = body_cosines();
   const double albedo = medium.sigma_t() > 0.0 ? medium.sigma_s / medium.sigma_t() : 0.0;
   std::vector<double> half_space(cosine_count, 0.0);
@@ -63,30 +64,17 @@ Answer answer(const BodyMedium& medium, const BodySurface& surface, const Sphere
     std::vector<double> body(cosine_count, 0.0);
     if (orders.multiple) add(body, sphere_multiple_exitance(scaled, surface, cosines), 1.0);
     if (orders.single && albedo > 0.0) add(body, single.exitance(scaled.sigma_t()), albedo);
+    // Where it leaves by a cosine lobe, it is seen like diffused light, but does not flow.
+    std::vector<double> all = body;
+    if (orders.multiple && surface.cosine_entry) add(all, unscattered.exitance(scaled.sigma_t()), 1.0);
     for (std::size_t i = 0; i < body.size(); ++i) {
-      result.differences.push_back(difference(body[i], half_space[i]));
-      result.exitance.push_back(body[i]);
-      result.fading.push_back(fading(cosines, body, i, scaled.reduced_sigma_t()));
+      result.differences.push_back(difference(all[i], half_space[i]));
+      result.exitance.push_back(all[i]);
+      const double scattered = all[i] > 0.0 ? body[i] / all[i] : 0.0;
+      result.fading.push_back(scattered * fading(cosines, body, i, scaled.reduced_sigma_t()));
     }
   }
   return result;
-}
-
-// What enters the unit sphere, per irradiance on a plane that faces the light, on a ring about a point: integral over
-// the ring's azimuth. `cosine` at the point, `ring_cosine` between the point's normal and the ring's.
-double entering_ring(const BodySurface& surface, double cosine, double ring_cosine) {
-  const double axial = cosine * ring_cosine;
-  const double lateral = sine_of_cosine(cosine) * sine_of_cosine(ring_cosine);
-  if (axial + lateral <= 0.0) return 0.0;
-  const double lit = axial >= lateral ? PI : std::acos(std::clamp(-axial / lateral, -1.0, 1.0));
-  double sum = 0.0;
-  for (const QuadratureNode& node : gauss_legendre(8)) {
-    const double mu = std::clamp(axial + lateral * std::cos(lit * node.x), 0.0, 1.0);
-    const double transmittance =
-        surface.eta == 1.0 ? 1.0 : fresnel_transmittance(mu, refracted_cosine(mu, surface.eta), surface.eta);
-    sum += 2.0 * lit * node.weight * mu * transmittance;
-  }
-  return sum;
 }
 
 }  // namespace
@@ -104,10 +92,11 @@ void add_body_difference(const char* name, const scene::Material& material, doub
                          MaterialInputs& inputs) {
   const BodySurface surface = body_surface(material);
   const SphereSingleScattering single(surface.eta, body_cosines());
+  const SphereUnscattered unscattered(surface, surface.cosine_entry ? body_cosines() : std::vector<double>());
   const std::array<BodyMedium, 3> media{body_medium(material, 0, grain_radius), body_medium(material, 1, grain_radius),
                                         body_medium(material, 2, grain_radius)};
-  const auto answers =
-      for_each_channel(media, [&](const BodyMedium& medium) { return answer(medium, surface, single, orders); });
+  const auto answers = for_each_channel(
+      media, [&](const BodyMedium& medium) { return answer(medium, surface, single, unscattered, orders); });
   Table table =
       pack({answers[0].differences, answers[1].differences, answers[2].differences}, cosine_count, radius_count);
   // One flow for three channels: that of the light there is.
@@ -118,7 +107,7 @@ void add_body_difference(const char* name, const scene::Material& material, doub
       flow += channel.exitance[i] * channel.fading[i];
       all += channel.exitance[i];
     }
-    table.texels[i].a = static_cast<float>(flow / all);
+    table.texels[i].a = surface.cosine_exit ? 0.0F : static_cast<float>(flow / all);
   }
   inputs.tables[name] = std::move(table);
 }
@@ -130,6 +119,7 @@ void add_planar_body(const std::array<const SurfaceKernel*, 3>& kernels, const B
   constexpr int known_count = 512;
   const double known_step = std::log1p(2.0 * table_radius(radius_count - 1) / resolution) / (known_count - 1.0);
   std::vector<double> known_distances;
+  known_distances.reserve(known_count);
   for (int j = 0; j < known_count; ++j) known_distances.push_back(resolution * std::expm1(j * known_step));
   const auto known =
       for_each_channel(kernels, [&](const SurfaceKernel* kernel) { return kernel->evaluate(known_distances, 1.0); });

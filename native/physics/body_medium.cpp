@@ -44,10 +44,12 @@ BodySurface body_surface(const scene::Material& material) {
   surface.cosine_entry =
       material.boundary == scene::Boundary::lambert_lambert || material.boundary == scene::Boundary::lambert_refracted;
   surface.diffusion = diffusion_boundary(surface.eta);
+  surface.cosine_exit = material.boundary == scene::Boundary::lambert_lambert;
   return surface;
 }
 
 ExitLobe exit_lobe(const BodySurface& surface) {
+  if (surface.cosine_exit) return {0.0, 1.0 / PI};
   const double slope = 1.5 / surface.diffusion.a;
   double flux = 0.0;
   // Below the critical cosine nothing comes through to a rarer outside; seen from outside that is no direction at all.

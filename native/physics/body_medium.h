@@ -26,13 +26,14 @@ struct BodySurface {
   double eta = 1.0;             ///< what refracts; 1 for every boundary but the dielectric
   bool cosine_entry = false;    ///< light spreads by a cosine lobe as it enters
   DiffusionBoundary diffusion;  ///< of `eta`
+  bool cosine_exit = false;     ///< light leaves by a cosine lobe, wherever it came from
 };
 
 BodySurface body_surface(const scene::Material& material);
 
 /// The lobe by which diffused light leaves: transmittance(mu) (1 + slope mu') factor, whose flux is 1; mu' is the
-/// cosine inside. Below a surface that passes 1/(2A) of the fluence, P1 radiance is proportional to 1 + 3/(2A) mu'
-/// (Ishimaru 1978 eq. 9-12).
+/// cosine inside; without slope where the surface diffuses what leaves. Below a surface that passes 1/(2A) of the
+/// fluence, P1 radiance is proportional to 1 + 3/(2A) mu' (Ishimaru 1978 eq. 9-12).
 struct ExitLobe {
   double slope;
   double factor;

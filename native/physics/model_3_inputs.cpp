@@ -98,6 +98,15 @@ void add_single_scattering(const std::array<BodyMedium, 3>& media, double eta, M
   inputs.uniforms["single.sign_g"] = g < 0.0 ? -1.0F : 1.0F;
 }
 
+void add_crossed(const std::array<BodyMedium, 3>& media, MaterialInputs& inputs) {
+  inputs.defines.emplace_back("CROSSED");
+  const glm::dvec3 across(2.0 * media[0].sigma_t(), 2.0 * media[1].sigma_t(), 2.0 * media[2].sigma_t());
+  if (media[0] == media[1] && media[0] == media[2])
+    inputs.uniforms["crossed"] = static_cast<float>(across.x);
+  else
+    inputs.uniforms["crossed"] = glm::vec3(across);
+}
+
 }  // namespace
 
 MaterialInputs model_3_inputs(const Material& material, double grain_radius) {
@@ -115,6 +124,7 @@ MaterialInputs model_3_inputs(const Material& material, double grain_radius) {
     add_dielectric(material, inputs);
   }
   if (media[0] == media[1] && media[0] == media[2]) inputs.defines.emplace_back("GREY");
+  if (half_space && surface.cosine_entry) add_crossed(media, inputs);
   add_kernel(media, surface, material.profile, inputs);
   // Jensen's dipole stands for all orders, and so does a kernel that light enters by a cosine lobe.
   if (!surface.cosine_entry && material.profile != Profile::dipole) add_single_scattering(media, surface.eta, inputs);

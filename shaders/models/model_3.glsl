@@ -6,6 +6,7 @@
 //
 // What is chosen at compile time (physics::model_3_inputs), besides what body_light.glsl names:
 //   GREY                 red, green and blue are the same medium, and only one is computed
+//   CROSSED              the sphere's light is also what crosses it unscattered
 //   SINGLE_MARCHED       `refracted_light`: first-order scattering is not in the kernel
 #include "models/body_light.glsl"
 #include "models/interface.glsl"
@@ -34,6 +35,10 @@ struct Single {
 };
 uniform Single single;
 uniform sampler2D refracted_light;
+#endif
+
+#ifdef CROSSED
+uniform Spectrum crossed;  // mean free paths across the grain's sphere
 #endif
 
 struct Sampling {
@@ -152,9 +157,17 @@ Gathered gather(LightFrame frame, int light, BodyFit fit, vec3 position, vec3 no
 }
 
 // Radiance per irradiance of light scattered many times, given that of the sphere that fits.
-vec3 on_the_grain(Gathered gathered, vec3 sphere, float lobe) {
+vec3 on_the_grain(Gathered gathered, vec3 sphere, float lobe, float radius) {
   // A control variate whose weight is never above one: what is less than the sphere's scales it, what is more adds to it.
   Spectrum least = Spectrum(1e-30);
+#ifdef CROSSED
+  // What crosses unscattered is not gathered: that of the grain is as the sphere's.
+#ifdef GREY
+  least += 0.25 * mean_crossing(crossed * radius);
+#else
+  least += 0.25 * vec3(mean_crossing(crossed.r * radius), mean_crossing(crossed.g * radius), mean_crossing(crossed.b * radius));
+#endif
+#endif
   Spectrum share = min((gathered.grain + least) / (gathered.sphere + least), Spectrum(1.0));
   return sphere * share + lobe * max(gathered.grain - gathered.sphere, Spectrum(0.0));
 }
@@ -290,7 +303,7 @@ vec3 evaluate_model(SurfacePoint point, Outwards outwards, LightSample light) {
   float tilt = sqrt(max((1.0 - fit.cosine) * (1.0 + fit.cosine), 0.0));
   vec3 fit_normal = vec3(normal.xy * (tilt * inversesqrt(max(dot(normal.xy, normal.xy), 1e-12))), fit.cosine);
   Gathered gathered = gather(frame, light.index, fit, position, fit_normal, multiple_share, uint(sample_index * multiple_share), offset.xy);
-  vec3 radiance = on_the_grain(gathered, sphere, lobe);
+  vec3 radiance = on_the_grain(gathered, sphere, lobe, fit.radius);
 #ifdef SINGLE_MARCHED
   vec3 to_viewer = to_light_space(frame, point.to_viewer);
   vec3 inside = single_scattering(frame, light.index, fit, position, normal, fit_normal, to_viewer, single_share, uint(sample_index * single_share), offset.zw);

@@ -45,6 +45,12 @@ pure real mean_attenuation(real x) {
   return -expm1(-x) / x;
 }
 
+// Integral of 2 mu exp(-x mu) over mu from 0 to 1: what a sphere x mean free paths across lets through of diffuse light.
+pure real mean_crossing(real x) {
+  if (x < 0.2) return 1.0 - x * (2.0 / 3.0 - x * (1.0 / 4.0 - x * (1.0 / 15.0 - x * (1.0 / 72.0 - x / 420.0))));
+  return 2.0 * (1.0 - (1.0 + x) * exp(-x)) / (x * x);
+}
+
 // A division or a product may round up to 1, whose exponential distance is none.
 const real LARGEST_BELOW_ONE = 1.0 - 1.0 / 16777216.0;
 

@@ -50,6 +50,18 @@ TEST(Elementary, MeanAttenuationHasItsLimit) {
   for (double x = 1e-15; x < 700.0; x *= 1.5) EXPECT_NEAR(mean_attenuation(x) * x / -std::expm1(-x), 1.0, 1e-11) << x;
 }
 
+TEST(Elementary, MeanCrossingIsItsIntegral) {
+  for (double x = 1e-3; x < 100.0; x *= 1.7) {
+    constexpr int steps = 20000;
+    double sum = 0.0;
+    for (int i = 0; i < steps; ++i) {
+      const double mu = (i + 0.5) / steps;
+      sum += 2.0 * mu * std::exp(-x * mu) / steps;
+    }
+    EXPECT_NEAR(mean_crossing(x) / sum, 1.0, 1e-5) << x;
+  }
+}
+
 TEST(Elementary, AttenuatedDistanceInvertsItsDistribution) {
   for (const double rate : {0.02, 0.5, 3.0, 40.0})
     for (double random = 0.0; random < 1.0; random += 0.01) {

@@ -92,6 +92,11 @@ TEST(FloatElementary, MeanAttenuation) {
                grid({geometric(1e-20, 1e6, 2000) + std::vector<double>{0.0}}), 1e-5);
 }
 
+TEST(FloatElementary, MeanCrossing) {
+  expect_close(MESOGRAIN_EXPRESSION(mean_crossing(x[0])),
+               grid({geometric(1e-20, 1e6, 2000) + std::vector<double>{0.0, 0.2}}), 1e-5);
+}
+
 // What the largest random numbers and thicknesses round to must stay a distance: the logarithm of nothing is none.
 TEST(FloatElementary, AttenuatedDistanceEndsWithinTheWay) {
   const std::vector<double> random = even(0.0, 1.0, 101) + map(geometric(0x1p-24, 0.1, 200), from_one);

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "physics/entering_ring.h"
 #include "physics/sphere_exitance.h"
 
 namespace mesograin::physics {
@@ -66,6 +67,28 @@ TEST(SphereExitance, IsThatOfThePhotonsThatWereTraced) {
     RecordProperty("mean_l1_eta" + std::to_string(eta) + "_radius" + std::to_string(radius), std::to_string(mean));
   }
   EXPECT_GT(dark_sides, 100);
+}
+
+TEST(SphereUnscattered, IsThatOfThePhotonsThatCrossed) {
+  std::ifstream file(MESOGRAIN_TEST_DATA "/referee/sphere.json");
+  const nlohmann::json table = nlohmann::json::parse(file);
+  const std::vector<double> cosines = bin_cosines(table["bins"]);
+  const SphereUnscattered unscattered({1.0, true, diffusion_boundary(1.0)}, cosines);
+  int spheres = 0;
+  for (const nlohmann::json& entry : table["cases"]) {
+    if (entry["entry"] != "lambert") continue;
+    const std::vector<double> model = unscattered.exitance(entry["radius"]);
+    for (std::size_t i = 0; i < model.size(); ++i)
+      EXPECT_NEAR(model[i], entry["ballistic"][i], 5.0 * entry["ballistic_noise"][i].get<double>() + 1e-5)
+          << entry["radius"] << ' ' << cosines[i];
+    ++spheres;
+  }
+  EXPECT_EQ(spheres, 5);
+}
+
+TEST(SphereUnscattered, IsAllOfTheLightWhereNothingIsInTheWay) {
+  const SphereUnscattered unscattered({1.0, true, diffusion_boundary(1.0)}, {-1.0, -0.3, 0.0, 0.7, 1.0});
+  for (const double exitance : unscattered.exitance(0.0)) EXPECT_NEAR(exitance, 0.25, 2.5e-4);
 }
 
 }  // namespace

@@ -113,6 +113,19 @@ def test_it_is_the_integral_of_its_profile(profile):
     assert numpy.abs(exitance - truth).sum() < numpy.abs(exact - truth).sum() + 0.02 * truth.sum()
 
 
+@pytest.mark.parametrize("model", ["model_2", "model_3"])
+@pytest.mark.parametrize("radius", [0.6, 2.4, 7.2])
+def test_light_that_crosses_unscattered_leaves_lambert_surfaces(model, radius):
+    """Between Lambert surfaces all light is diffused as it leaves: total and distribution of every order, from none on."""
+    case = next(case for case in REFEREE["cases"] if (case["entry"], case["radius"]) == ("lambert", radius))
+    truth = numpy.array(case["scattered"][REFEREE["albedos"].index(0.9)]) + numpy.array(case["ballistic"])
+    made_of = native.Material(model=model, sigma_s=(0.9 * radius,) * 3, sigma_a=(0.1 * radius,) * 3,
+                              boundary="lambert_lambert")
+    exitance = accuracy.Cameras(native).exitance(show(made_of, accuracy.SIZE), 1, BINS)[:, 1]
+    assert abs(exitance.sum() / truth.sum() - 1.0) < 0.03
+    assert numpy.abs(exitance - truth).sum() < 0.1 * truth.sum()
+
+
 @pytest.mark.parametrize("eta", [1.0, 1.3])
 @pytest.mark.parametrize("radius", [12.0, 48.0])
 def test_sixteen_samples_are_enough_for_a_thick_grain(radius, eta):
