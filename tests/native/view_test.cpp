@@ -90,7 +90,9 @@ TEST_F(ViewTest, MoreGrainsThanAStencilHoldsKeepTheirOwnMaterials) {
   constexpr int side = 20;
   scene::Scene scene{{}, {{{0, 0, 1}, {pi, pi, pi}}}};
   for (int i = 0; i < side * side; ++i) {
-    const glm::dvec3 place(i % side - 0.5 * (side - 1), 0.5 * (side - 1) - i / side, 0.0);
+    const int column = i % side;
+    const int row = i / side;
+    const glm::dvec3 place(column - 0.5 * (side - 1), 0.5 * (side - 1) - row, 0.0);
     lambert_.reflectance = glm::dvec3((i + 1.0) / (side * side));
     scene.instances.push_back({square(0.5), lambert_, glm::translate(glm::dmat4(1.0), place)});
   }
