@@ -116,7 +116,7 @@ def test_it_is_the_integral_of_its_profile(profile):
 @pytest.mark.parametrize("model", ["model_2", "model_3"])
 @pytest.mark.parametrize("radius", [0.6, 2.4, 7.2])
 def test_light_that_crosses_unscattered_leaves_lambert_surfaces(model, radius):
-    """Between Lambert surfaces all light is diffused as it leaves: total and distribution of all orders, none included."""
+    """Between Lambert surfaces all light is diffused as it leaves: in total and over the surface, unscattered too."""
     case = next(case for case in REFEREE["cases"] if (case["entry"], case["radius"]) == ("lambert", radius))
     truth = numpy.array(case["scattered"][REFEREE["albedos"].index(0.9)]) + numpy.array(case["ballistic"])
     made_of = native.Material(model=model, sigma_s=(0.9 * radius,) * 3, sigma_a=(0.1 * radius,) * 3,
