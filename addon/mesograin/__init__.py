@@ -14,9 +14,10 @@ __version__ = ".".join(str(number) for number in bl_info["version"])
 # In the order of their imports: each room knows only those before it.
 ROOMS = ("compat", "smooth_normals", "native_module", "properties", "presets", "status", "meshes", "export", "viewport",
          "engine", "panels", "reference_cache", "preferences", "side_task.settings", "side_task.session",
-         "side_task.operators", "side_task.panel", "compare_panel.properties", "compare_panel.pictures",
-         "compare_panel.session", "compare_panel.operators", "compare_panel.panel", "bake_panel.properties",
-         "bake_panel.session", "bake_panel.operators", "bake_panel.panel")
+         "side_task.pictures", "side_task.operators", "side_task.panel", "side_task.results",
+         "compare_panel.properties", "compare_panel.session", "compare_panel.operators", "compare_panel.panel",
+         "bake_panel.properties", "bake_panel.compared", "bake_panel.session", "bake_panel.operators",
+         "bake_panel.panel")
 # What scripts use, from the room `scripting`.
 SCRIPTED = ("compare", "Comparison", "ComparisonError")
 _rooms = []

@@ -9,7 +9,7 @@ import bpy
 from . import native_module
 from .command_line import values
 from .comparison import arguments, mask_names, progress, report_page, results, run, verdict
-from .cycles import kinds
+from .cycles import kinds, stage
 from .cycles.cache import Cache
 
 PICTURES = ("model", "reference", "error")
@@ -145,6 +145,8 @@ def compare(models=arguments.DEFAULT_MODELS, references=None, out="//comparison"
             command=command or call(models=models, references=references, out=str(out), size=size, samples=samples,
                                     reference_samples=reference_samples, seeds=seeds, until=until, masks=masks or None,
                                     part=part, controls=controls or None, settings=settings))
+        if request.controls and request.seeds < 2:
+            raise ComparisonError("controls needs 2 or more seeds, since one does not tell its noise; 1 came.")
         for kind in request.references or ():
             if not kinds.has(kind, request.part):
                 raise ComparisonError(f"part: {kinds.missing_part(kind, request.part)}.")
@@ -153,9 +155,9 @@ def compare(models=arguments.DEFAULT_MODELS, references=None, out="//comparison"
         if not run.cases(request.models, request.references, request.part):
             raise ComparisonError(f"None of the references {', '.join(request.references)} answers "
                                   f"{', '.join(request.models)}: choose others, or None for each model's usual one.")
-        _need_cycles()
+        stage.need_cycles()
         found = run.compare(request, line)
-    except (native_module.Unavailable, results.OutputError, ValueError) as error:
+    except (native_module.Unavailable, results.OutputError, stage.StageError, ValueError) as error:
         raise ComparisonError(str(error)) from error
     except native.Error as error:
         raise ComparisonError(str(error)) from error
@@ -186,13 +188,6 @@ def _write_report(folder, warnings):
     except report_page.ReportError as error:
         warnings.append(f"There is no report: {error}")
         return None
-
-
-def _need_cycles():
-    import addon_utils
-
-    if not hasattr(bpy.types.Scene, "cycles") and addon_utils.enable("cycles") is None:
-        raise ComparisonError("Cycles is needed for the references, but this Blender has none: enable its add-on.")
 
 
 def _names(what, names, allowed):

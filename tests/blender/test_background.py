@@ -29,7 +29,7 @@ def start(tmp_path):
 
     def do(**changes):
         arguments = {**TINY, "cache": str(tmp_path / "cache"), **changes}
-        jobs.append(launch(tmp_path / "out", **arguments))
+        jobs.append(launch("compare", tmp_path / "out", **arguments))
         return jobs[-1]
 
     yield do
@@ -172,7 +172,7 @@ import bpy, repository.user_default.mesograin as mesograin
 mesograin.register()
 bpy.ops.wm.open_mainfile(filepath={str(tmp_path / "grain.blend")!r})
 from repository.user_default.mesograin.background.launch import launch
-started = launch({str(tmp_path / "out")!r}, models=["model_1"], size=[256, 256], reference_samples=4000,
+started = launch("compare", {str(tmp_path / "out")!r}, models=["model_1"], size=[256, 256], reference_samples=4000,
                  cache={str(tmp_path / "cache")!r})
 while started.step is None:
     time.sleep(0.05)
@@ -209,4 +209,4 @@ def is_running(process):
 def test_a_folder_that_cannot_be_written_starts_nothing(sphere, tmp_path):
     (tmp_path / "file").write_text("")
     with pytest.raises(OSError):
-        launch(tmp_path / "file" / "out", **TINY)
+        launch("compare", tmp_path / "file" / "out", **TINY)

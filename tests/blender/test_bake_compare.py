@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from cycles_scenes import depsgraph, make_sphere
 
-from mesograin.baking import comparison
+from mesograin.baking import arguments, command, comparison
 from mesograin.baking.surface import PROVENANCE, BakeError
 from mesograin.comparison.progress import Progress
 from mesograin.cycles import nodes, reference
@@ -42,6 +42,22 @@ def test_lambert_agrees_and_nothing_is_left_behind(tmp_path, native):
     origin = json.loads(attributes[PROVENANCE])["mean_of"]
     assert [shot["object"] for shot in origin] == ["Sphere", "Sphere"] and origin[0]["view_from"] == "above_surface"
     np.testing.assert_array_equal(pixels, found[1].mean)
+
+
+def test_the_command_tells_the_numbers_and_the_verdict(tmp_path, capsys, monkeypatch):
+    monkeypatch.setenv("MESOGRAIN_CACHE", str(tmp_path / "cache"))
+    make_sphere(SUNS, segments=64, rings=32, model="lambert")
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "grain.blend"))
+    words = "--compare --size 64x32 --samples 8 --reference-samples 4 -o".split()
+    chosen = arguments.parse([str(tmp_path / "grain.blend"), *words, str(tmp_path / "a.exr")])
+    command._compare(chosen, depsgraph(), "Sphere", {}, Progress(io.StringIO()))
+    said = capsys.readouterr().out
+    results = json.loads((tmp_path / "a.json").read_text())
+    share = results["significance"]["share"]
+    assert results["significance"]["verdict"] == "differs", "half a texel a triangle is too coarse for Cycles"
+    assert f"Sphere, lambert beside Cycles Diffuse BSDF: {results['metrics']['relative_l1_corrected']:.2%} off" in said
+    assert f"in {share:.1%} of the pixels" in said
+    assert f"noise floor {results['noise_floor']['relative_l1']:.2%}" in said
 
 
 def test_the_view_from_the_camera_is_bent_as_cycles_bends_it():

@@ -1,10 +1,13 @@
 # The Bake panel without a window: the button's file, what it says, and that the scene stays as it is.
 import json
+import time
 
 import bpy
+import numpy as np
 import pytest
 from cycles_scenes import make_sphere
 
+from mesograin.background import job
 from mesograin.bake_panel.session import prepare, session
 from mesograin.baking.surface import PROVENANCE
 
@@ -57,6 +60,78 @@ def test_a_file_beside_the_blend_file(asked, tmp_path):
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "grain.blend"))
     assert bpy.ops.mesograin.bake() == {"FINISHED"}
     assert (tmp_path / "b.exr").is_file()
+
+
+@pytest.fixture
+def compared(asked, tmp_path, monkeypatch):
+    monkeypatch.setenv("MESOGRAIN_CACHE", str(tmp_path / "cache"))
+    asked.compare, asked.width, asked.height = True, 64, 32
+    asked.samples, asked.reference_samples = 16, 4
+    asked.out = str(tmp_path / "out" / "a.exr")
+    (tmp_path / "out").mkdir()
+    yield asked
+    session.forget()
+
+
+def test_cycles_is_baked_beside_it_with_pictures_and_numbers(compared, tmp_path, native):
+    compared.margin, compared.half = 3, True  # of the texture alone
+    objects = len(bpy.data.objects)
+    assert bpy.ops.mesograin.bake() == {"FINISHED"}
+    names = ["a.cycles.exr", "a.cycles.png", "a.error.exr", "a.error.png", "a.exr", "a.json", "a.png"]
+    assert sorted(path.name for path in (tmp_path / "out").iterdir()) == names
+    results = json.loads((tmp_path / "out" / "a.json").read_text())
+    assert session.results == results and session.task.finished and len(bpy.data.objects) == objects
+    assert (results["object"], results["reference"], results["reference_samples"]) == ("Sphere", "diffuse", 4)
+    assert results["size"] == [64, 32] and results["samples"] == 16 and results["significance"]["our_seeds"] == 4
+    assert results["metrics"]["relative_l1"] < 0.05 and list((tmp_path / "cache").glob("*.exr"))
+    shown = {image["mesograin_picture"]: image for image in bpy.data.images if "mesograin_picture" in image}
+    assert set(shown) == {f"bake Sphere {picture}" for picture in ("model", "reference", "error", "error colours")}
+    for picture, file in (("model", "a.exr"), ("reference", "a.cycles.exr"), ("error", "a.error.exr")):
+        image = shown[f"bake Sphere {picture}"]
+        pixels = np.array(image.pixels[:], np.float32).reshape(32, 64, image.channels)[::-1]
+        np.testing.assert_allclose(pixels[..., :3], native.read_exr(tmp_path / "out" / file)[0][..., :3], atol=1e-6)
+    # A second one brings the same images up to date.
+    compared.width = 32
+    assert bpy.ops.mesograin.bake() == {"FINISHED"}
+    assert len([image for image in bpy.data.images if "mesograin_picture" in image]) == 4
+    assert tuple(shown["bake Sphere model"].size) == (32, 32)
+
+
+def test_what_the_background_blender_refuses_is_one_sentence(compared, tmp_path):
+    compared.reference = "glossy"
+    with pytest.raises(RuntimeError, match="The reference glossy does not answer lambert: choose another."):
+        bpy.ops.mesograin.bake()
+    assert session.task.error.count(".") == 1 and session.results is None and not session.task.cancelled
+    compared.reference = "subsurface"
+    bpy.data.materials["Sand"].mesograin.model = "model_1"
+    bpy.data.materials["Sand"].mesograin.g = -0.5
+    with pytest.raises(RuntimeError, match="'Sand'.*allows g between 0"):
+        bpy.ops.mesograin.bake()
+    assert list((tmp_path / "out").iterdir()) == []
+
+
+def test_a_cancelled_comparison_ends_at_once_and_writes_nothing(compared, tmp_path):
+    bpy.data.materials["Sand"].mesograin.model = "model_1"
+    compared.width, compared.height, compared.reference_samples = 256, 256, 4000
+    bake = prepare(bpy.context)
+    bake.start()
+    until = time.monotonic() + 60.0
+    while bake.detail == "":
+        assert bake.running and time.monotonic() < until, bake.error
+        time.sleep(0.02)
+    assert bake.seconds_left > 0.0 and "Cycles bakes Sphere (volume_index_matched)" in bake.detail
+    started = time.monotonic()
+    bake.cancel()
+    assert bake.cancelled and not bake.running
+    bake.wait()
+    assert time.monotonic() - started < job.PATIENCE_SECONDS + 2.0
+    bake.finish()
+    assert not bake.finished and bake.error == "" and list((tmp_path / "out").iterdir()) == []
+
+
+def test_only_what_can_be_baked_is_offered(asked):
+    offered = [item.identifier for item in type(asked).bl_rna.properties["reference"].enum_items]
+    assert offered == ["usual", "diffuse", "glossy", "volume_index_matched", "subsurface", "subsurface_burley"]
 
 
 @pytest.mark.parametrize("change, sentence", [

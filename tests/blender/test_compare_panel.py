@@ -7,9 +7,10 @@ import pytest
 from cycles_scenes import make_sphere
 
 from mesograin import reference_cache, scripting
-from mesograin.compare_panel import pictures, properties
+from mesograin.compare_panel import properties
 from mesograin.compare_panel.session import folder, session
 from mesograin.cycles.cache import DEFAULT_LIMIT
+from mesograin.side_task import pictures
 
 
 @pytest.fixture

@@ -47,3 +47,53 @@ def check_cancel_leaves_no_file_and_what_fails_is_said(window):
         assert "choose another place" in str(error)
     assert "choose another place" in session.error and session.task is None
     yield from window.picture(properties)
+
+
+def check_cycles_bakes_beside_and_the_panel_shows_both(window):
+    bpy.context.preferences.addons["mesograin"].preferences.cache_folder = str(window.folder / "cache")
+    area, properties = yield from prepare(window, width=128, height=64, samples=16, compare=True, reference_samples=512)
+    quiet = yield from window.picture(properties)
+    state = (bpy.data.filepath, bpy.data.is_dirty, len(bpy.data.images), len(bpy.data.scenes))
+    assert window.call(properties, "bake") == {"FINISHED"}
+    assert session.running and not bpy.ops.mesograin.bake.poll()
+    assert (bpy.data.filepath, bpy.data.is_dirty, len(bpy.data.images), len(bpy.data.scenes)) == state
+    yield from window.until(lambda: session.task.detail)
+    busy = yield from window.picture(properties)
+    assert (np.abs(busy - quiet).max(axis=-1) > 0.1).sum() > 500, "the panel shows no progress"
+    silent = yield from window.silence_until(
+        lambda: not session.running and not bpy.app.timers.is_registered(session.poll))
+    assert silent < 0.25, f"Blender did not answer for {silent:.0%} of the bake"
+    assert session.error == session.task.error == "" and session.results["metrics"]["relative_l1"] < 0.05
+    shown = yield from window.picture(properties)
+    assert (np.abs(shown - quiet).max(axis=-1) > 0.1).sum() > 1000, "the panel shows no numbers"
+    area.type = "IMAGE_EDITOR"
+    try:
+        for picture, file in (("model", "bake.exr"), ("reference", "bake.cycles.exr")):
+            with window.override(area):
+                bpy.ops.mesograin.show_bake(picture=picture)
+            image = area.spaces.active.image
+            assert image.name == f"Mesograin bake Sphere {picture}" and image.filepath.endswith(file)
+        yield from window.picture(area)
+        with window.override(area):
+            try:
+                outcome = str(bpy.ops.mesograin.show_bake(picture="z-map"))
+            except RuntimeError as error:  # how a script hears of an operator's report
+                outcome = str(error)
+        assert "no picture 'z-map'" in outcome
+    finally:
+        area.type = "VIEW_3D"
+
+
+def check_a_comparison_of_bakes_is_cancelled_at_once(window):
+    _, properties = yield from prepare(window, width=512, height=512, compare=True, reference_samples=1024,
+                                       out=str(window.folder / "never.exr"))
+    bpy.data.materials["Translucent"].mesograin.model = "model_1"
+    window.call(properties, "bake")
+    yield from window.until(lambda: session.task.detail)
+    bake = session.task
+    window.call(properties, "cancel_bake")
+    assert not session.running and bake.cancelled
+    yield from window.picture(properties)
+    yield from window.until(lambda: not list(window.folder.glob(".unfinished-*")), timeout=10.0)
+    assert not list(window.folder.glob("never*")) and session.error == "" and session.results is None
+    assert bpy.ops.mesograin.bake.poll()

@@ -13,13 +13,13 @@ import pytest
 
 HERE = pathlib.Path(__file__).resolve().parent
 EMPTY_FOLDER = tempfile.mkdtemp(prefix="mesograin-no-native-")
-SMALL, TALL = (900, 640), (1100, 1000)
+SMALL, TALL, TALLER = (900, 640), (1100, 1000), (1100, 1400)
 SIMULATED = ["--enable-event-simulate"]
 LAUNCHES = {  # what is checked, in which environment, on a screen of which size, with which of Blender's options
     "viewport": ("checks_viewport", {}, SMALL, SIMULATED),
     "cancel": ("checks_cancel", {}, SMALL, []),
     "compare": ("checks_compare", {}, TALL, SIMULATED),
-    "bake": ("checks_bake", {}, TALL, SIMULATED),
+    "bake": ("checks_bake", {}, TALLER, SIMULATED),
     "no_native_module": ("checks_unavailable", {"MESOGRAIN_NATIVE_DIR": EMPTY_FOLDER}, SMALL, SIMULATED),
     "no_device": ("checks_unavailable", {"MESOGRAIN_GL_DEVICE": "nonexistent"}, SMALL, SIMULATED),
 }

@@ -1,1 +1,1 @@
-# A comparison in a Blender of its own, beside the one that the artist works in.
+# Long work in a Blender of its own, beside the one that the artist works in.

@@ -1,5 +1,5 @@
 # The background Blender's side: blender -b --factory-startup --python THIS -- TASK.json
-"""Loads the add-on that this file belongs to, compares what the task says, and tells of it on standard output."""
+"""Loads the add-on that this file belongs to, does what the task says, and tells of it on standard output."""
 
 import dataclasses
 import json
@@ -24,6 +24,13 @@ class Channel:
         from mesograin.background import protocol
 
         os.write(self._file, protocol.encode(event, **values))
+
+    def step(self, step):
+        """Tells of a `progress.Step`."""
+        self.send("step", **dataclasses.asdict(step))
+
+    def sentence(self, sentence):
+        self.send("sentence", text=sentence)
 
 
 def remove(folders):
@@ -57,13 +64,13 @@ def main():
     channel = Channel()
     with interruption.Interruption() as interrupted:
         try:
-            return compare(task, channel)
+            return work(task, channel)
         except KeyboardInterrupt:
             remove(task["folders"])
             return interrupted.code
 
 
-def compare(task, channel):
+def work(task, channel):
     import addon_utils
     import bpy
     import mesograin
@@ -74,18 +81,34 @@ def compare(task, channel):
 
     from mesograin import scripting
     from mesograin.background import snapshot
+    from mesograin.baking.surface import BakeError
 
     try:
         snapshot.load(task["file"])
-        found = scripting.compare(**task["arguments"],
-                                  on_progress=lambda step: channel.send("step", **dataclasses.asdict(step)))
-    except (scripting.ComparisonError, RuntimeError) as error:
+        WORKS[task["work"]](channel, **task["arguments"])
+    except (scripting.ComparisonError, BakeError, RuntimeError) as error:
         channel.send("failed", text=" ".join(str(error).split()))
         return 1
-    for sentence in found.warnings:
-        channel.send("sentence", text=sentence)
     channel.send("done")
     return 0
+
+
+def compare(channel, **arguments):
+    """Of pictures; the arguments are those of `scripting.compare`."""
+    from mesograin import scripting
+
+    for sentence in scripting.compare(**arguments, on_progress=channel.step).warnings:
+        channel.sentence(sentence)
+
+
+def bake(channel, **arguments):
+    """Of textures; the arguments are those of `baking.beside.bake`."""
+    from mesograin.baking import beside
+
+    beside.bake(**arguments, on_step=channel.step, on_sentence=channel.sentence)
+
+
+WORKS = {"compare": compare, "bake": bake}
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-# A process in the background that compares: watched, cancelled at once, its files published whole or not at all.
+# A background process with work to do: watched, cancelled at once, its files published whole or not at all.
 """See `Job`. Knows nothing of Blender, so that it can be tested with any process."""
 
 import collections

@@ -1,4 +1,4 @@
-# Starts a comparison of the open file in a background Blender.
+# Starts work on a copy of the open file in a background Blender.
 """See `launch`."""
 
 import json
@@ -14,10 +14,10 @@ from .job import Job
 CHILD = Path(__file__).resolve().parent / "child.py"
 
 
-def launch(out, **arguments):
-    """Copies the open file, starts a Blender that compares it, and returns its `Job`.
+def launch(work, out, **arguments):
+    """Copies the open file, starts a Blender that works on it, and returns its `Job`.
 
-    out: folder for all files, without '//'. arguments: those of `scripting.compare`, plain values.
+    work: of `child.WORKS`. out: folder for all files, without '//'. arguments: of that work, plain values.
     Raises OSError or RuntimeError with a reason if nothing could be started.
     """
     folder = Path(tempfile.mkdtemp(prefix="mesograin-"))
@@ -25,7 +25,7 @@ def launch(out, **arguments):
         saved = snapshot.save(folder)
         job = Job(folder, out)
         task = folder / "task.json"
-        task.write_text(json.dumps({"file": saved, "arguments": {**arguments, "out": str(job.staging)},
+        task.write_text(json.dumps({"file": saved, "work": work, "arguments": {**arguments, "out": str(job.staging)},
                                     "folders": [str(folder), str(job.staging)]}))
     except BaseException:
         shutil.rmtree(folder, ignore_errors=True)

@@ -1,7 +1,7 @@
 # What the buttons of the Bake panel do.
 import bpy
 
-from ..side_task.operators import CancelOperator, StartOperator
+from ..side_task.operators import CancelOperator, ShowPictureOperator, StartOperator
 from .session import session
 
 
@@ -16,8 +16,9 @@ class MESOGRAIN_OT_bake(StartOperator, bpy.types.Operator):
         bake = session.task
         if bake is not None and bpy.app.background:  # where no timer runs and nobody waits for a window
             bake.wait()
-            for warning in bake.surface.warnings:
-                self.report({"WARNING"}, warning)
+            session.finish()
+            for sentence in bake.sentences:
+                self.report({"WARNING"}, sentence)
             if bake.error:
                 self.report({"ERROR"}, bake.error)
                 return {"CANCELLED"}
@@ -30,4 +31,14 @@ class MESOGRAIN_OT_cancel_bake(CancelOperator, bpy.types.Operator):
     session = session
 
 
-register, unregister = bpy.utils.register_classes_factory((MESOGRAIN_OT_bake, MESOGRAIN_OT_cancel_bake))
+class MESOGRAIN_OT_show_bake(ShowPictureOperator, bpy.types.Operator):
+    bl_idname = "mesograin.show_bake"
+    bl_description = "Show this picture of the bakes in an Image Editor"
+    session = session
+
+    def entry(self):
+        return session.task.entry, session.task.path.parent
+
+
+register, unregister = bpy.utils.register_classes_factory(
+    (MESOGRAIN_OT_bake, MESOGRAIN_OT_cancel_bake, MESOGRAIN_OT_show_bake))

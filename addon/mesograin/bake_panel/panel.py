@@ -1,9 +1,9 @@
 # The Bake panel, among the render properties.
 import bpy
 
-from .. import panels
-from ..comparison.progress import duration
+from .. import panels, reference_cache
 from ..side_task import panel as side_task
+from ..side_task import results
 from . import operators
 from .session import session
 
@@ -17,30 +17,41 @@ def draw_settings(layout, context):
     column.prop(asked, "height", text="Y")
     layout.prop(asked, "samples")
     layout.prop(asked, "view_from")
-    layout.prop(asked, "margin")
-    layout.prop(asked, "half")
+    column = layout.column()
+    column.active = not asked.compare  # which is of the texels themselves, as they are
+    column.prop(asked, "margin")
+    column.prop(asked, "half")
     layout.prop(asked, "out")
+    layout.prop(asked, "compare")
+    if asked.compare:
+        layout.prop(asked, "reference")
+        layout.prop(asked, "reference_samples")
+        reference_cache.draw(layout)
 
 
 def draw_bake(layout, context):
     """The button, or how far the bake is; then what came of the last one."""
     bake = session.task
     active = context.view_layer.objects.active
-    label = f"Bake {active.name} to EXR" if active is not None else operators.MESOGRAIN_OT_bake.bl_label
+    compare = context.scene.mesograin_bake.compare
+    what = f"{active.name} to EXR" if active is not None else "to EXR"
+    label = f"Bake {what} and with Cycles" if compare else f"Bake {what}"
     side_task.draw_task(layout, context, session, operators.MESOGRAIN_OT_bake, operators.MESOGRAIN_OT_cancel_bake,
-                        "the first sample", text=label, icon="RENDER_STILL")
+                        "Blender is starting" if compare else "the first sample", bake.detail if bake else "",
+                        text=label, icon="RENDER_STILL")
     if bake is None:
         return
     if bake.error:
         panels.draw_sentence(layout, context, bake.error)
-    elif bake.finished and not bake.running:
-        width, height = bake.surface.size
-        panels.draw_sentence(layout, context, f"{bake.path.name}: {bake.surface.name}, {width} x {height} texels in "
-                             f"{duration(bake.seconds)}", icon="CHECKMARK")
-    elif not bake.running:
+    elif bake.cancelled:
         layout.label(text="Cancelled; nothing was written.", icon="INFO")
-    for sentence in bake.surface.warnings:
+    elif bake.finished and not bake.running:
+        panels.draw_sentence(layout, context, bake.summary, icon="CHECKMARK")
+    for sentence in bake.sentences:
         panels.draw_sentence(layout, context, sentence)
+    if bake.results is not None:
+        ours = "Texture, Mesograin", results.seconds(bake.results["our_seconds"])
+        results.draw(layout.box(), context, bake.entry, ours, operators.MESOGRAIN_OT_show_bake)
 
 
 class MESOGRAIN_PT_bake(panels.MesograinPanel, bpy.types.Panel):

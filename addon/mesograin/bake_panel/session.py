@@ -1,5 +1,5 @@
 # The one bake that may be under way in this Blender, and what came of the last one.
-"""The surface is read at once; a thread shades and writes it, without Blender's data."""
+"""See `Bake`, and `compared.ComparedBake` for one that Cycles takes part in."""
 
 import threading
 import time
@@ -7,9 +7,12 @@ from pathlib import Path
 
 import bpy
 
-from .. import native_module
+from .. import native_module, reference_cache
 from ..baking import surface
+from ..comparison.progress import duration
 from ..side_task.session import Session
+from .compared import ComparedBake
+from .properties import USUAL
 
 
 def refusals():
@@ -18,7 +21,11 @@ def refusals():
 
 
 class Bake:
-    """A texture that is being made. path: where it goes. After the end: `error`, one sentence or empty; `seconds`."""
+    """A texture that is being made: the surface is read at once, and a thread shades and writes it without Blender's
+    data. path: where it goes. After the end: `error`, one sentence or empty; `seconds`."""
+
+    detail = ""
+    results = None
 
     def __init__(self, chosen, path, samples, margin, half):
         self.surface, self.path, self.samples = chosen, path, samples
@@ -43,12 +50,31 @@ class Bake:
         passed = time.monotonic() - self._started
         return passed / self.fraction * (1.0 - self.fraction) if self.fraction > 0.0 else None
 
+    @property
+    def cancelled(self):
+        return not (self.running or self.finished or self.error)
+
+    @property
+    def sentences(self):
+        """What the scene has and we leave out."""
+        return self.surface.warnings
+
+    @property
+    def summary(self):
+        width, height = self.surface.size
+        return f"{self.path.name}: {self.surface.name}, {width} x {height} texels in {duration(self.seconds)}"
+
     def cancel(self):
         """Ends it soon, without a file."""
         self.surface.cancel()
 
     def wait(self):
         self._thread.join()
+
+    let_go = wait
+
+    def finish(self):
+        """The thread has written the file."""
 
     def _run(self):
         try:
@@ -76,11 +102,20 @@ class BakeSession(Session):
         self.task = None  # what is wrong with this one is not said beside what came of another
         super().start(context)
 
+    def finish(self):
+        reference_cache.look_again()
+        self.task.finish()
+
+    @property
+    def results(self):
+        """What the last comparison's file of numbers holds; None without one."""
+        return self.task.results if self.task is not None else None
+
     def forget(self):
         bake = self.task
         super().forget()
         if bake is not None:
-            bake.wait()
+            bake.let_go()
 
 
 session = BakeSession("mesograin_bake_progress", {"PROPERTIES"})
@@ -88,16 +123,29 @@ register, unregister = session.register, session.unregister
 
 
 def prepare(context):
-    """The Bake that the scene asks for, not yet started. Raises surface.BakeError, surface.OutputError, native.Error or
-    native_module.Unavailable with a sentence."""
+    """The Bake or ComparedBake that the scene asks for, not yet started. Raises surface.BakeError, surface.OutputError,
+    native.Error or native_module.Unavailable with a sentence."""
     native_module.get()
     asked = context.scene.mesograin_bake
     path = output(context.scene)
     surface.require_writable(path)
     depsgraph = context.evaluated_depsgraph_get()
     name = surface.choose(depsgraph)
+    if asked.compare:
+        return _prepare_compared(asked, path, name)
     chosen = surface.Surface(depsgraph, name, (asked.width, asked.height), asked.view_from)
     return Bake(chosen, path, asked.samples, asked.margin, asked.half)
+
+
+def _prepare_compared(asked, path, name):
+    try:
+        cache = reference_cache.cache()
+    except ValueError as problem:
+        raise surface.BakeError(str(problem)) from problem
+    return ComparedBake(
+        path, name, size=[asked.width, asked.height], samples=asked.samples, view_from=asked.view_from,
+        reference=None if asked.reference == USUAL else asked.reference,
+        reference_samples=asked.reference_samples or None, cache=str(cache.folder), cache_limit=cache.limit)
 
 
 def output(scene):

@@ -5,7 +5,8 @@ import json
 import time
 
 from .. import native_module
-from ..comparison import definitions, measure, origin
+from ..comparison import definitions, measure, origin, significance
+from ..comparison.ours import SEEDS
 from ..comparison.results import Output
 from ..cycles import kinds, nodes, reference
 from ..cycles.unwrapping import Unwrapping
@@ -34,17 +35,17 @@ def compare(depsgraph, name, size, samples, view_from, overrides, model, kind, r
     model = model or _only_model(depsgraph, name, size, overrides)
     kind = kind or kinds.default_kind(model)
     if model not in kinds.KINDS[kind].models:
-        raise BakeError(f"The reference {kind} does not answer {model}: choose another with --reference.")
+        raise BakeError(f"The reference {kind} does not answer {model}: choose another.")
     chosen = {"model": model, **kinds.our_side(kind, nodes.features())}
-    ours = Surface(depsgraph, name, size, view_from, {**overrides, **chosen})
+    ours = Surface(depsgraph, name, size, view_from, {**overrides, **chosen}, min(SEEDS, samples))
     for warning in ours.warnings:
-        progress.say(f"bake: {warning}")
+        progress.say(warning)
     # Said before anything is rendered: what Cycles cannot bake at all, and what it can only approximate.
     sampling = reference.Sampling(
         depsgraph, kind, size, reference_samples, cache, overrides, Unwrapping(name, view_from))
     notes = [*sampling.notes, *_coarse(ours)]
     for note in notes:
-        progress.say(f"bake: {note}")
+        progress.say(note)
     million = size[0] * size[1] * 1e-6
     rendered = sampling.kind.cost * sampling.samples * len(reference.SEEDS) * million
     progress.plan([(f"Cycles bakes {name} ({kind})", kind, rendered),
@@ -59,11 +60,12 @@ def compare(depsgraph, name, size, samples, view_from, overrides, model, kind, r
     our_seconds = time.monotonic() - started
     progress.end()
 
-    texture, mean = ours.texture(), theirs.mean
+    parts, texture, mean = ours.parts(), ours.texture(), theirs.mean
     mask = native_module.get().default_mask(texture[..., 3], 0) & (mean[..., 3] == 1.0)
     if not mask.any():
         raise BakeError(f"No texel of '{name}' is covered on both sides: bake a larger texture.")
     numbers = measure.compare(texture, theirs.images, mask)
+    verdict, _ = significance.test(parts, theirs.images, mask)
     results = {
         "format": FORMAT,
         "format_version": FORMAT_VERSION,
@@ -76,9 +78,12 @@ def compare(depsgraph, name, size, samples, view_from, overrides, model, kind, r
         "view_from": view_from,
         "size": list(size),
         **numbers,
+        "our_noise": measure.compare(mean, parts, mask)["noise_floor"],
+        "significance": verdict,
         "material": ours.materials,
         "uv_use": ours.uv_use,
         "samples": ours.samples,
+        "our_seeds": len(parts),
         "our_seconds": round(our_seconds, 4),
         "passes_ms": dict(ours.timings()),
         "reference_samples": sampling.samples,
@@ -98,28 +103,41 @@ def write(path, ours, theirs, mask, results):
     Raises OutputError."""
     native = native_module.get()
     output = Output(path.absolute().parent)
+    names = files(path)
     texture, mean = ours.texture(), theirs.mean
     stops = colours.exposure_for(mean, mask)
     shown = mask[..., None]
     relative = colours.relative_error(texture, mean)
-    stem = path.name[: -len(path.suffix)]
     error = native.error_image(texture, mean, metric="e")
-    written = [
-        output.write_exr(path.name, texture, ours.provenance()),
-        output.write_exr(f"{stem}.cycles.exr", mean, {"mean_of": theirs.provenance}),
-        output.write_exr(f"{stem}.error.exr", shown * error, {"definition": ERROR}),
-        output.write_png(f"{stem}.png", colours.expose(texture, stops)),
-        output.write_png(f"{stem}.cycles.png", colours.expose(mean, stops)),
-        output.write_png(f"{stem}.error.png", shown * colours.false_colour(relative)),
-    ]
-    output.write_text(f"{stem}.json", json.dumps(results, indent=1, allow_nan=False) + "\n")
-    return [*written, f"{stem}.json"]
+    output.write_exr(names["model"], texture, ours.provenance())
+    output.write_exr(names["reference"], mean, {"mean_of": theirs.provenance})
+    output.write_exr(names["error"], shown * error, {"definition": ERROR})
+    output.write_png(names["model_png"], colours.expose(texture, stops))
+    output.write_png(names["reference_png"], colours.expose(mean, stops))
+    output.write_png(names["error_png"], shown * colours.false_colour(relative))
+    output.write_text(names["results"], json.dumps(results, indent=1, allow_nan=False) + "\n")
+    return list(names.values())
+
+
+def files(path):
+    """{what it holds: its name} of the files that `write` puts beside `path`, OUT.exr, which is one of them."""
+    stem = path.name[: -len(path.suffix)]
+    return {
+        "model": path.name,
+        "reference": f"{stem}.cycles.exr",
+        "error": f"{stem}.error.exr",
+        "model_png": f"{stem}.png",
+        "reference_png": f"{stem}.cycles.png",
+        "error_png": f"{stem}.error.png",
+        "results": f"{stem}.json",
+    }
 
 
 def _only_model(depsgraph, name, size, overrides):
     models = {values["model"] for values in Surface(depsgraph, name, size, overrides=overrides).materials.values()}
     if len(models) > 1:
-        raise BakeError(f"The materials of '{name}' have several models ({', '.join(sorted(models))}): choose one.")
+        there = ", ".join(sorted(models))
+        raise BakeError(f"The materials of '{name}' have several models ({there}): name one, or give all the same.")
     return models.pop()
 
 

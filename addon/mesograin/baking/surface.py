@@ -31,39 +31,46 @@ class Surface:
 
     depsgraph: evaluated. name: of the object; its first instance counts. size: (width, height) in texels.
     view_from: of VIEW_FROM. overrides: {parameter: value} for every material, coefficients per scene unit.
+    parts: of independent noise that the texture is the mean of, so that its noise is known.
     Raises BakeError or native.Error with one sentence.
     """
 
-    def __init__(self, depsgraph, name, size, view_from=VIEW_FROM[0], overrides=None):
+    def __init__(self, depsgraph, name, size, view_from=VIEW_FROM[0], overrides=None, parts=1):
         native = native_module.get()
         scene = export.read_scene(depsgraph, meshes.MeshCache())
-        parts = _parts(scene, name)
-        if not all(scene.instances[index].mesh.has_uvs for index in parts):
+        instances = _instances(scene, name)
+        if not all(scene.instances[index].mesh.has_uvs for index in instances):
             raise BakeError(f"Object '{name}' has no UVs to bake at: unwrap it (UV > Unwrap in Edit Mode).")
         changed = tuple(_with(instance, overrides or {}) for instance in scene.instances)
         scene = dataclasses.replace(scene, instances=changed)
         self.name, self.size, self.view_from = name, tuple(size), view_from
-        self.materials = {changed[index].material.name: dict(changed[index].material.values) for index in parts}
-        self.triangles = sum(changed[index].mesh.triangle_count for index in parts)
-        self._view = native.View(*size)
-        self._view.set_scene(scene.to_native())
-        if view_from == "active_camera":
-            self._view.set_camera(export.camera_from_scene(depsgraph, *_picture_size(depsgraph.scene)))
-        self._view.set_bake(parts, view_from)
-        use = self._view.uv_use()
+        self.materials = {changed[index].material.name: dict(changed[index].material.values) for index in instances}
+        self.triangles = sum(changed[index].mesh.triangle_count for index in instances)
+        self._views = [native.View(*size, seed=seed) for seed in range(parts)]
+        drawn = scene.to_native()
+        for view in self._views:
+            view.set_scene(drawn)
+            if view_from == "active_camera":
+                view.set_camera(export.camera_from_scene(depsgraph, *_picture_size(depsgraph.scene)))
+            view.set_bake(instances, view_from)
+        use = self._views[0].uv_use()
         self.warnings = (*scene.warnings, *(f"Object '{name}': {sentence}" for sentence in use.pop("warnings")))
         self.uv_use = use
         self._cancelled = False
 
     def render(self, samples, on_progress=None):
-        """Brings the texture to `samples` a texel, calling on_progress with the fraction done; ends early once
-        `cancel` is called. Returns whether it was finished."""
+        """Brings the texture to `samples` a texel or, where its parts cannot share them alike, a few more, calling
+        on_progress with the fraction done; ends early once `cancel` is called. Returns whether it was finished."""
         tell = on_progress or (lambda fraction: None)
+        of_each = -(-samples // len(self._views))
         share = 1
-        while self._view.samples < samples and not self._cancelled:
+        while self._views[-1].samples < of_each and not self._cancelled:
             started = time.monotonic()
-            self._view.render(min(share, samples - self._view.samples))
-            tell(self._view.samples / samples)
+            step = min(share, of_each - self._views[-1].samples)
+            for view in self._views:
+                if not self._cancelled:
+                    view.render(step)
+            tell(self._views[-1].samples / of_each)
             if time.monotonic() - started < PATIENCE_SECONDS:
                 share *= 2
         return not self._cancelled
@@ -71,20 +78,27 @@ class Surface:
     def cancel(self):
         """Ends `render` after its current sample; from any thread."""
         self._cancelled = True
-        self._view.cancel()
+        for view in self._views:
+            view.cancel()
 
     @property
     def samples(self):
-        return self._view.samples
+        """A texel, over all parts."""
+        return sum(view.samples for view in self._views)
 
     def timings(self):
         """((pass, milliseconds), ...) of the last sample."""
-        return tuple((timing["pass"], timing["milliseconds"]) for timing in self._view.timings())
+        return tuple((timing["pass"], timing["milliseconds"]) for timing in self._views[0].timings())
+
+    def parts(self):
+        """The parts of independent noise, each as `texture` without a margin, and not looked at for NaN and Inf."""
+        return [view.read() for view in self._views]
 
     def texture(self, margin=0):
         """(h, w, 4) float32: linear radiance, premultiplied by the coverage in the last channel, row 0 at v = 1, charts
         grown by `margin` texels. Raises BakeError if a texel is NaN or Inf."""
-        texture = native_module.get().extend_margin(self._view.read(), margin)
+        mean = numpy.mean(self.parts(), axis=0, dtype=numpy.float64).astype(numpy.float32)
+        texture = native_module.get().extend_margin(mean, margin)
         broken = int(numpy.count_nonzero(~numpy.isfinite(texture).all(axis=2)))
         if broken:
             raise BakeError(f"{broken} texels of '{self.name}' are not finite: check its normals and materials.")
@@ -154,7 +168,7 @@ def choose(depsgraph, name=None):
     raise BakeError(f"There is no object '{name}' to bake, visible in renders and with faces; there are: {there}.")
 
 
-def _parts(scene, name):
+def _instances(scene, name):
     """Indices of the instances that make up the first placing of an object: one for each material slot in use."""
     placings = {}
     for index, instance in enumerate(scene.instances):

@@ -1,20 +1,9 @@
 # What the buttons of the Compare panel do.
 import bpy
-from bpy.props import EnumProperty, StringProperty
+from bpy.props import StringProperty
 
-from ..side_task.operators import CancelOperator, StartOperator
-from . import pictures
+from ..side_task.operators import CancelOperator, ShowPictureOperator, StartOperator
 from .session import session
-
-
-# What each of pictures.FILES is called on its button, and what it shows.
-PICTURES = {
-    "model": ("Model", "Our picture, linear"),
-    "reference": ("Reference", "The mean of Cycles' seeds, linear"),
-    "error": ("Error", "Our picture less the reference, linear; negative where ours is too dark"),
-    "error colours": ("Colours", "The relative error in false colours"),
-    "z-map": ("Z-map", "In colour where the two differ by more than their noise explains"),
-}
 
 
 class MESOGRAIN_OT_compare(StartOperator, bpy.types.Operator):
@@ -50,52 +39,18 @@ class MESOGRAIN_OT_open_report(bpy.types.Operator):
         return bpy.ops.wm.url_open(url=(session.task.out / "report.html").as_uri())
 
 
-class MESOGRAIN_OT_show_picture(bpy.types.Operator):
+class MESOGRAIN_OT_show_picture(ShowPictureOperator, bpy.types.Operator):
     bl_idname = "mesograin.show_picture"
-    bl_label = "Show Picture"
     bl_description = "Show this picture of the comparison in an Image Editor"
+    session = session
 
     case: StringProperty(name="Case", description="MODEL.REFERENCE")
-    picture: EnumProperty(name="Picture", items=tuple(
-        (name, *PICTURES[name], number) for number, name in enumerate(pictures.FILES)))
 
-    @classmethod
-    def description(cls, _context, properties):
-        return f"{PICTURES[properties.picture][1]}; shown in an Image Editor"
-
-    @classmethod
-    def poll(cls, _context):
-        return session.results is not None
-
-    def execute(self, context):
-        entry = next((entry for entry in session.results["cases"]
-                      if entry["name"] == self.case and entry["status"] == "done"), None)
-        if entry is None:
-            self.report({"ERROR"}, f"The last comparison has no pictures of a case '{self.case}'.")
-            return {"CANCELLED"}
-        try:
-            image = pictures.show(entry, self.picture, session.task.out)
-        except RuntimeError as error:
-            self.report({"ERROR"}, f"The picture cannot be shown: {' '.join(str(error).split())}")
-            return {"CANCELLED"}
-        area = _image_editor(context)
-        area.spaces.active.image = image
-        return {"FINISHED"}
-
-
-def _image_editor(context):
-    """The Image Editor that is used, or else the largest, or else one in a window of its own."""
-    if context.area and context.area.type == "IMAGE_EDITOR":
-        return context.area
-    editors = [area for window in context.window_manager.windows for area in window.screen.areas
-               if area.type == "IMAGE_EDITOR"]
-    if not editors:
-        before = set(context.window_manager.windows)
-        bpy.ops.wm.window_new()
-        [window] = set(context.window_manager.windows) - before
-        editors = [window.screen.areas[0]]
-        editors[0].ui_type = "IMAGE_EDITOR"
-    return max(editors, key=lambda area: area.width * area.height)
+    def entry(self):
+        for entry in session.results["cases"]:
+            if entry["name"] == self.case and entry["status"] == "done":
+                return entry, session.task.out
+        raise LookupError(f"The last comparison has no pictures of a case '{self.case}'.")
 
 
 register, unregister = bpy.utils.register_classes_factory(

@@ -3,15 +3,10 @@ import bpy
 
 from .. import panels, reference_cache
 from ..background import job as jobs
-from ..comparison.progress import duration
-from ..comparison.significance import NO_DIFFERENCE
-from ..comparison.verdict import verdict
-from ..properties import MODELS
 from ..side_task import panel as side_task
-from . import operators, pictures, properties
+from ..side_task import results
+from . import operators, properties
 from .session import session
-
-MODEL_LABELS = {item[0]: item[1] for item in MODELS}
 
 
 def draw_settings(layout, context):
@@ -50,38 +45,12 @@ def draw_results(layout, context):
 
 
 def _draw_case(box, context, entry):
-    box.label(text=f"{MODEL_LABELS[entry['model']]} against {entry['reference_title']}")
     if entry["status"] != "done":
+        results.draw_title(box, entry)
         panels.draw_sentence(box, context, entry["error"])
         return
-    grid = box.grid_flow(row_major=True, columns=2, even_columns=True, align=True)
-    for title, value in _numbers(entry):
-        grid.label(text=title)
-        grid.label(text=value)
-    test = entry["significance"]
-    same = test is not None and test["verdict"] == NO_DIFFERENCE
-    panels.draw_sentence(box, context, _sentence(verdict(entry)), icon="CHECKMARK" if same else "INFO")
-    row = box.row(align=True)
-    for picture in pictures.pictures_of(entry):
-        button = row.operator(operators.MESOGRAIN_OT_show_picture.bl_idname, text=operators.PICTURES[picture][0])
-        button.case, button.picture = entry["name"], picture
-
-
-def _numbers(entry):
-    """(title, value) pairs. The definitions are in results.json and in the report."""
-    yield "Error (relative L1)", _share(entry["metrics"]["relative_l1"])
-    yield "Noise of the reference", _share(entry["noise_floor"]["relative_l1"])
-    yield "Frame, Mesograin", f"{entry['frame_ms']:.2f} ms"
-    yield "Reference, Cycles", duration(entry["reference_seconds"]) if entry["reference_seconds"] >= 1.0 else (
-        f"{1000.0 * entry['reference_seconds']:.0f} ms")
-
-
-def _sentence(words):
-    return words[:1].upper() + words[1:]
-
-
-def _share(value):
-    return "none" if value is None else f"{value:.2%}"
+    results.draw(box, context, entry, ("Frame, Mesograin", f"{entry['frame_ms']:.2f} ms"),
+                 operators.MESOGRAIN_OT_show_picture, case=entry["name"])
 
 
 class MESOGRAIN_PT_compare(panels.MesograinPanel, bpy.types.Panel):

@@ -30,12 +30,6 @@ def _flags(items):
     return tuple((name, label, description, 1 << number) for number, (name, label, description) in enumerate(items))
 
 
-def _label(kind):
-    """Its title without the word that all have in common."""
-    words = kind.title.removeprefix("Cycles ")
-    return words[0].upper() + words[1:]
-
-
 def _describe(quality):
     theirs = quality.reference_samples or "64 (surfaces) or 128 (volumes)"
     return f"{quality.samples} samples of each pixel on our side, {theirs} for each seed of Cycles"
@@ -50,7 +44,7 @@ class CompareProperties(bpy.types.PropertyGroup):
         description="Models to compare; every material of the scene is rendered with each (Shift adds to the choice)")
     references: EnumProperty(
         name="References", options={"ENUM_FLAG"}, default=set(),
-        items=_flags([(kind.name, _label(kind), f"Answers {', '.join(kind.models)}") for kind in kinds.KINDS.values()]),
+        items=_flags([(kind.name, kind.label, f"Answers {', '.join(kind.models)}") for kind in kinds.KINDS.values()]),
         description="What Cycles renders to compare with; none chosen is each model's usual one")
     quality: EnumProperty(
         name="Quality", default="draft", description="How many samples both sides take",

@@ -7,8 +7,9 @@ import bpy
 from .. import native_module, reference_cache, scripting
 from ..background import job as jobs
 from ..background.launch import launch
+from ..side_task import pictures
 from ..side_task.session import Session
-from . import pictures, properties
+from . import properties
 
 
 class CompareSession(Session):
@@ -31,7 +32,7 @@ class CompareSession(Session):
             if not arguments["models"]:
                 raise scripting.ComparisonError("No model is chosen: choose at least one.")
             return launch(
-                str(out), **arguments, cache=str(cache.folder), cache_limit=cache.limit,
+                "compare", str(out), **arguments, cache=str(cache.folder), cache_limit=cache.limit,
                 command=scripting.call(**arguments, out=scene.mesograin_compare.out))
         except (native_module.Unavailable, ValueError) as problem:
             raise scripting.ComparisonError(str(problem)) from problem
@@ -56,7 +57,9 @@ class CompareSession(Session):
             return
         try:
             self.results = json.loads((job.out / "results.json").read_text(encoding="utf-8"))
-            pictures.show_all(self.results, job.out)
+            for entry in self.results["cases"]:
+                if entry["status"] == "done":
+                    pictures.show_all(entry, job.out)
         except (OSError, ValueError, RuntimeError) as problem:
             self.error = f"The results in {job.out} cannot be shown: {' '.join(str(problem).split())}"
 

@@ -53,6 +53,17 @@ class Kind:
         object.__setattr__(self, "recipe", self.recipe or self.name)
 
     @property
+    def label(self):
+        """Its title without the word that all have in common."""
+        words = self.title.removeprefix("Cycles ")
+        return words[0].upper() + words[1:]
+
+    @property
+    def has_texture(self):
+        """Whether it can be baked; the others are pictures."""
+        return not (self.referee or self.smooth_interface)
+
+    @property
     def tracer(self):
         """Who renders it, as it is called in sentences."""
         return "mesograin-referee" if self.referee else "Cycles"

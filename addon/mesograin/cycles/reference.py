@@ -61,7 +61,7 @@ class Sampling:
         self.samples = samples or self.kind.samples
         self._depsgraph, self._size, self._cache, self._overrides = depsgraph, size, cache, overrides or {}
         self._unwrapping = unwrapping
-        if unwrapping and (self.kind.referee or self.kind.smooth_interface):
+        if unwrapping and not self.kind.has_texture:
             raise ReferenceError(f"The reference {kind} is a picture and has no texture: choose another.")
         self.notes = _check(depsgraph, self.kind, self._overrides)
         self._coverage = None

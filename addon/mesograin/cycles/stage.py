@@ -1,6 +1,7 @@
 # A scene of its own for each reference, copied from the evaluated one, so that the user's scene is never touched.
 """See `Stage`."""
 
+import addon_utils
 import bpy
 
 from .. import meshes
@@ -9,6 +10,12 @@ from . import settings
 
 class StageError(Exception):
     """The scene cannot be rendered; one sentence."""
+
+
+def need_cycles():
+    """Raises StageError if this Blender has no Cycles."""
+    if not hasattr(bpy.types.Scene, "cycles") and addon_utils.enable("cycles") is None:
+        raise StageError("Cycles is needed for the references, but this Blender has none: enable its add-on.")
 
 
 class Stage:
