@@ -35,6 +35,12 @@ result = {{"model": words[words.index("--models") + 1], "reference": "volume_ind
 for name in ("model", "error"):
     with open(os.path.join(out, name + ".png"), "wb") as file:
         file.write(name.encode())
+if "--controls" in words:
+    # The identical material is called different at scale 1, the wrong one is not at scale 4.
+    test = {{"differs": {{"verdict": "differs", "share": 0.1, "share_blocks": 0.5}},
+            "same": {{"verdict": "no significant difference", "share": 0.0, "share_blocks": 0.0}}}}
+    result["controls"] = {{"identical": test["differs" if scale == 1 else "same"],
+                          "wrong": {{**test["same" if scale == 4 else "differs"], "change": {{"scale": 2 * scale}}}}}}
 made = {{"versions": {{"mesograin": "0.1.0", "blender": "3.4.1 (abc)", "python": "3.11", "numpy": "1.24"}},
         "device": {{"renderer": "llvmpipe", "version": "4.5"}},
         "cpu": {{"name": "A CPU", "cores": 2, "machine": "x86_64"}}}}

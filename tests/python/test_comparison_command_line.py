@@ -50,6 +50,7 @@ def test_masks():
         (["--samples", "0"], "from 1 to"),
         (["--reference-samples", "-3"], "from 1 to"),
         (["--seeds", "0"], "from 1 to"),
+        (["--controls", "--seeds", "1"], "--controls needs --seeds 2 or more"),
         (["--part", "diffuse"], "invalid choice: 'diffuse'"),
         (["--references", "subsurface", "--part", "specular"], "those that have it are glossy, volume_dielectric"),
         (["--references", "diffuse", "--part", "subsurface"], "the reference diffuse has no subsurface part"),

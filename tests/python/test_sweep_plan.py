@@ -88,6 +88,9 @@ def test_keys_tell_cases_apart_and_follow_the_scenes_content(write, tmp_path):
         ('scenes = ["a.blend"]', 'scenes = "a.blend"', 2, "scenes must be a list with one or more .blend files"),
         ("samples = 16", 'samples = 16\npart = "gloss"', 7, "part must be one of specular, subsurface; got 'gloss'"),
         ("samples = 16", 'samples = 16\npart = "specular"', 4, "volume_index_matched has no specular part: all"),
+        ("samples = 16", "samples = 16\ncontrols = 1", 7, "controls must be true or false; got 1"),
+        ("samples = 16", 'samples = 16\ncontrols = "yes"', 7, "controls must be true or false; got 'yes'"),
+        ("samples = 16", "samples = 16\nseeds = 1\ncontrols = true", 8, "controls need 2 or more seeds"),
         ("samples = 16", "samples = 16\nmaterial.g = 2", 7, "g must be a number from -1 to 1; got 2"),
         ("samples = 16", "samples = 16\nmaterial = { g = 2 }", 7, "g must be a number from -1 to 1; got 2"),
     ],
@@ -133,6 +136,18 @@ def test_a_part_is_compared_with_the_references_that_have_it(write):
     assert all(("part", "specular") in case.settings for case in found.cases)
     with pytest.raises(plan.PlanError, match="line 3 .*no reference has a specular part of lambert"):
         plan.read(write(text.replace('"model_1"', '"lambert"')))
+
+
+def test_controls_are_asked_for_or_not(write):
+    run = room("sweep.run")
+    plain, asked, declined = (
+        plan.read(write(GOOD.replace("samples = 16", f"samples = 16\n{line}"))).cases
+        for line in ("", "controls = true", "controls = false")
+    )
+    assert all("--controls" in run.arguments(case, "out") for case in asked)
+    assert not any("--controls" in run.arguments(case, "out") for case in (*plain, *declined))
+    assert [case.key for case in declined] == [case.key for case in plain]
+    assert not {case.key for case in asked} & {case.key for case in plain}, "they hold more"
 
 
 def test_broken_toml_names_the_line(write):

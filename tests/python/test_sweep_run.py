@@ -66,6 +66,31 @@ def test_the_page_holds_every_case_definition_and_link(sweep):
         assert inside or (sweep / "out" / target).exists()
 
 
+def test_controls_are_in_the_tables_and_on_the_page(sweep):
+    (sweep / "s.toml").write_text("controls = true\n" + (sweep / "s.toml").read_text())
+    assert run(sweep, "--report").returncode == 0
+    rows = json.loads((sweep / "out/results.json").read_text())["rows"]
+    assert [row["controls"]["wrong"]["change"]["scale"] for row in rows] == [2, 4, 8, 2, 4, 8]
+    with (sweep / "out/results.csv").open() as file:
+        verdicts = [(row["controls.identical"], row["controls.wrong"]) for row in csv.DictReader(file)]
+    same, differs = "no significant difference", "differs"
+    assert verdicts[:3] == [(differs, differs), (same, differs), (same, same)]
+    page = (sweep / "out/report.html").read_text()
+    text = " ".join(html.unescape(re.sub(r"<[^>]*>", " ", page)).split())
+    assert "of 6 identical materials 2 are called different, of 6 wrong ones 4." in text
+    assert "a model_1 scale=1 : The same material with other seeds is called different in 10.0 % of the pixels" in text
+    assert "a model_1 scale=4 : A wrong one, scale 8, is not called different." in text
+    assert page.count("✓ identical") == 4 and page.count("✗ wrong") == 2
+    assert 'popover id="define-controls"' in page and "where the truth is known" in text
+
+
+def test_controls_that_were_not_asked_for_take_no_room(sweep):
+    run(sweep, "--report")
+    header = (sweep / "out/results.csv").read_text().splitlines()[0]
+    assert "controls" not in header and "controls" not in (sweep / "out/report.html").read_text().split("<style>")[0]
+    assert "define-controls" not in (sweep / "out/report.html").read_text()
+
+
 def test_without_a_report_the_tables_are_written_alone(sweep):
     assert run(sweep).returncode == 0
     assert not (sweep / "out/report.html").exists() and not (sweep / "out/plots").exists()

@@ -142,6 +142,8 @@ def parse(words):
     for kind in chosen.references or ():
         if not kinds.has(kind, chosen.part):
             parser.error(kinds.missing_part(kind, chosen.part))
+    if chosen.controls and chosen.seeds < 2:
+        parser.error("--controls needs --seeds 2 or more, since one does not tell its noise")
     return chosen
 
 

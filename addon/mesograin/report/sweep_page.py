@@ -4,7 +4,7 @@
 from pathlib import Path
 
 from . import page_builder, sweep_plot
-from .wording import form
+from .wording import controls, form
 
 COLUMNS = (
     ("metrics.relative_l1", "relative L1", "percent"),
@@ -46,6 +46,7 @@ def build(results, origin, rows, folder):
         failures=results["failures"],
         plots=[each for each in plots if each],
         headline=_headline(results["rows"]),
+        **_controls(results["rows"]),
         names=[name for name in ("scene", "model", "reference", "part") if _varies(results, name)],
         axes=results["axes"],
         columns=[
@@ -64,6 +65,19 @@ def _headline(rows):
     least, most = (choose(known, key=lambda row: row["metrics"]["relative_l1"]) for choose in (min, max))
     low, high = (form(row["metrics"]["relative_l1"], "percent") for row in (least, most))
     return f"Relative L1 from {low} ({least['label']}) to {high} ({most['label']})."
+
+
+def _controls(rows):
+    """What all controls come to, in a sentence, and which of them are wrong: [(case, sentence)]; "" where none was
+    asked for."""
+    told = [(row["label"], controls(row)) for row in rows if row.get("controls")]
+    if not told:
+        return {"controls": "", "wrong_controls": []}
+    wrong = [(label, sentence) for label, pair in told for right, sentence in pair if not right]
+    quiet, found = (sum(pair[which][0] for _, pair in told) for which in (0, 1))
+    sentence = (f"The significance test where the truth is known: of {len(told)} identical materials"
+                f" {len(told) - quiet} are called different, of {len(told)} wrong ones {found}.")
+    return {"controls": sentence, "wrong_controls": wrong}
 
 
 def _varies(results, name):
@@ -88,6 +102,7 @@ def _row(row, results, number):
         "numbers": numbers,
         "files": row.files,
         "png": row.png if number < PICTURED else {},
+        "controls": controls(row.entry),
         "differs": None if significance is None else significance["verdict"] == "differs",
     }
 

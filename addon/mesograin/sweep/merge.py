@@ -17,7 +17,7 @@ def merge(plan, folder):
     """Writes results.json, results.csv and timings.csv into the sweep's folder; returns the rows and the cases missing.
 
     A row is {'label', 'scene', 'model', 'reference', 'part', 'parameters', 'metrics',
-    'noise_floor', 'mask', 'significance',
+    'noise_floor', 'mask', 'significance', 'controls',
     'folder', 'files'}; docs/comparing.md defines them.
     """
     rows, timings, missing, failures = [], [], [], []
@@ -41,6 +41,7 @@ def merge(plan, folder):
                 "noise_floor": result["noise_floor"],
                 "mask": result["mask"],
                 "significance": result.get("significance"),
+                "controls": result.get("controls"),
                 "folder": str(folder.place(case)),
                 "files": result.get("files", {}),
             }
@@ -80,6 +81,8 @@ def _flat(row):
     for group in ("metrics", "noise_floor", "mask", "significance"):
         for name, value in (row[group] or {}).items():
             flat[name if group == "metrics" else f"{group}.{name}"] = value
+    for name, test in (row["controls"] or {}).items():
+        flat[f"controls.{name}"] = test["verdict"]
     return flat
 
 

@@ -84,6 +84,17 @@ class Choice:
         return "one of " + ", ".join(self.names)
 
 
+@dataclass(frozen=True)
+class Switch:
+    """Whether or not."""
+
+    def check(self, value):
+        return value if isinstance(value, bool) else None
+
+    def __str__(self):
+        return "true or false"
+
+
 # Boundary and masking are not among them: the kind of reference decides both.
 PARAMETERS = {
     "reflectance": Colour(0.0, 1.0),
@@ -101,6 +112,7 @@ SETTINGS = {
     "reference_samples": Whole(1, 1 << 20),
     "seeds": Whole(1, 1024),
     "part": Choice(PARTS),
+    "controls": Switch(),
 }
 TOP_LEVEL = ("title", "scenes", "models", "references", "material", "grid", "list", *SETTINGS)
 
@@ -204,11 +216,7 @@ class _Reader:
                 raise self.error((), name, f"'{name}' is not known here; allowed are {', '.join(TOP_LEVEL)}")
         scenes = [self.scene(name) for name in self.names("scenes", None)]
         pairs = self.pairs()
-        settings = {
-            name: self.value((), name, self.table[name], kind)
-            for name, kind in SETTINGS.items()
-            if name in self.table
-        }
+        settings = self.settings()
         fixed = self.parameters(("material",), self.section("material"))
         grid = self.section("grid")
         rows = self.rows()
@@ -234,6 +242,18 @@ class _Reader:
                 )
             )
         return Plan(str(self.table.get("title", self.path.stem)), str(self.path), axes, tuple(cases))
+
+    def settings(self):
+        """{name: value} of those that the file names; what is switched off is as good as not named."""
+        named = {
+            name: self.value((), name, self.table[name], kind)
+            for name, kind in SETTINGS.items()
+            if name in self.table
+        }
+        settings = {name: value for name, value in named.items() if value is not False}
+        if "controls" in settings and settings.get("seeds", 2) < 2:
+            raise self.error((), "controls", "controls need 2 or more seeds, since one does not tell its noise")
+        return settings
 
     def pairs(self):
         """[(model, reference)]: each model with those of the references that answer it, or with its default one."""

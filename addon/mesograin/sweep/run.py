@@ -24,6 +24,8 @@ def arguments(case, out):
         if name == "size":
             width, height = value if isinstance(value, list) else (value, value)
             words += ["--size", f"{width}x{height}"]
+        elif value is True:
+            words.append(f"--{name}")
         else:
             words += [f"--{name.replace('_', '-')}", str(value)]
     for name, value in case.parameters:
