@@ -110,6 +110,26 @@ def test_what_is_wrong_is_named_with_its_line(write, old, new, line, part):
     assert sentence.endswith(".")
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "part"),
+    [
+        ("eta = 1.3", f"eta = [{'1.3, ' * 1000}]", "line 9 .*got \\[1.3, 1.3, .*\\.\\.\\."),
+        (
+            "[1, 2.5]",
+            f"{list(range(1, 1001))}\neta = {[1 + at / 100 for at in range(99)]}",
+            "line 11 .*there are 396000 cases; at most 100000 are allowed",
+        ),
+        (GOOD, "a = " + "[" * 5000, "too deep"),
+        (GOOD, "samples = " + "9" * 5000, "no TOML"),
+    ],
+    ids=["a long list", "a large grid", "deep lists", "a long number"],
+)
+def test_what_is_too_much_is_a_short_sentence(write, old, new, part):
+    with pytest.raises(plan.PlanError, match=part) as error:
+        plan.read(write(GOOD.replace(old, new)))
+    assert len(str(error.value)) < 400
+
+
 def test_cases_that_share_a_reference_are_a_group(write):
     found = plan.read(write(GOOD))
     assert found.groups == ((0, 4), (1, 5), (2, 6), (3, 7)), "the two models of each material and scale"
@@ -153,6 +173,10 @@ def test_controls_are_asked_for_or_not(write):
 def test_broken_toml_names_the_line(write):
     with pytest.raises(plan.PlanError, match="is no TOML: .*line 4"):
         plan.read(write(GOOD.replace('["model_1", "model_3"]', '["model_1"')))
+
+
+def test_a_mark_at_the_beginning_is_no_error(write):
+    assert plan.read(write("\ufeff" + GOOD)).title == "Optical scale"
 
 
 def test_a_missing_file_is_one_sentence(tmp_path):

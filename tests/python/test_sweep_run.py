@@ -147,6 +147,72 @@ def test_a_killed_sweep_goes_on_and_ends_with_the_same_table(sweep, number):
         assert (sweep / "out" / name).read_bytes() == (sweep / "unbroken" / name).read_bytes()
 
 
+def test_two_sweeps_into_one_folder_share_the_work(sweep):
+    environment = {**os.environ, "STAND_IN_SECONDS": "0.3"}
+    both = [subprocess.Popen(words(sweep), env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+            for _ in range(2)]
+    for process in both:
+        _, complaint = process.communicate(timeout=60)
+        assert (process.returncode, complaint) == (0, "")
+    assert runs(sweep) == 6, "no case runs twice"
+    assert run(sweep, out="unbroken").returncode == 0
+    assert (sweep / "out/results.csv").read_bytes() == (sweep / "unbroken/results.csv").read_bytes()
+
+
+def test_a_sweep_that_waits_for_another_can_be_ended(sweep):
+    first = subprocess.Popen(words(sweep), env={**os.environ, "STAND_IN_SECONDS": "20"}, start_new_session=True)
+    while not runs(sweep):
+        time.sleep(0.02)
+    second = subprocess.Popen(words(sweep), stderr=subprocess.PIPE, text=True)
+    time.sleep(1.0)
+    second.send_signal(signal.SIGINT)
+    _, complaint = second.communicate(timeout=10)
+    os.killpg(first.pid, signal.SIGKILL)
+    first.wait()
+    assert second.returncode == 130 and runs(sweep) == 1 and "Traceback" not in complaint
+
+
+def test_results_that_cannot_be_read_are_made_again(sweep):
+    assert run(sweep).returncode == 0
+    table = (sweep / "out/results.csv").read_bytes()
+    damaged = sorted(path for path in (sweep / "out/cases").glob("*/results.json"))[:3]
+    for path, text in zip(damaged, ("", "[]", '{"cases": [')):
+        path.write_text(text)
+    done = run(sweep)
+    assert (done.returncode, done.stderr, runs(sweep)) == (0, "", 9)
+    assert (sweep / "out/results.csv").read_bytes() == table
+
+
+def test_a_blender_that_is_killed_is_told(sweep):
+    (sweep / "blender").write_text("#!/bin/sh\necho Sample 3/64\nkill -9 $$\n")
+    done = run(sweep)
+    assert done.returncode == 1
+    assert "failed: Blender was ended by signal 9, as the system does when memory runs out; it last said" in done.stdout
+
+
+def test_a_scene_that_changes_under_way_is_told_and_its_case_run_again(sweep):
+    script = (sweep / "blender").read_text()
+    (sweep / "blender").write_text(script + f"open({str(sweep / 'a.blend')!r}, 'a').write('x')\n")
+    done = run(sweep, "--case", "0")
+    assert (done.returncode, done.stderr) == (1, "")
+    assert "a.blend was saved or moved meanwhile: run the sweep again" in done.stdout
+    (sweep / "blender").write_text(script)
+    assert run(sweep).returncode == 0 and runs(sweep) == 7
+
+
+def test_a_full_disk_is_told_and_costs_no_finished_case(sweep):
+    import resource
+
+    assert run(sweep, "--case", "0").returncode == 0
+    done = subprocess.run(words(sweep), capture_output=True, text=True,
+                          preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (64, 64)))
+    assert done.returncode == 3 and "cannot be written" in done.stderr, done.stderr
+    assert len(done.stderr.strip().splitlines()) == 1
+    assert not list((sweep / "out").rglob(".*.json.*")), "no half file stays"
+    assert run(sweep).returncode == 0
+    assert runs(sweep) == 6
+
+
 def test_jobs_run_side_by_side(sweep):
     # Each stand-in waits until three have begun: fewer at a time would wait for ever.
     done = subprocess.run(words(sweep, "--jobs", "3"), env={**os.environ, "STAND_IN_TOGETHER": "3"}, timeout=60)

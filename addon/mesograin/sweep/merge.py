@@ -2,12 +2,13 @@
 """See `merge` and `describe`."""
 import csv
 import datetime
+import io
 import os
 
 from ..comparison import definitions
 from ..report.reading import ORIGIN, SWEEP_FORMAT
 from ..report.reading import TIMINGS as TIMINGS_FILE
-from .folder import RESULTS, write
+from .folder import RESULTS, write, write_text
 
 TIMINGS = ("frame_ms", "reference_seconds")
 """What differs from run to run; kept in a table of its own so that the results can be compared bit for bit."""
@@ -88,9 +89,8 @@ def _flat(row):
 
 def _write_csv(path, rows):
     names = list(dict.fromkeys(name for row in rows for name in row))
-    partial = path.with_name(f".{path.name}.{os.getpid()}")
-    with partial.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, names, restval="")
-        writer.writeheader()
-        writer.writerows(rows)
-    partial.replace(path)
+    text = io.StringIO()
+    writer = csv.DictWriter(text, names, restval="")
+    writer.writeheader()
+    writer.writerows(rows)
+    write_text(path, text.getvalue())

@@ -4,6 +4,7 @@ import functools
 import hashlib
 import itertools
 import json
+import math
 import re
 import tomllib
 from dataclasses import dataclass
@@ -114,6 +115,10 @@ SETTINGS = {
     "part": Choice(PARTS),
     "controls": Switch(),
 }
+MOST_CASES = 100_000
+"""More than anyone waits for, and fewer than fill the memory."""
+MOST_SHOWN = 60
+"""Characters of a value in a message: a sentence stays one that can be read."""
 TOP_LEVEL = ("title", "scenes", "models", "references", "material", "grid", "list", *SETTINGS)
 
 
@@ -131,17 +136,29 @@ class Case:
     settings: tuple
     label: str
 
+    @functools.cached_property
+    def content(self):
+        """Stands for the scene's bytes as they were when first asked for: a case keeps its name while it runs."""
+        return _content(self.scene)
+
+    def scene_changed(self):
+        """Whether the scene is another one by now, or gone."""
+        try:
+            return _content(self.scene) != self.content
+        except OSError:
+            return True
+
     @property
     def key(self):
         """Sixteen hexadecimal digits that stand for all that determines the case, the scene's content included."""
-        return _digest([_content(self.scene), self.model, self.reference, self.parameters, self.settings])
+        return _digest([self.content, self.model, self.reference, self.parameters, self.settings])
 
     @property
     def shared(self):
         """Equal for cases that are compared with one and the same reference."""
         ours = ("samples",)
         theirs = [setting for setting in self.settings if setting[0] not in ours]
-        return _digest([_content(self.scene), self.reference, self.parameters, theirs])
+        return _digest([self.content, self.reference, self.parameters, theirs])
 
     def as_json(self):
         return {
@@ -195,13 +212,15 @@ def read(path):
     """
     path = Path(path)
     try:
-        text = path.read_text(encoding="utf-8")
+        text = path.read_text(encoding="utf-8-sig")  # some editors begin a file with a mark
     except (OSError, UnicodeDecodeError) as error:
         reason = getattr(error, "strerror", None) or error
         raise PlanError(f"The sweep '{path}' cannot be read ({reason}): name a TOML file.") from error
     try:
         table = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
+    except RecursionError as error:
+        raise PlanError(f"The sweep '{path}' is no sweep: its lists or tables lie too deep in one another.") from error
+    except ValueError as error:  # TOMLDecodeError, and what Python says of a number of thousands of digits
         raise PlanError(f"The sweep '{path}' is no TOML: {error}.") from error
     return _Reader(path, text, table).plan()
 
@@ -221,11 +240,13 @@ class _Reader:
         grid = self.section("grid")
         rows = self.rows()
         axes = tuple(dict.fromkeys([*grid, *(name for row in rows for name in row)]))
+        points = [self.axis(name, values) for name, values in grid.items()]
+        count = math.prod(map(len, [scenes, pairs, rows, *points]))
+        if count > MOST_CASES:
+            raise self.error((), "grid", f"there are {count} cases; at most {MOST_CASES} are allowed")
 
         cases = []
-        for scene, (model, reference), row, *point in itertools.product(
-            scenes, pairs, rows, *(self.axis(name, values) for name, values in grid.items())
-        ):
+        for scene, (model, reference), row, *point in itertools.product(scenes, pairs, rows, *points):
             parameters = {**fixed, **row, **dict(zip(grid, point, strict=True))}
             varying = {name: parameters[name] for name in axes if name in parameters}
             label = " ".join(
@@ -333,7 +354,7 @@ class _Reader:
             return [self.value(section, name, side, kind, occurrence) for side in value]
         checked = kind.check(value)
         if checked is None:
-            raise self.error(section, name, f"{name} must be {kind}; got {value!r}", occurrence)
+            raise self.error(section, name, f"{name} must be {kind}; got {_came(value)}", occurrence)
         return checked
 
     def error(self, section, key, what, occurrence=0):
@@ -361,6 +382,15 @@ class _Reader:
                 if re.match(pattern, text):
                     return number
         return 0
+
+
+def _came(value):
+    """A value as a message shows it."""
+    try:
+        text = repr(value)
+    except ValueError:  # Python writes no number of thousands of digits
+        text = "a number of thousands of digits"
+    return text if len(text) <= MOST_SHOWN else f"{text[:MOST_SHOWN]}..."
 
 
 def _short(value):

@@ -100,15 +100,30 @@ def _hand_over(work, cases, outcomes):
 
 def _run_case(case, folder, blender, processes):
     started = time.monotonic()
-    out = folder.begin(case)
-    code, log = processes.run(command(blender, case, out))
-    if code == 0:
-        folder.finish(case)
+    with folder.alone_with(case, processes.go_on):
         sentence = None
-    else:
-        sentence = _last_line(log) or f"Blender ended with exit code {code} and said nothing"
-        folder.fail(case, sentence, code)
+        if not folder.finished(case):  # another sweep may have done it meanwhile
+            out = folder.begin(case)
+            code, log = processes.run(command(blender, case, out))
+            sentence = _complaint(case, code, log)
+            if sentence is None:
+                folder.finish(case)
+            else:
+                folder.fail(case, sentence, code)
     return case, time.monotonic() - started, sentence
+
+
+def _complaint(case, code, log):
+    """Why a case has no result, one sentence, or None."""
+    said = _last_line(log)
+    if code < 0:
+        why = ", as the system does when memory runs out" if code == -signal.SIGKILL else ""
+        return f"Blender was ended by signal {-code}{why}" + (f"; it last said: {said}" if said else "")
+    if code > 0:
+        return said or f"Blender ended with exit code {code} and said nothing"
+    if case.scene_changed():
+        return f"the scene {case.scene} was saved or moved meanwhile: run the sweep again"
+    return None
 
 
 def _last_line(log):
@@ -139,12 +154,16 @@ class _Processes:
         self._lock = threading.Lock()
         self._ended = False
 
+    def go_on(self):
+        """Raises Interrupted once the sweep has ended."""
+        if self._ended:
+            raise Interrupted
+
     def run(self, words):
         if shutil.which("setpriv"):
             words = ["setpriv", "--pdeathsig", "KILL", *words]
         with self._lock:
-            if self._ended:
-                return -signal.SIGINT, "interrupted"
+            self.go_on()
             process = subprocess.Popen(
                 words,
                 stdin=subprocess.DEVNULL,
