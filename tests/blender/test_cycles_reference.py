@@ -215,6 +215,49 @@ def test_an_unreadable_file_is_rendered_again(counted, tmp_path):
     assert len(counted) == 2 and reference.render(depsgraph(), **base).cached
 
 
+@pytest.mark.parametrize("damage", ["smaller", "three channels", "another's", "no provenance"])
+def test_a_file_that_is_not_this_reference_is_rendered_again(native, counted, tmp_path, damage):
+    make_sphere(FRONT, segments=16, rings=8)
+    base = {"kind": "diffuse", "size": (8, 8), "samples": 2, "seeds": (1,), "cache": Cache(tmp_path)}
+    first = reference.render(depsgraph(), **base)
+    for path in tmp_path.iterdir():
+        pixels, _, attributes = native.read_exr(path)
+        provenance = attributes[shot.PROVENANCE]
+        if damage == "another's":
+            provenance = provenance.replace(path.stem, "0" * len(path.stem))
+        if damage == "no provenance":
+            provenance = "null"
+        pixels = {"smaller": pixels[:4], "three channels": pixels[..., :3].copy()}.get(damage, pixels)
+        native.write_exr(path, pixels, attributes={shot.PROVENANCE: provenance})
+    np.testing.assert_array_equal(reference.render(depsgraph(), **base).images, first.images)
+    assert len(counted) == 2 and reference.render(depsgraph(), **base).cached
+
+
+def test_objects_that_are_no_shapes_are_in_nobodys_way(counted):
+    make_sphere(FRONT, segments=16, rings=8)
+    collection = bpy.context.scene.collection
+    made = [None, bpy.data.lights.new("Lamp", "POINT"), bpy.data.armatures.new("Bones"), bpy.data.lattices.new("Cage"),
+            bpy.data.cameras.new("Other"), bpy.data.speakers.new("Sound"), bpy.data.volumes.new("Fog")]
+    for data in made:
+        collection.objects.link(bpy.data.objects.new("Thing", data))
+    reference.render(depsgraph(), "diffuse", (8, 8), samples=2)
+    assert len(counted) == 2
+
+
+@pytest.mark.parametrize("kind", ["PANO", "LIGHT", "EMPTY"])
+def test_a_camera_that_is_not_like_for_like_is_named(counted, kind):
+    make_sphere(FRONT, segments=16, rings=8)
+    scene = bpy.context.scene
+    if kind == "PANO":
+        scene.camera.data.type = kind
+    else:
+        scene.camera = bpy.data.objects.new("Eye", bpy.data.lights.new("Eye", "POINT") if kind == "LIGHT" else None)
+        scene.collection.objects.link(scene.camera)
+    with pytest.raises(StageError, match=f"perspective or orthographic camera, and '{scene.camera.name}' is "):
+        reference.render(depsgraph(), "diffuse", (8, 8), samples=2)
+    assert counted == []
+
+
 def test_a_cache_that_cannot_be_written_costs_nothing_but_time(counted, tmp_path, capsys):
     make_sphere(FRONT, segments=16, rings=8)
     (tmp_path / "file").write_text("")

@@ -1,6 +1,7 @@
 """The reference cache: bounded, least recently used first, never half a file."""
 
 import os
+import time
 
 import pytest
 from addon_rooms import room
@@ -54,6 +55,23 @@ def test_failed_write_leaves_nothing(tmp_path):
     with pytest.raises(OSError, match="disk full"):
         store.store("a", fail)
     assert store.find("a") is None
+
+
+def test_what_killed_writers_left_goes(tmp_path):
+    store = cache.Cache(tmp_path, limit=1000)
+    for name, hours in ((".7.1.tmp", 25), (".8.1.tmp", 1)):
+        (tmp_path / name).write_bytes(b"half")
+        then = time.time() - 3600 * hours
+        os.utime(tmp_path / name, (then, then))
+    store.store("a", writer(3))
+    assert sorted(path.name for path in tmp_path.iterdir()) == [".8.1.tmp", "a.exr"]
+
+
+def test_what_cannot_be_removed_is_left(tmp_path):
+    store = cache.Cache(tmp_path, limit=1000)
+    store.path("a").mkdir()
+    store.forget("a")
+    assert store.path("a").is_dir()
 
 
 def test_clear_removes_references_and_nothing_else(tmp_path):

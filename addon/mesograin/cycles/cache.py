@@ -1,7 +1,9 @@
 # References that were rendered once, kept in a folder of bounded size: the longest unused go first.
 """See `Cache`."""
 
+import contextlib
 import os
+import time
 from pathlib import Path
 
 DEFAULT_LIMIT = 2 * 1024**3
@@ -34,6 +36,9 @@ class Cache:
     """
 
     SUFFIX = ".exr"
+    UNFINISHED = ".*.tmp"
+    """What a process that was killed while it wrote leaves; none takes as long as UNFINISHED_SECONDS."""
+    UNFINISHED_SECONDS = 24 * 3600.0
 
     def __init__(self, folder=None, limit=None):
         self.folder = Path(folder) if folder else default_folder()
@@ -61,8 +66,9 @@ class Cache:
         return path
 
     def forget(self, key):
-        """Removes a file, if it is there: one that turned out unreadable."""
-        self.path(key).unlink(missing_ok=True)
+        """Removes a file, if it is there and can be removed: one that turned out unreadable."""
+        with contextlib.suppress(OSError):
+            self.path(key).unlink()
 
     def files(self):
         """[(time of last use, bytes, path)], longest unused first; files that vanish meanwhile are left out."""
@@ -81,7 +87,12 @@ class Cache:
         return sum(size for _, size, _ in self.files())
 
     def trim(self):
-        """Removes the longest unused files until the rest fit the limit; returns how many. The newest stays."""
+        """Removes the longest unused files until the rest fit the limit; returns how many. The newest stays. What
+        killed processes left goes, too."""
+        for path in self.folder.glob(self.UNFINISHED):
+            with contextlib.suppress(OSError):
+                if path.stat().st_mtime < time.time() - self.UNFINISHED_SECONDS:
+                    path.unlink()
         files = self.files()
         excess = sum(size for _, size, _ in files) - self.limit
         removed = 0

@@ -31,7 +31,7 @@ def take(depsgraph, kind, size, samples, seed, cache=None, overrides=None, on_pr
     scene = _scene(depsgraph, size, overrides or {})
     described = json.dumps({"photon": 1, "scene": scene, "samples": samples, "seed": seed}, sort_keys=True)
     key = hashlib.sha256(described.encode()).hexdigest()
-    found = shot.read_cached(native, cache, key)
+    found = shot.read_cached(native, cache, key, size)
     if found:
         tell(1.0)
         return found

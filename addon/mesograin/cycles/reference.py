@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy
 
+from .. import meshes
 from . import kinds, photon, shot
 from .limits import limits
 from .shot import PROVENANCE, ReferenceError
@@ -127,7 +128,9 @@ def _check(depsgraph, kind, overrides):
     """Raises ReferenceError for the first material that Cycles cannot render; returns what it can only approximate."""
     materials = {}
     for instance in depsgraph.object_instances:
-        for slot in instance.object.material_slots if instance.show_self else ():
+        # Blender 3.4 crashes at the slots of an object that can have none.
+        drawn = instance.show_self and instance.object.type in meshes.DRAWABLE_TYPES
+        for slot in instance.object.material_slots if drawn else ():
             if slot.material:
                 materials[slot.material.name] = slot.material.original
     notes = []

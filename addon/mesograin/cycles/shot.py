@@ -66,7 +66,7 @@ def take(
         if kind.light != "all":
             determined_by["light"] = kind.light
         key = fingerprint.key(determined_by)
-        found = read_cached(native, cache, key)
+        found = read_cached(native, cache, key, size)
         if found:
             on_progress(1.0)
             return found
@@ -112,17 +112,20 @@ def keep(native, cache, key, shot):
     return shot
 
 
-def read_cached(native, cache, key):
-    """The Shot under this key, or None."""
+def read_cached(native, cache, key, size):
+    """The Shot of (width, height) pixels under this key, or None; a file that holds anything else is removed."""
     path = cache.find(key) if cache else None
     if not path:
         return None
     try:
         pixels, _, attributes = native.read_exr(path)
-        return Shot(pixels, json.loads(attributes[PROVENANCE]), cached=True)
-    except (native.Error, KeyError, ValueError):
-        cache.forget(key)
-        return None
+        provenance = json.loads(attributes[PROVENANCE])
+        if pixels.shape == (size[1], size[0], 4) and provenance["key"] == key:
+            return Shot(pixels, provenance, cached=True)
+    except (native.Error, KeyError, ValueError, TypeError):
+        pass
+    cache.forget(key)
+    return None
 
 
 def render_stage(native, scene, on_progress, light="all"):

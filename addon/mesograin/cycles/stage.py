@@ -73,6 +73,10 @@ class Stage:
         source = self._depsgraph.scene_eval.camera
         if source is None:
             raise StageError("The scene has no camera: add one, or choose one in the scene's properties.")
+        if source.type != "CAMERA" or source.data.type == "PANO":
+            is_what = "is panoramic" if source.type == "CAMERA" else f"is a {source.type.lower()}"
+            raise StageError(f"A comparison needs a perspective or orthographic camera, and '{source.name}' {is_what}: "
+                             "choose another in the scene's properties.")
         camera = self._own(bpy.data.cameras.new("Mesograin camera"))
         for name in CAMERA_PROPERTIES:
             setattr(camera, name, getattr(source.data, name))
