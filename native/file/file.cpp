@@ -28,6 +28,10 @@ class Descriptor {
   ~Descriptor() { close(); }
 
   int number() const { return number_; }
+  void take(int number) {
+    close();
+    number_ = number;
+  }
   bool close() { return number_ < 0 || ::close(std::exchange(number_, -1)) == 0; }
 
  private:
@@ -70,10 +74,12 @@ fs::path resolve(const fs::path& path) {
 /// A file beside the one that it will become; removed unless it does.
 class TemporaryFile {
  public:
-  explicit TemporaryFile(const fs::path& target)
-      : target_(target),
-        path_(target.parent_path() / fmt::format(".{}.{}.tmp", ::getpid(), ++count_)),
-        descriptor_(::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666)) {
+  explicit TemporaryFile(const fs::path& target) : target_(target) {
+    do {
+      path_ = target.parent_path() / fmt::format(".{}.{}.tmp", ::getpid(), ++count_);
+      descriptor_.take(::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+      // A killed process, or one on another machine that shares the folder, may have a file of this very name.
+    } while (descriptor_.number() < 0 && errno == EEXIST);
     if (descriptor_.number() < 0) throw_not_written(target_, errno);
   }
   TemporaryFile(const TemporaryFile&) = delete;
@@ -102,7 +108,7 @@ class TemporaryFile {
 
   fs::path target_;
   fs::path path_;
-  Descriptor descriptor_;
+  Descriptor descriptor_{-1};
 };
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <bit>
 #include <cmath>
@@ -20,6 +21,7 @@
 #include <fstream>
 #include <limits>
 #include <random>
+#include <string>
 
 #include "expect_error.h"
 #include "file/file.h"
@@ -300,6 +302,17 @@ TEST(Exr, AFullDiskLeavesTheOldFileAndNothingElse) {
   std::signal(SIGXFSZ, handler);
   EXPECT_EQ(folder.count(), 1);
   expect_same_bits(read_exr(folder / "a.exr").image.pixels, old.pixels);
+}
+
+TEST(Exr, WhatAKilledProcessLeftIsInNobodysWay) {
+  const TemporaryFolder folder;
+  const Image image = random_image(4, 4, 3);
+  // More names than this process can have used: the next one is among them.
+  for (int count = 0; count < 20000; ++count)
+    std::ofstream(folder / ("." + std::to_string(::getpid()) + "." + std::to_string(count) + ".tmp")) << "half";
+  write_exr(folder / "a.exr", image.view());
+  EXPECT_EQ(folder.count(), 20001);
+  expect_same_bits(read_exr(folder / "a.exr").image.pixels, image.pixels);
 }
 
 TEST(Exr, WritesThroughALink) {
