@@ -48,25 +48,36 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
         scene, warnings = export.scene_from_depsgraph(depsgraph)
         view = native.View(region.width, region.height)
         view.set_scene(scene)
-        view.set_camera(export.camera_from_scene(depsgraph, width, height, self.camera_override, region))
         for warning in warnings:
             self.report({"WARNING"}, warning)
 
         opaque = not depsgraph.scene.render.film_transparent
-        result = self.begin_result(0, 0, region.width, region.height, layer=depsgraph.view_layer.name)
-        try:
-            for samples in self._render_samples(view, target):
-                self._show(result, view, opaque)
-                self.update_result(result)
-                self.update_progress(samples / target)
-            if view.samples:  # a cancelled render keeps what it has
-                self._show(result, view, opaque)
-        except Exception:  # whatever it is: Blender must not be left with a result that never ends
-            self.end_result(result, cancel=True)
-            raise
-        self.end_result(result)
+        eyes = _eyes(depsgraph.scene.render)
+        for number, name in enumerate(eyes):
+            view.set_camera(self._camera(depsgraph, width, height, region, name))
+            result = self.begin_result(0, 0, region.width, region.height, layer=depsgraph.view_layer.name, view=name)
+            try:
+                for samples in self._render_samples(view, target):
+                    self._show(result, view, opaque)
+                    self.update_result(result)
+                    self.update_progress((number + samples / target) / len(eyes))
+                if view.samples:  # a cancelled render keeps what it has
+                    self._show(result, view, opaque)
+            except Exception:  # whatever it is: Blender must not be left with a result that never ends
+                self.end_result(result, cancel=True)
+                raise
+            self.end_result(result)
         passes = tuple((timing["pass"], timing["milliseconds"]) for timing in view.timings())
         status.put(status.RENDER, status.Status(view.samples, region.width, region.height, passes, warnings))
+
+    def _camera(self, depsgraph, width, height, region, eye):
+        """native.Camera of the eye of this name, or of the camera as it is."""
+        if not eye:
+            return export.camera_from_scene(depsgraph, width, height, self.camera_override, region)
+        self.active_view_set(eye)
+        camera = self.camera_override  # with views by camera names, that of this one
+        placed = camera and export.Eye(self.camera_model_matrix(camera), self.camera_shift_x(camera))
+        return export.camera_from_scene(depsgraph, width, height, camera, region, placed)
 
     def _render_samples(self, view, target):
         """Renders until `target` samples or a cancel, and yields their number whenever it is time to show them."""
@@ -162,6 +173,14 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
             self.report({"ERROR"}, complaint.error)
         if kind == status.RENDER:
             self.error_set(complaint.error)
+
+
+def _eyes(render):
+    """The names of the views of a stereoscopic picture that are asked for; one empty name where it is not one."""
+    if not render.use_multiview:
+        return ("",)
+    views = render.stereo_views if render.views_format == "STEREO_3D" else render.views
+    return tuple(view.name for view in views if view.use)
 
 
 def _replaces_geometry(update):

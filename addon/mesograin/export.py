@@ -95,10 +95,17 @@ def render_region(scene, width, height):
     return Region(left, lower, right - left, upper - lower)
 
 
-def camera_from_scene(depsgraph, width, height, camera=None, region=None):
+class Eye(typing.NamedTuple):
+    """One eye of a stereoscopic camera, in place of the camera's own."""
+
+    to_world: object  # mathutils.Matrix
+    shift_x: float  # of the lens, as a camera has it
+
+
+def camera_from_scene(depsgraph, width, height, camera=None, region=None, eye=None):
     """native.Camera of the scene's active camera (or `camera`) for a picture of width x height pixels, or for a Region
-    of it: perspective or orthographic, with sensor fit, shift and pixel aspect as Blender has them.
-    Raises native.Error without a camera."""
+    of it: perspective or orthographic, with sensor fit, shift and pixel aspect as Blender has them; eye: an Eye of it.
+    Raises native.Error without a camera, or for one that has no place to look from."""
     native = native_module.get()
     scene = depsgraph.scene
     camera = camera or scene.camera
@@ -108,11 +115,30 @@ def camera_from_scene(depsgraph, width, height, camera=None, region=None):
     render = scene.render
     to_clip = np.array(camera.calc_matrix_camera(depsgraph, x=width, y=height, scale_x=render.pixel_aspect_x,
                                                  scale_y=render.pixel_aspect_y), dtype=np.float64)
+    if eye is not None:
+        to_clip = _shift(eye.shift_x - camera.data.shift_x, camera.data.sensor_fit, width * render.pixel_aspect_x,
+                         height * render.pixel_aspect_y) @ to_clip
     if region is not None:
         to_clip = _zoom(region, width, height) @ to_clip
     # A camera's scale does not scale its view.
-    to_world = np.array(camera.matrix_world.normalized(), dtype=np.float64)
-    return native.Camera(np.linalg.inv(to_world), to_clip)
+    to_world = np.array((eye.to_world if eye else camera.matrix_world).normalized(), dtype=np.float64)
+    if not np.isfinite(to_world).all() or np.linalg.det(to_world) == 0.0:
+        raise native.Error(f"Camera '{camera.name}' is scaled to nothing, or its place is no number: clear its scale "
+                           "(Object > Clear > Scale) and place it anew.")
+    try:
+        return native.Camera(np.linalg.inv(to_world), to_clip)
+    except native.Error as error:
+        raise native.Error(f"Camera '{camera.name}' has a lens that shows nothing: check its focal length or "
+                           "orthographic scale, its sensor and its clip distances.") from error
+
+
+def _shift(shift_x, sensor_fit, width, height):
+    """Clip space to clip space of a lens shifted sideways, (4, 4). width, height: of the picture, as they look. A shift
+    is a part of the side that the sensor fits, by default the longer one."""
+    fitted = height if sensor_fit == "VERTICAL" or (sensor_fit == "AUTO" and height > width) else width
+    shifted = np.eye(4)
+    shifted[0, 3] = -2.0 * shift_x * fitted / width
+    return shifted
 
 
 def _zoom(region, width, height):
@@ -236,6 +262,10 @@ class _Reader:
             return
         # Heaps have instances by the ten thousands, and slices are the fastest way out of a Blender matrix.
         to_world = matrix_world[0][:] + matrix_world[1][:] + matrix_world[2][:] + matrix_world[3][:]
+        if not math.isfinite(sum(to_world)):
+            self._warn(f"Object '{evaluated_object.name}' has a place, rotation or scale that is no number, so it is "
+                       "not drawn.")
+            return
         for part in parts:
             self._instances.append(InstanceValues(evaluated_object.name, part.mesh,
                                                   self._material(evaluated_object, part.slot), to_world))

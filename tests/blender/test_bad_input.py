@@ -6,6 +6,7 @@ import threading
 import time
 
 import bpy
+import numpy as np
 import pytest
 from mathutils import Matrix
 from mesograin import status
@@ -73,6 +74,66 @@ def test_coordinates_that_are_none(scene):
 def test_sun_that_is_negative(scene):
     bpy.data.lights["Sun"].energy = -1.0
     assert_one_sentence(error_of_render(), "Light 'Sun'", "irradiance", "-1")
+
+
+@pytest.mark.parametrize("energy", [math.nan, math.inf])
+def test_sun_whose_strength_is_none(scene, energy):
+    bpy.data.lights["Sun"].energy = energy
+    assert_one_sentence(error_of_render(), "Light 'Sun'", "irradiance", "finite")
+
+
+def test_sun_as_wide_as_half_the_sky(scene, render):
+    bpy.data.lights["Sun"].angle = math.pi
+    picture = render()
+    assert np.isfinite(picture).all() and picture[8, 8, 0] > 0.1
+
+
+def test_more_lights_than_anyone_needs(scene, render):
+    before = render()
+    bpy.data.lights["Sun"].energy /= 40
+    for _ in range(39):
+        add_object("Copy", bpy.data.lights["Sun"], bpy.data.objects["Sun"].matrix_world.copy())
+    for model in ("lambert", "model_3"):
+        bpy.data.materials["Sand"].mesograin.model = model
+        picture, warnings = warnings_of_render(render)
+        assert warnings == () and np.isfinite(picture).all() and picture[8, 8, 0] > 0.01
+        if model == "lambert":
+            np.testing.assert_allclose(picture, before, rtol=1e-4, atol=1e-5)
+
+
+@pytest.mark.parametrize("place, complaints", [(math.nan, 1), (1e38, 0)], ids=["nan", "far"])
+def test_object_that_is_nowhere(scene, render, place, complaints):
+    before = render()
+    add_cube("Lost").location.x = place
+    picture, warnings = warnings_of_render(render)
+    assert len(warnings) == complaints and all("Object 'Lost' has a place" in sentence for sentence in warnings)
+    np.testing.assert_allclose(picture, before, atol=1e-5)
+
+
+def nowhere(camera):
+    camera.location.y = math.nan
+
+
+def scaled_to_nothing(camera):
+    camera.scale = (0.0, 0.0, 0.0)
+
+
+def without_a_lens(camera):
+    camera.data.lens = math.nan
+
+
+def between_planes_that_are_one(camera):
+    camera.data.clip_start = camera.data.clip_end = 1.0
+
+
+@pytest.mark.parametrize("spoil, words", [(nowhere, "place it anew"), (scaled_to_nothing, "clear its scale"),
+                                          (without_a_lens, "focal length"), (between_planes_that_are_one, "clip")])
+def test_camera_that_cannot_look(scene, render, spoil, words):
+    spoil(scene.camera)
+    assert_one_sentence(error_of_render(), "Camera 'Camera'", words)
+    bpy.data.objects.remove(scene.camera)
+    add_camera((0.0, 0.0, 6.0))
+    assert render()[8, 8, 0] > 0.1
 
 
 def test_no_camera(scene, render):

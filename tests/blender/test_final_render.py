@@ -1,4 +1,5 @@
 # F12 shows what the native module renders, pixel for pixel.
+import addon_utils
 import bpy
 import numpy as np
 import pytest
@@ -70,6 +71,72 @@ def test_render_border_is_that_part_of_the_picture(render, blend_files, crop):
     difference = abs(part - expected)
     # Where a sample falls right on the sphere's edge, rounding decides.
     assert difference.mean() < 1e-4 and (difference.max(axis=-1) > 1e-3).sum() < 10
+
+
+@pytest.mark.parametrize("pivot", ["LEFT", "CENTER"])
+@pytest.mark.parametrize("fit", ["HORIZONTAL", "VERTICAL", "AUTO"])
+@pytest.mark.parametrize("kind", ["PERSP", "ORTHO"])
+def test_stereo_shows_each_eye_what_cycles_shows_it(native, blend_files, tmp_path, kind, fit, pivot):
+    addon_utils.enable("cycles")
+    bpy.ops.wm.open_mainfile(filepath=str(blend_files / "sphere.blend"))
+    scene, sphere, camera = bpy.context.scene, bpy.data.objects["Sphere"], bpy.context.scene.camera
+    render, settings = scene.render, scene.render.image_settings
+    render.resolution_x, render.resolution_y = 60, 90
+    scene.mesograin.samples = scene.cycles.samples = 16
+    camera.data.type, camera.data.sensor_fit, camera.data.ortho_scale = kind, fit, 7.0
+    sphere.scale, sphere.location.z = (0.3, 0.3, 0.3), 2.0
+    render.use_multiview, render.views_format = True, "STEREO_3D"
+    stereo = camera.data.stereo
+    stereo.convergence_mode, stereo.pivot = "OFFAXIS", pivot
+    stereo.convergence_distance, stereo.interocular_distance = 6.5, 0.6
+    settings.file_format, settings.views_format, settings.color_mode = "OPEN_EXR", "INDIVIDUAL", "RGBA"
+    render.filepath = str(tmp_path / "eye.exr")
+
+    def columns():
+        bpy.ops.render.render(write_still=True)
+        covered = [native.read_exr(tmp_path / f"eye_{eye}.exr")[0][..., 3] for eye in "LR"]
+        assert all(image.shape == (90, 60) and image.max() == 1.0 for image in covered)
+        return [np.average(np.arange(60) + 0.5, weights=image.sum(axis=0)) for image in covered]
+
+    ours = columns()
+    render.engine = "CYCLES"
+    assert ours == pytest.approx(columns(), abs=0.1)
+    assert ours[0] - ours[1] > 1.0 or kind == "ORTHO"
+
+
+def test_stereo_renders_only_the_views_in_use(native, blend_files, tmp_path):
+    bpy.ops.wm.open_mainfile(filepath=str(blend_files / "sphere.blend"))
+    scene = bpy.context.scene
+    scene.mesograin.samples, scene.render.resolution_percentage = 1, 10
+    scene.render.use_multiview, scene.render.views_format = True, "MULTIVIEW"
+    scene.render.views["left"].use = False
+    settings = scene.render.image_settings
+    settings.file_format, settings.views_format = "OPEN_EXR", "INDIVIDUAL"
+    scene.render.filepath = str(tmp_path / "eye.exr")
+    bpy.ops.render.render(write_still=True)
+    [path] = tmp_path.glob("*.exr")
+    assert native.read_exr(path)[0][..., :3].max() > 0.1
+
+
+def test_animation_follows_material_and_light(native, blend_files, tmp_path):
+    bpy.ops.wm.open_mainfile(filepath=str(blend_files / "sphere.blend"))
+    scene = bpy.context.scene
+    grain, sun = bpy.data.materials["Translucent"].mesograin, bpy.data.lights["Front"]
+    scene.mesograin.samples, scene.render.resolution_percentage = 1, 10
+    scene.frame_start, scene.frame_end = 1, 3
+    grain.model = "lambert"
+    bpy.data.objects.remove(bpy.data.objects["Back"])
+    for frame, reflectance, energy in ((1, 0.2, 2.0), (2, 0.4, 2.0), (3, 0.4, 6.0)):
+        grain.reflectance, sun.energy = (reflectance,) * 3, energy
+        grain.keyframe_insert("reflectance", frame=frame)
+        sun.keyframe_insert("energy", frame=frame)
+    settings = scene.render.image_settings
+    settings.file_format, settings.color_depth = "OPEN_EXR", "32"
+    scene.render.filepath = str(tmp_path / "frame_")
+    bpy.ops.render.render(animation=True)
+    totals = [native.read_exr(path)[0][..., 0].sum() for path in sorted(tmp_path.glob("frame_*.exr"))]
+    assert totals[1] / totals[0] == pytest.approx(2.0, rel=1e-3)
+    assert totals[2] / totals[1] == pytest.approx(3.0, rel=1e-3)
 
 
 def test_animation_follows_the_frame(render, blend_files):

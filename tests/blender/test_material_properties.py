@@ -119,6 +119,23 @@ def test_files_remember(tmp_path):
     assert (settings.samples, settings.millimetres_per_unit) == (17, 1000.0)
 
 
+@pytest.mark.parametrize("link", [False, True], ids=["appended", "linked"])
+def test_a_material_goes_to_another_file(tmp_path, link):
+    material = bpy.data.materials.new("Grain")
+    material.use_fake_user = True
+    material.mesograin.model, material.mesograin.sigma_s, material.mesograin.eta = "model_2", (1.0, 2.0, 3.0), 1.5
+    path = str(tmp_path / "file.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
+    with bpy.data.libraries.load(path, link=link) as (there, here):
+        here.materials = there.materials
+    [taken] = here.materials
+    assert (taken.library is not None) == link
+    values = dict(export.material_values(taken, 1.0).values)
+    assert (values["model"], values["sigma_s"], values["eta"]) == ("model_2", (1.0, 2.0, 3.0), 1.5)
+    assert taken.copy().mesograin.model == "model_2"
+
+
 @pytest.mark.parametrize("parameter, value, kept", [
     ("sigma_a", (-1.0, 0.0, 0.0), (0.0, 0.0, 0.0)), ("g", -3.0, -1.0), ("eta", 9.0, 4.0), ("roughness", 2.0, 1.0),
     ("scale", -1.0, 0.0), ("reflectance", (2.0, 0.5, 0.5), (1.0, 0.5, 0.5))])
