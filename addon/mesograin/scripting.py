@@ -2,6 +2,7 @@
 """See `compare`."""
 
 import dataclasses
+import math
 from pathlib import Path
 
 import bpy
@@ -245,7 +246,7 @@ def _setting(name, value):
         numbers = (float(value),) * count if not hasattr(value, "__len__") else tuple(float(part) for part in value)
     except (TypeError, ValueError):
         numbers = ()
-    if len(numbers) != count:
+    if len(numbers) != count or not all(map(math.isfinite, numbers)):
         raise ComparisonError(f"{name} takes {'one number or three' if count == 3 else 'one number'}; {value!r} came.")
     return numbers if count == 3 else numbers[0]
 

@@ -53,6 +53,13 @@ def test_a_failing_case_has_its_sentence_and_no_pictures(sphere, compare):
         failed.image("model")
 
 
+def test_a_material_that_is_no_number_is_named(sphere, compare):
+    sphere.mesograin.roughness = float("nan")
+    [case] = compare(models="conductor", references="glossy").cases
+    assert "roughness" in case.error and "nan" in case.error
+    assert case.entry["material"][sphere.name]["roughness"] is None
+
+
 def test_the_scene_stays_as_it_is(sphere, compare):
     def kept():
         names = ("scenes", "objects", "meshes", "materials", "worlds", "images")
@@ -88,6 +95,7 @@ def test_warnings_are_returned(sphere, compare):
     ({"settings": {"boundary": "dielectric"}}, ("sigma_a", "'boundary' came")),
     ({"settings": {"sigma_s": (1.0, 2.0)}}, ("one number or three",)),
     ({"settings": {"g": "much"}}, ("g takes one number", "'much' came")),
+    ({"settings": {"g": float("nan")}}, ("g takes one number", "nan came")),
     ({"out": "//comparison"}, ("not saved",)),
     ({"out": "/dev/null/out"}, ("cannot be written",)),
 ])

@@ -64,6 +64,8 @@ def test_masks():
         (["--set", "boundary=dielectric"], "the reference chooses it"),
         (["--set", "sigma_s=1,2"], "one number or three"),
         (["--set", "g=high"], "one number"),
+        (["--set", "g=nan"], "one number, 'nan' came"),
+        (["--set", "sigma_a=0,inf,1"], "one number or three, '0,inf,1' came"),
         (["--cache-limit", "much"], "number of bytes"),
         (["missing.blend"], "no scene 'missing.blend'"),
     ],

@@ -2,6 +2,7 @@
 """Each takes a word and returns what it means, or raises argparse.ArgumentTypeError: what is needed and what came."""
 
 import argparse
+import math
 import re
 
 SETTABLE = {
@@ -63,6 +64,8 @@ def setting(text):
     try:
         numbers = tuple(float(number) for number in value.split(","))
     except ValueError:
+        numbers = ()
+    if not all(map(math.isfinite, numbers)):
         numbers = ()
     if count == 3 and len(numbers) == 1:
         numbers *= 3

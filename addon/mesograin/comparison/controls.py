@@ -1,6 +1,8 @@
 # Whether the significance test can be believed here: the reference's own renderer stands in our place, right and wrong.
 """See `test`. The same material with other seeds must not be called different, a wrong one must."""
 
+import math
+
 from ..cycles import reference
 from . import significance
 
@@ -45,5 +47,10 @@ def test(case, request, depsgraph, size, overrides, materials, theirs, mask, pro
 
 
 def plain(parameters):
-    """The same with lists for tuples, as JSON has them."""
-    return {name: list(value) if isinstance(value, tuple) else value for name, value in parameters.items()}
+    """The same as JSON has it: with lists for tuples, and null for what is no number."""
+    return {name: [_plain(each) for each in value] if isinstance(value, tuple) else _plain(value)
+            for name, value in parameters.items()}
+
+
+def _plain(value):
+    return None if isinstance(value, float) and not math.isfinite(value) else value
