@@ -63,9 +63,10 @@ def _read_mesh(mesh, name):
     if not mesh.polygons:
         return ()
     compat.calculate_corners(mesh)
-    corners = _corners(mesh)
+    corners, of_loop = _corners(mesh)
     triangles = np.empty((len(mesh.loop_triangles), 3), dtype=np.int32)
     mesh.loop_triangles.foreach_get("loops", triangles.ravel())
+    triangles = of_loop[triangles]
     slots = np.empty(len(mesh.loop_triangles), dtype=np.int32)
     mesh.loop_triangles.foreach_get("material_index", slots)
     used = np.unique(slots)
@@ -80,7 +81,8 @@ def _read_mesh(mesh, name):
 
 
 def _corners(mesh):
-    """Positions, normals and UVs (or None), one row for each corner: flat faces and UV seams share no vertices."""
+    """((positions, normals, UVs or None), rows), one row for each corner that differs from its vertex' first one: flat
+    faces and UV seams share no vertices. rows: which one each loop has."""
     positions = np.empty((len(mesh.vertices), 3), dtype=np.float32)
     mesh.vertices.foreach_get("co", positions.ravel())
     vertex_of_corner = np.empty(len(mesh.loops), dtype=np.int32)
@@ -90,7 +92,25 @@ def _corners(mesh):
     if layer is not None:
         uvs = np.empty((len(mesh.loops), 2), dtype=np.float32)
         layer.data.foreach_get("uv", uvs.ravel())
-    return positions[vertex_of_corner], smooth_normals.settle(mesh, compat.corner_normals(mesh)), uvs
+    normals = smooth_normals.settle(mesh, compat.corner_normals(mesh))
+    kept, of_loop = _weld(vertex_of_corner, normals, uvs)
+    return (positions[vertex_of_corner[kept]], normals[kept], None if uvs is None else uvs[kept]), of_loop
+
+
+def _weld(vertex, *values):
+    """(the corners to keep, which of these each corner is). vertex: of each corner. values: arrays with a row for each
+    corner, or None."""
+    numbers = np.arange(len(vertex), dtype=np.int32)
+    first = np.zeros(vertex.max() + 1, dtype=np.int32)
+    first[vertex[::-1]] = numbers[::-1]  # the last one written stays
+    twin = first[vertex]
+    same = np.ones(len(vertex), dtype=bool)
+    for array in values:
+        if array is not None:
+            same &= (array == array[twin]).all(axis=1)
+    same &= twin != numbers
+    position = np.cumsum(~same, dtype=np.int32) - 1
+    return np.flatnonzero(~same), position[np.where(same, twin, numbers)]
 
 
 def _native_mesh(name, corners, triangles):
@@ -99,7 +119,7 @@ def _native_mesh(name, corners, triangles):
     triangles = np.ascontiguousarray(triangles, dtype=np.uint32)
     digest = hashlib.blake2b(digest_size=16)
     for array in (positions, uvs, triangles):
-        digest.update(b"none" if array is None else array.tobytes())
+        digest.update(b"none" if array is None else np.ascontiguousarray(array))
     key = digest.digest()
     mesh = _by_content.get(key)
     if mesh is None or not np.allclose(_normals[mesh], normals, rtol=0.0, atol=NORMAL_TOLERANCE):

@@ -6,6 +6,10 @@ SAME = 1e-4
 """A corner's normal this near to its vertex' is the vertex'. Blender's threads move it by some 1e-7."""
 
 
+CHUNK = 1 << 17
+"""Faces at a time: what is computed of a corner takes twenty times the memory of what is kept."""
+
+
 def settle(mesh, normals):
     """The corner normals of a mesh with those of smooth vertices replaced by equal ones that are the same every time;
     normals of flat faces, of sharp edges and the user's own stay. normals: (loops, 3) float32."""
@@ -25,6 +29,16 @@ def _of_vertices(mesh):
     count = _read(mesh.polygons, "loop_total", len(mesh.polygons), np.int32)
     face_normals = _read(mesh.polygons, "normal", (len(mesh.polygons), 3), np.float32)
 
+    sums = np.zeros_like(positions)
+    for start in range(0, len(first), CHUNK):
+        faces = slice(start, start + CHUNK)
+        _add_faces(sums, positions, vertex, first[faces], count[faces], face_normals[faces])
+    length = np.linalg.norm(sums, axis=1, keepdims=True)
+    return (sums / np.where(length > 0.0, length, 1.0)).astype(np.float32)[vertex]
+
+
+def _add_faces(sums, positions, vertex, first, count, face_normals):
+    """Adds the faces' normals, weighted by their angles there, to the sums of their vertices."""
     # Faces in the order of their corners, so that corners can be counted on.
     face = np.repeat(np.arange(len(first)), count)
     corner = np.arange(len(face)) - np.repeat(np.cumsum(count) - count, count)
@@ -36,11 +50,8 @@ def _of_vertices(mesh):
     angle = np.arctan2(sine, np.einsum("ij,ij->i", after, before))
 
     at = vertex[loop]
-    sums = np.stack(
-        [np.bincount(at, angle * face_normals[face, axis], len(positions)) for axis in range(3)], axis=1
-    )
-    length = np.linalg.norm(sums, axis=1, keepdims=True)
-    return (sums / np.where(length > 0.0, length, 1.0))[vertex].astype(np.float32)
+    for axis in range(3):
+        sums[:, axis] += np.bincount(at, angle * face_normals[face, axis], len(positions))
 
 
 def _read(collection, attribute, shape, dtype):

@@ -116,9 +116,9 @@ def test_smooth_and_flat_faces_of_one_mesh(made):
     flat = np.abs(normals).max(axis=1) > 0.99
     assert flat.sum() == 4
     np.testing.assert_allclose(normals[flat], [[-1.0, 0.0, 0.0]] * 4, atol=1e-6)
-    # Beside the flat face Blender 3 averages with it and Blender 4 does not; opposite, all are smooth.
+    # Beside the flat face Blender 3 averages with it and Blender 4 does not; opposite, all are smooth and shared.
     opposite = positions[:, 0] > 0.0
-    assert opposite.sum() == 12
+    assert opposite.sum() == 4
     np.testing.assert_allclose(normals[opposite], positions[opposite] / math.sqrt(3.0), atol=1e-3)
 
 
@@ -128,8 +128,23 @@ def test_custom_normals_arrive(made):
         cube.data.use_auto_smooth = True
     cube.data.normals_split_custom_set([(0.0, 0.0, 1.0)] * 24)
     read_scene()
-    [(_, normals, _, _)] = made
-    np.testing.assert_allclose(normals, [[0.0, 0.0, 1.0]] * 24, atol=1e-3)
+    [(_, normals, triangles, _)] = made
+    np.testing.assert_allclose(normals[triangles], [[[0.0, 0.0, 1.0]] * 3] * 12, atol=1e-3)
+
+
+def test_equal_corners_are_one_vertex_and_seams_are_kept(made):
+    cube = add_cube(smooth=True)
+    uv = cube.data.uv_layers.new().data
+    for corner in uv:
+        corner.uv = (0.5, 0.5)
+    for corner in cube.data.polygons[5].loop_indices:
+        uv[corner].uv = (0.25, 0.75)
+    read_scene()
+    [(positions, normals, triangles, uvs)] = made
+    assert len(positions) == len(normals) == len(uvs) == 8 + 4, "the seam's four vertices are there twice"
+    corners = sorted(map(tuple, np.hstack((positions, uvs))[triangles].reshape(-1, 5).tolist()))
+    loops = [cube.data.loops[loop] for triangle in cube.data.loop_triangles for loop in triangle.loops]
+    assert corners == sorted((*cube.data.vertices[loop.vertex_index].co, *uv[loop.index].uv) for loop in loops)
 
 
 def test_modifiers_are_applied(made):
