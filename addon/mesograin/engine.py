@@ -26,6 +26,7 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
         super().__init__(*args, **kwargs)
         self._session = None
         self._texture = None
+        self._transparent = False  # whether the texture is
         self._warnings = ()
 
     def update_render_passes(self, _scene, _view_layer):
@@ -139,6 +140,8 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
         if session is not None and session.has_scene:
             session.set_camera(_viewport_camera(context.region_data), region.width, region.height)
             pixels = session.advance(scene.mesograin.viewport_samples)
+            if pixels is None and self._texture is not None and scene.render.film_transparent != self._transparent:
+                pixels = session.picture()  # at rest nothing new would come
             if pixels is not None:
                 self._take(pixels, region, scene)
             if session.busy:
@@ -147,7 +150,8 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
             self._draw_texture(scene, region)
 
     def _take(self, pixels, region, scene):
-        if not scene.render.film_transparent:
+        self._transparent = scene.render.film_transparent
+        if not self._transparent:
             pixels[..., 3] = 1.0
         self._texture = _texture(pixels)
         session = self._session

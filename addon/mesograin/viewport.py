@@ -75,6 +75,10 @@ class Session:
         self._keep_busy(target)
         return pixels
 
+    def picture(self):
+        """The picture as it is, as `advance` returns it; waits for samples under way. None before the first."""
+        return self._read() if self.samples else None
+
     def timings(self):
         return tuple((timing["pass"], timing["milliseconds"]) for timing in self._view.timings())
 

@@ -17,6 +17,7 @@ SMALL, TALL, TALLER = (900, 640), (1100, 1000), (1100, 1400)
 SIMULATED = ["--enable-event-simulate"]
 LAUNCHES = {  # what is checked, in which environment, on a screen of which size, with which of Blender's options
     "viewport": ("checks_viewport", {}, SMALL, SIMULATED),
+    "upheaval": ("checks_upheaval", {}, TALL, SIMULATED),
     "cancel": ("checks_cancel", {}, SMALL, []),
     "compare": ("checks_compare", {}, TALL, SIMULATED),
     "bake": ("checks_bake", {}, TALLER, SIMULATED),

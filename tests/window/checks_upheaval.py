@@ -1,0 +1,118 @@
+# What an impatient artist does while something renders: switches, reloads, saves, cancels. Nothing breaks, and the
+# picture that follows is right.
+import addon_utils
+import bpy
+from mesograin import properties, status
+from mesograin.background import job as jobs
+from mesograin.bake_panel import session as baking
+from mesograin.compare_panel import session as comparing
+
+ENDLESS = 1 << 16
+
+
+def settle(window, area):
+    """Lets the viewport come to its rest and holds it against what the native module renders alone."""
+    bpy.context.scene.mesograin.viewport_samples = 4
+    status.clear()
+    grain = bpy.data.materials["Translucent"].mesograin
+    grain.model, grain.reflectance = "lambert", (0.6, 0.5, 0.4)
+    picture = yield from window.converged_picture(area)
+    assert status.complaints() == []
+    window.assert_same(picture, window.expected_picture(area))
+
+
+def check_models_switch_while_rendering(window):
+    area = yield from window.open("sphere", samples=ENDLESS)
+    grain = bpy.data.materials["Translucent"].mesograin
+    for _ in range(3):
+        for model in properties.MODELS:
+            grain.model = model[0]
+            yield from window.seconds(0.1)
+    yield from settle(window, area)
+
+
+def check_objects_come_and_go_while_rendering(window):
+    area = yield from window.open("sphere", samples=ENDLESS)
+    bpy.data.materials["Translucent"].mesograin.model = "model_3"
+    sphere = bpy.data.objects["Sphere"]
+    for _ in range(10):
+        copy = bpy.data.objects.new("Copy", sphere.data.copy())
+        bpy.context.scene.collection.objects.link(copy)
+        yield from window.seconds(0.1)
+        bpy.data.meshes.remove(copy.data)  # and the object with it
+        yield from window.seconds(0.05)
+    assert "Copy" not in bpy.data.objects
+    yield from settle(window, area)
+
+
+def check_film_turns_transparent_and_back_while_rendering(window):
+    area = yield from window.open("sphere")
+    opaque = yield from window.converged_picture(area)
+    bpy.context.scene.render.film_transparent = True
+    yield from window.seconds(0.5)
+    through = yield from window.picture(area)
+    corner = (slice(60, 90), slice(60, 90))
+    assert opaque[corner].max() < 0.02 and through[corner].min() > 0.02, "the background does not shine through"
+    bpy.context.scene.render.film_transparent = False
+    yield from window.seconds(0.5)
+    window.assert_same((yield from window.picture(area)), opaque)
+    yield from settle(window, area)
+
+
+def check_file_is_saved_and_opened_again_while_rendering(window):
+    area = yield from window.open("sphere", samples=ENDLESS)
+    bpy.data.materials["Translucent"].mesograin.model = "model_1"
+    yield from window.until(lambda: status.get(status.VIEWPORT) is not None)
+    path = str(window.folder / "saved.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    yield from window.seconds(0.2)
+    bpy.ops.wm.revert_mainfile()
+    yield from window.seconds(0.5)
+    assert bpy.data.filepath == path and bpy.data.materials["Translucent"].mesograin.model == "model_1"
+    area = window.area_of_type("VIEW_3D")
+    window.prepare(area)
+    yield from settle(window, area)
+
+
+def check_add_on_is_disabled_and_enabled_while_everything_runs(window):
+    area = yield from window.open("sphere", samples=ENDLESS)
+    scene = bpy.context.scene
+    scene.mesograin_bake.samples, scene.mesograin_bake.out = 1 << 20, str(window.folder / "never.exr")
+    scene.mesograin_compare.models, scene.mesograin_compare.out = {"model_1"}, str(window.folder / "never")
+    panel = yield from window.render_properties(area)
+    yield from window.until(lambda: status.get(status.VIEWPORT) is not None)
+    old = window.session(area)
+    window.call(panel, "bake")
+    window.call(panel, "compare")
+    bake, job = baking.session.task, comparing.session.task
+    yield from window.seconds(1.0)
+    assert bake.running and job.running
+    addon_utils.disable("mesograin")
+    assert not bake.running and old.stopped and job.state == jobs.CANCELLED
+    yield from window.until(lambda: job.wait(0.0), timeout=10.0)
+    yield from window.seconds(0.5)
+    assert not (window.folder / "never.exr").exists() and not (window.folder / "never").exists()
+    addon_utils.enable("mesograin")
+    assert bpy.data.materials["Translucent"].mesograin.model == "lambert", "what the file said was lost"
+    yield from window.seconds(0.5)
+    yield from window.restore()
+    yield from settle(window, area)
+
+
+def check_cancel_at_once(window):
+    area = yield from window.open("sphere")
+    scene = bpy.context.scene
+    scene.mesograin_bake.samples, scene.mesograin_bake.out = 1 << 20, str(window.folder / "never.exr")
+    scene.mesograin_compare.models, scene.mesograin_compare.out = {"model_1"}, str(window.folder / "never")
+    panel = yield from window.render_properties(area)
+    for _ in range(3):
+        for operator, session in (("bake", baking.session), ("compare", comparing.session)):
+            window.call(panel, operator)
+            task = session.task
+            window.call(panel, f"cancel_{operator}")
+            yield from window.until(lambda task=task: not task.running, timeout=10.0)
+            task.wait()
+            assert session.error == ""
+    assert not list(window.folder.glob("never*"))
+    yield from window.restore()
+    yield from settle(window, area)
