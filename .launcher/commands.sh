@@ -162,14 +162,17 @@ run_bench() {
   eval "set -- $remaining"
   benchmark=${1:-frame}
   case $benchmark in
-    frame | accuracy) ;;
-    *) fail "$exit_usage" "There is no benchmark '$benchmark'; there are frame and accuracy." ;;
+    frame | accuracy | false_alarms) ;;
+    *) fail "$exit_usage" "There is no benchmark '$benchmark'; there are frame, accuracy and false_alarms." ;;
   esac
   [ $# -eq 0 ] || shift
   ensure_blender
   ensure_lists report
   ensure_product product
-  exec "$python" "$source_folder/tests/bench/$benchmark.py" "$build" "$@"
+  [ "$benchmark" = false_alarms ] || exec "$python" "$source_folder/tests/bench/$benchmark.py" "$build" "$@"
+  mkdir -p "$logs"
+  exec /usr/bin/python3 "$source_folder/.launcher/run_blender.py" "$logs/bench.log" "$blender" --background \
+    --factory-startup --python-exit-code 1 --python "$source_folder/tests/bench/false_alarms.py" -- "$@"
 }
 
 run_package() {

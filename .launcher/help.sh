@@ -216,6 +216,7 @@ Measures. Times are given as ratios within one run, so that they mean the same o
 
   ./mesograin bench [frame] [--frames N] [--json FILE]
   ./mesograin bench accuracy [--models M ...] [--taps N ...] [--out FOLDER]
+  ./mesograin bench false_alarms [--groups N] [--kinds KIND ...] [--json FILE]
 
   frame         what each model costs relative to lambert: shade pass alone, 400x400, sphere, two lights
   --frames N    the median is over so many frames (default: 100)
@@ -225,6 +226,11 @@ Measures. Times are given as ratios within one run, so that they mean the same o
   --models M    only these (default: model_1 model_2 model_3)
   --taps N      model 3's samples per pixel (default: 16 64)
   --out FOLDER  where accuracy.json and accuracy.csv go (default: accuracy)
+
+  false_alarms  how often the significance test calls Cycles' renders different that differ in their seed alone; about ten minutes
+  --groups N    groups of four seeds for each kind of reference (default: 500)
+  --kinds KIND  these, of diffuse, glossy, volume_index_matched, subsurface (default: diffuse volume_index_matched)
+  --json FILE   also writes the result there
 TEXT
 }
 

@@ -5,11 +5,15 @@
 #include <cmath>
 #include <cstddef>
 #include <numeric>
+#include <utility>
 
 #include "scene/error.h"
 
 namespace mesograin::image {
 namespace {
+
+// Of tested pixels times pairs of images, below which their kurtosis is a matter of chance.
+constexpr double least_pairs = 200.0;
 
 // Sums over squares around every pixel, from running sums along rows and then columns.
 std::vector<double> box_sums(const std::vector<double>& values, int width, int height, int radius) {
@@ -68,10 +72,79 @@ Spread add(const Spread& a, const Spread& b) {
               (a.variance * a.variance / a.degrees_of_freedom + b.variance * b.variance / b.degrees_of_freedom)};
 }
 
+// Noise of one side in one channel. `variances` are of one image in each tested pixel, 0 elsewhere; the sums are over
+// the tested pixels of the large and of the small square round each pixel.
+struct Noise {
+  double count;
+  std::vector<double> variances, wide, near;
+};
+
+// What both sides of a channel share: how bright each pixel is thought to be, and how many pixels are tested around it.
+struct Surroundings {
+  std::vector<double> levels, level_sums, neighbours, nearest;
+};
+
+// The variance of one image in a pixel, from its surroundings: in proportion to the level, or, at an edge, where noise
+// does not follow the level, what the next neighbours have, if it is more.
+double pooled_variance(const Noise& noise, const Surroundings& around, std::size_t pixel) {
+  const double share =
+      around.level_sums[pixel] > 0.0 ? around.levels[pixel] / around.level_sums[pixel] : 1.0 / around.neighbours[pixel];
+  return std::max(noise.wide[pixel] * share, noise.near[pixel] / around.nearest[pixel]);
+}
+
+// The same without what the pixel itself has: 0 if it stands alone.
+double variance_of_others(const Noise& noise, const Surroundings& around, std::size_t pixel) {
+  const double own = noise.variances[pixel];
+  const double level = around.levels[pixel];
+  const double levels_of_others = around.level_sums[pixel] - level;
+  if (around.nearest[pixel] < 2.0) return 0.0;
+  const double share = levels_of_others > 0.0 ? level / levels_of_others : 1.0 / (around.neighbours[pixel] - 1.0);
+  return std::max((noise.wide[pixel] - own) * share, (noise.near[pixel] - own) / (around.nearest[pixel] - 1.0));
+}
+
+// The excess kurtosis of one image's noise, at least 0: by how much more often than a normal one it is large. From the
+// differences of pairs of images, whose own is half of it, each in units of its neighbours' noise, lest a large one
+// widens its own measure. 0 where there are too few pixels to tell.
+double excess_kurtosis(const std::vector<ImageView>& images, int channel, const std::vector<double>& tested,
+                       const Noise& noise, const Surroundings& around) {
+  double squares = 0.0, fourth_powers = 0.0, count = 0.0;
+  for (std::size_t pixel = 0; pixel < tested.size(); ++pixel) {
+    if (tested[pixel] == 0.0) continue;
+    const double variance = 2.0 * variance_of_others(noise, around, pixel);
+    if (variance <= 0.0) continue;
+    const int x = static_cast<int>(pixel % static_cast<std::size_t>(images.front().width));
+    const int y = static_cast<int>(pixel / static_cast<std::size_t>(images.front().width));
+    for (std::size_t i = 0; i + 1 < images.size(); i += 2) {
+      const double difference = images[i].at(x, y)[channel] - images[i + 1].at(x, y)[channel];
+      squares += difference * difference / variance;
+      fourth_powers += std::pow(difference * difference / variance, 2);
+      count += 1.0;
+    }
+  }
+  if (count < least_pairs || squares <= 0.0) return 0.0;
+  return 2.0 * std::max(0.0, fourth_powers * count / (squares * squares) - 3.0);
+}
+
+// A t-value and its degrees of freedom.
+struct Student {
+  double t = 0.0;
+  double degrees_of_freedom = 0.0;
+};
+
+// The same deviation for noise of an excess kurtosis: Student's t is also the symmetric curve of a given kurtosis
+// (Pearson 1916, type VII), so one with the kurtosis of both, scaled to their variance, stands for both.
+Student with_tails(const Student& student, double kurtosis) {
+  const double own = student.degrees_of_freedom;
+  if (kurtosis <= 0.0 || own <= 5.0) return student;
+  const double both = 4.0 + 6.0 / (kurtosis + 6.0 / (own - 4.0));
+  return {student.t / std::sqrt(own / (own - 2.0) * (both - 2.0) / both), both};
+}
+
 // The normal score with nearly the tail of Student's t: Wallace 1959, equation 2.
-double normal_score(double t, double degrees_of_freedom) {
-  return (8.0 * degrees_of_freedom + 1.0) / (8.0 * degrees_of_freedom + 3.0) *
-         std::sqrt(degrees_of_freedom * std::log1p(t * t / degrees_of_freedom));
+double normal_score(const Student& student) {
+  const double freedom = student.degrees_of_freedom;
+  return (8.0 * freedom + 1.0) / (8.0 * freedom + 3.0) *
+         std::sqrt(freedom * std::log1p(student.t * student.t / freedom));
 }
 
 void check(const std::vector<ImageView>& images, const std::vector<ImageView>& references, const Mask& mask) {
@@ -120,8 +193,9 @@ Significance test_significance(const std::vector<ImageView>& images, const std::
         used += tested[pixel] = 1.0;
     }
   if (used == 0.0) throw Error("A significance test needs at least one masked pixel that is finite in every image.");
-  const std::vector<double> neighbours = box_sums(tested, width, height, variance_window / 2);
-  const std::vector<double> nearest = box_sums(tested, width, height, 1);
+  Surroundings around;
+  around.neighbours = box_sums(tested, width, height, variance_window / 2);
+  around.nearest = box_sums(tested, width, height, 1);
 
   Significance result;
   result.p_value = {width, height, 1, std::vector<float>(pixels, 1.0F)};
@@ -151,14 +225,19 @@ Significance test_significance(const std::vector<ImageView>& images, const std::
     // The variance of Monte Carlo grows with what is estimated, so neighbours share it in proportion to the level. The
     // level is taken from the side with less noise, commonly the image, which is right if the hypothesis is: on the
     // other side a pixel that came out dark by chance would seem less noisy than it is.
-    std::vector<double> levels = image_noise <= reference_noise ? image_means : means;
-    for (double& level : levels) level = std::abs(level);
+    around.levels = image_noise <= reference_noise ? image_means : means;
+    for (double& level : around.levels) level = std::abs(level);
+    around.level_sums = box_sums(around.levels, width, height, variance_window / 2);
     const double mean_level = std::accumulate(means.begin(), means.end(), 0.0) / used;
-    const std::vector<double> nearby_image_variances = box_sums(image_variances, width, height, 1);
-    const std::vector<double> nearby_variances = box_sums(variances, width, height, 1);
-    const std::vector<double> image_variance_sums = box_sums(image_variances, width, height, variance_window / 2);
-    const std::vector<double> variance_sums = box_sums(variances, width, height, variance_window / 2);
-    const std::vector<double> level_sums = box_sums(levels, width, height, variance_window / 2);
+    const auto noise_of = [&](std::vector<double> of_one, double count) {
+      std::vector<double> wide = box_sums(of_one, width, height, variance_window / 2);
+      std::vector<double> near = box_sums(of_one, width, height, 1);
+      return Noise{count, std::move(of_one), std::move(wide), std::move(near)};
+    };
+    const Noise ours = noise_of(std::move(image_variances), image_count);
+    const Noise theirs = noise_of(std::move(variances), reference_count);
+    const double our_kurtosis = excess_kurtosis(images, channel, tested, ours, around);
+    const double their_kurtosis = excess_kurtosis(references, channel, tested, theirs, around);
     for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
       if (tested[pixel] == 0.0) continue;
       const double difference = image_means[pixel] - means[pixel];
@@ -166,16 +245,21 @@ Significance test_significance(const std::vector<ImageView>& images, const std::
       const double excess = std::abs(difference) - (options.relative_tolerance + rounding) *
                                                        std::max(std::abs(means[pixel]), std::abs(mean_level));
       if (excess <= 0.0) continue;
-      const double share = level_sums[pixel] > 0.0 ? levels[pixel] / level_sums[pixel] : 1.0 / neighbours[pixel];
-      // At an edge noise does not follow the level: there the next neighbours' own counts, if it is more.
-      const auto variance = [&](const std::vector<double>& wide, const std::vector<double>& near, double count) {
-        return std::max(wide[pixel] * share, near[pixel] / nearest[pixel]) / count;
+      const auto spread_of = [&](const Noise& noise) {
+        return Spread{pooled_variance(noise, around, pixel) / noise.count,
+                      (noise.count - 1.0) * around.neighbours[pixel]};
       };
-      const Spread spread = add(
-          {variance(image_variance_sums, nearby_image_variances, image_count), (image_count - 1.0) * neighbours[pixel]},
-          {variance(variance_sums, nearby_variances, reference_count), (reference_count - 1.0) * neighbours[pixel]});
-      const double score =
-          spread.variance > 0.0 ? normal_score(excess / std::sqrt(spread.variance), spread.degrees_of_freedom) : 1e3;
+      const Spread our_spread = spread_of(ours);
+      const Spread their_spread = spread_of(theirs);
+      const Spread spread = add(our_spread, their_spread);
+      double score = 1e3;
+      if (spread.variance > 0.0) {
+        // Fourth cumulants of independent noises add, and the excess kurtosis of a mean falls with its count.
+        const double kurtosis = (our_kurtosis / image_count * our_spread.variance * our_spread.variance +
+                                 their_kurtosis / reference_count * their_spread.variance * their_spread.variance) /
+                                (spread.variance * spread.variance);
+        score = normal_score(with_tails({excess / std::sqrt(spread.variance), spread.degrees_of_freedom}, kurtosis));
+      }
       const double p_value = std::erfc(score / std::sqrt(2.0));
       result.score.pixels[pixel * static_cast<std::size_t>(colours) + static_cast<std::size_t>(channel)] =
           static_cast<float>(std::copysign(score, difference));

@@ -31,7 +31,8 @@ struct Significance {
 
 /// Tests the mean of one or more images against K >= 2 references of independent noise, by colour: in every masked
 /// pixel and channel a t-test of the difference of the means, with the variances pooled over the masked pixels of a
-/// square of `variance_window` pixels (so two of either serve), the score turned into a normal one after Wallace,
+/// square of `variance_window` pixels (so two of either serve), the tails of the noise taken from its kurtosis over the
+/// whole mask, the score turned into a normal one after Wallace,
 /// "Bounds on normal approximations to Student's and the chi-square distributions" (1959), and the threshold corrected
 /// after Sidak, "Rectangular confidence regions for the means of multivariate normal distributions" (1967). A single
 /// image counts as exact; of several the noise counts too, with the degrees of freedom of Welch, "The generalization of

@@ -16,21 +16,21 @@ BLOCK = 8
 """Pixels a side of a block: an error of shape that each pixel's noise hides stands out in their averages."""
 
 
-def test(ours, theirs, mask):
+def test(ours, theirs, mask, rate=FALSE_ALARM_RATE):
     """(entry of results.json, (h, w, 3) float32 map of scores), or (None, None) with one reference.
 
-    ours, theirs: lists of (h, w, 4) float32 images of independent noise. mask: (h, w) bool.
+    ours, theirs: lists of (h, w, 4) float32 images of independent noise. mask: (h, w) bool. rate: of false alarms.
     """
     if len(theirs) < 2:
         return None, None
-    rate = 1.0 - (1.0 - FALSE_ALARM_RATE) ** 0.5
+    half = 1.0 - (1.0 - rate) ** 0.5
     native = native_module.get()
-    pixels = native.test_significance(ours, theirs, mask, false_alarm_rate=rate)
+    pixels = native.test_significance(ours, theirs, mask, false_alarm_rate=half)
     full = _full_blocks(mask)
     blocks = None
     if full.any():
         in_blocks = [[_block_means(image, mask) for image in images] for images in (ours, theirs)]
-        blocks = native.test_significance(*in_blocks, full, false_alarm_rate=rate)
+        blocks = native.test_significance(*in_blocks, full, false_alarm_rate=half)
     differs = pixels["differs"] or (blocks is not None and blocks["differs"])
     entry = {
         "verdict": DIFFERS if differs else NO_DIFFERENCE,
@@ -44,7 +44,7 @@ def test(ours, theirs, mask):
         "significant_blocks": blocks["significant_pixels"] if blocks else 0,
         "share_blocks": blocks["significant_pixels"] / blocks["pixels"] if blocks else None,
         "threshold_blocks": blocks["threshold"] if blocks else None,
-        "false_alarm_rate": FALSE_ALARM_RATE,
+        "false_alarm_rate": rate,
         "relative_tolerance": pixels["relative_tolerance"],
         "reference_seeds": len(theirs),
         "our_seeds": len(ours),
