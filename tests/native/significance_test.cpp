@@ -102,12 +102,14 @@ Image skewed(std::mt19937& random, double shape) {
 bool skewed_differs(unsigned seed, int count, double shape, double factor) {
   std::mt19937 random(seed);
   std::vector<Image> rendered;
+  rendered.reserve(static_cast<std::size_t>(count) + 2);
   for (int i = 0; i < count + 2; ++i) {
     rendered.push_back(skewed(random, shape));
     if (i < count)
       for (float& value : rendered.back().pixels) value *= static_cast<float>(factor);
   }
   std::vector<ImageView> views;
+  views.reserve(rendered.size());
   for (const Image& image : rendered) views.push_back(image.view());
   const auto first = views.begin() + count;
   return test_significance({views.begin(), first}, {first, views.end()}, everywhere(), {0.01, 0.002}).differs;
