@@ -228,7 +228,7 @@ Measures. Times are given as ratios within one run, so that they mean the same o
   --out FOLDER  where accuracy.json and accuracy.csv go (default: accuracy)
 
   false_alarms  how often the significance test calls Cycles' renders different that differ in their seed alone; about ten minutes
-  --groups N    groups of four seeds for each kind of reference (default: 500)
+  --groups N    groups of four seeds for each kind of reference (default: 300)
   --kinds KIND  these, of diffuse, glossy, volume_index_matched, subsurface (default: diffuse volume_index_matched)
   --json FILE   also writes the result there
 TEXT

@@ -118,7 +118,7 @@ def measure(kind, count, tell):
 
 def main(words):
     parser = argparse.ArgumentParser(prog="mesograin bench false_alarms", description=__doc__)
-    parser.add_argument("--groups", type=int, default=500, help="of four seeds, for each kind (default: 500)")
+    parser.add_argument("--groups", type=int, default=300, help="of four seeds, for each kind (default: 300)")
     parser.add_argument("--kinds", nargs="+", choices=tuple(SAMPLES), default=["diffuse", "volume_index_matched"])
     parser.add_argument("--json", type=pathlib.Path, metavar="FILE", help="also writes the result there")
     chosen = parser.parse_args(words)
