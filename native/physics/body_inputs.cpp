@@ -8,6 +8,7 @@
 #include "physics/channels.h"
 #include "physics/dielectric_surface.h"
 #include "physics/entering_ring.h"
+#include "physics/exit_directions.h"
 #include "physics/physics.h"
 #include "physics/quadrature.h"
 #include "physics/sphere_exitance.h"
@@ -40,6 +41,25 @@ double fading(const std::vector<double>& cosines, const std::vector<double>& exi
   return std::clamp(slope * sine_of_cosine(cosines[i]) / optical_radius, 0.0, largest_flow);
 }
 
+// Of light that leaves by the interface's lobe, over 1/(4 pi).
+std::vector<double> mean_phases(const BodySurface& surface, double g, const std::vector<double>& cosines) {
+  if (g == 0.0) return std::vector<double>(cosines.size(), 1.0);
+  const ExitLobe lobe = exit_lobe(surface);
+  const double sign = g < 0.0 ? -1.0 : 1.0;
+  std::vector<double> means;
+  for (const double cosine : cosines) {
+    double sum = 0.0;
+    for (const ExitDirection& direction : exit_directions(surface.eta, cosine, g)) {
+      const double versine = 1.0 - sign * direction.inwards.z;
+      sum += 4.0 * PI * direction.weight * surface.eta * surface.eta * lobe.factor * (1.0 + lobe.slope * direction.mu) *
+             4.0 * PI * henyey_greenstein(versine, std::abs(g), 1.0 - std::abs(g));
+    }
+    // Where the peak is turned inwards, its quadrature may hold nothing: the function is nowhere less than backwards.
+    means.push_back(std::max(sum, 4.0 * PI * henyey_greenstein(2.0, std::abs(g), 1.0 - std::abs(g))));
+  }
+  return means;
+}
+
 struct Answer {
   std::vector<double> differences;
   std::vector<double> exitance;
@@ -49,13 +69,16 @@ struct Answer {
 Answer answer(const BodyMedium& medium, const BodySurface& surface, const SphereSingleScattering& single,
               const SphereUnscattered& unscattered, const Orders& orders) {
   const std::vector<double> cosines = body_cosines();
-  const double albedo = medium.sigma_t() > 0.0 ? medium.sigma_s / medium.sigma_t() : 0.0;
   std::vector<double> half_space(cosine_count, 0.0);
   const auto add = [](std::vector<double>& sum, const std::vector<double>& term, double factor) {
     for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += factor * term[i];
   };
   if (orders.multiple) add(half_space, half_space_multiple_exitance(medium, surface, cosines), 1.0);
-  if (orders.single) add(half_space, half_space_single_exitance(surface.eta, cosines), albedo);
+  if (orders.single) add(half_space, half_space_single_exitance(medium, surface.eta, cosines), 1.0);
+
+  // What is scattered once leaves by the interface's lobe times the phase function.
+  const std::vector<double> mean_phase =
+      orders.multiple ? std::vector<double>(cosine_count, 1.0) : mean_phases(surface, medium.g, cosines);
 
   Answer result;
   for (int row = 0; row < radius_count; ++row) {
@@ -63,12 +86,13 @@ Answer answer(const BodyMedium& medium, const BodySurface& surface, const Sphere
     const BodyMedium scaled{medium.sigma_a * radius, medium.sigma_s * radius, medium.g};
     std::vector<double> body(cosine_count, 0.0);
     if (orders.multiple) add(body, sphere_multiple_exitance(scaled, surface, cosines), 1.0);
-    if (orders.single && albedo > 0.0) add(body, single.exitance(scaled.sigma_t()), albedo);
+    if (orders.single && medium.sigma_s > 0.0) add(body, single.exitance(scaled), 1.0);
     // Where it leaves by a cosine lobe, it is seen like diffused light, but does not flow.
     std::vector<double> all = body;
-    if (orders.multiple && surface.cosine_entry) add(all, unscattered.exitance(scaled.sigma_t()), 1.0);
+    if (orders.multiple && surface.cosine_entry) add(all, unscattered.exitance(scaled.rest_sigma_t()), 1.0);
     for (std::size_t i = 0; i < body.size(); ++i) {
-      result.differences.push_back(difference(all[i], half_space[i]));
+      const double excess = difference(all[i], half_space[i]);
+      result.differences.push_back(excess > 0.0 ? excess / mean_phase[i] : excess);
       result.exitance.push_back(all[i]);
       const double scattered = all[i] > 0.0 ? body[i] / all[i] : 0.0;
       result.fading.push_back(scattered * fading(cosines, body, i, scaled.reduced_sigma_t()));
@@ -91,7 +115,7 @@ std::vector<double> body_cosines() {
 void add_body_difference(const char* name, const scene::Material& material, double grain_radius, const Orders& orders,
                          MaterialInputs& inputs) {
   const BodySurface surface = body_surface(material);
-  const SphereSingleScattering single(surface.eta, body_cosines());
+  const SphereSingleScattering single(surface.eta, material.g, body_cosines());
   const SphereUnscattered unscattered(surface, surface.cosine_entry ? body_cosines() : std::vector<double>());
   const std::array<BodyMedium, 3> media{body_medium(material, 0, grain_radius), body_medium(material, 1, grain_radius),
                                         body_medium(material, 2, grain_radius)};

@@ -16,10 +16,13 @@ constexpr double largest_optical_radius = 1e5;
 // Keeps D finite in a medium that hardly interacts; nothing comes out of the diffusion equation there.
 constexpr double least_optical_radius = 1e-9;
 
-DiffusionPart diffusion_part(const BodyMedium& medium, const BodySurface& surface, double removal) {
-  const double diffusion = 1.0 / (3.0 * std::max(medium.reduced_sigma_t(), least_optical_radius));
-  return {.source = 0.0,
-          .extinction = 0.0,
+// What the beam loses, where transport extinction is `transport` and `removal` of the light is lost to this part.
+DiffusionPart diffusion_part(const BodyMedium& medium, const BodySurface& surface, double transport, double removal) {
+  const double diffusion = 1.0 / (3.0 * std::max(transport, least_optical_radius));
+  const double extinction = medium.rest_sigma_t();
+  return {.source = extinction > 0.0 ? medium.rest_sigma_s() / extinction : 0.0,
+          .extinction = extinction,
+          .spread = medium.reduced_sigma_t(),
           .decay = std::sqrt(removal / diffusion),
           .boundary_length = 2.0 * surface.diffusion.a * diffusion};
 }
@@ -64,17 +67,11 @@ ExitLobe exit_lobe(const BodySurface& surface) {
 }
 
 DiffusionPart all_orders(const BodyMedium& medium, const BodySurface& surface) {
-  DiffusionPart part = diffusion_part(medium, surface, medium.sigma_a);
-  part.extinction = medium.reduced_sigma_t();
-  part.source = part.extinction > 0.0 ? medium.reduced_sigma_s() / part.extinction : 0.0;
-  return part;
+  return diffusion_part(medium, surface, medium.reduced_sigma_t(), medium.sigma_a);
 }
 
 DiffusionPart first_order(const BodyMedium& medium, const BodySurface& surface) {
-  DiffusionPart part = diffusion_part(medium, surface, medium.sigma_t());
-  part.extinction = medium.sigma_t();
-  part.source = part.extinction > 0.0 ? medium.sigma_s / part.extinction : 0.0;
-  return part;
+  return diffusion_part(medium, surface, medium.rest_sigma_t(), medium.rest_sigma_t());
 }
 
 }  // namespace mesograin::physics

@@ -1,6 +1,7 @@
 // One colour channel of a grain's medium with the grain's radius as the unit of length.
 #pragma once
 
+#include "physics/forward_peak.h"
 #include "physics/fresnel_moments.h"
 #include "scene/material.h"
 
@@ -14,6 +15,10 @@ struct BodyMedium {
   double sigma_t() const { return sigma_a + sigma_s; }
   double reduced_sigma_s() const { return (1.0 - g) * sigma_s; }
   double reduced_sigma_t() const { return sigma_a + reduced_sigma_s(); }
+
+  /// Without the phase function's peak.
+  double rest_sigma_s() const { return ForwardPeak(g).rest * sigma_s; }
+  double rest_sigma_t() const { return sigma_a + rest_sigma_s(); }
 
   bool operator==(const BodyMedium&) const = default;
 };
@@ -43,19 +48,21 @@ ExitLobe exit_lobe(const BodySurface& surface);
 
 /// The diffusion equation's constants for one part of the light in a BodyMedium (P1: D = 1/(3 sigma_t')).
 struct DiffusionPart {
-  double source;           ///< per unit of light that enters
-  double extinction;       ///< of the beam that feeds it: the source is source * extinction * exp(-extinction t)
+  double source;           ///< per unit of light that is taken from the beam that feeds it
+  double extinction;       ///< of that beam
+  double spread;           ///< what is taken from it lies along its way t as exp(-spread t)
   double decay;            ///< sqrt(removal/D)
   double boundary_length;  ///< 2 A D
 };
 
-/// Scattering of any order, with the similar medium: sigma_s', sigma_t', g = 0 (Ishimaru 1978 eq. 9-20; van de Hulst
+/// Scattering of any order but that within the phase function's peak, which counts as none. It begins where light has
+/// forgotten its direction, as in the similar medium: sigma_s', sigma_t', g = 0 (Ishimaru 1978 eq. 9-20; van de Hulst
 /// 1980 section 14.1).
 DiffusionPart all_orders(const BodyMedium& medium, const BodySurface& surface);
 
-/// Scattering once, in the same approximation: all that is scattered again is removed. all_orders - first_order are the
-/// orders from two up; each order of the diffusion equation's Neumann series is positive, hence so is the difference
-/// for g = 0.
+/// Scattering once, in the same approximation: all that is scattered again is removed, and light travels as far as it
+/// does unscattered. all_orders - first_order are the orders from two up; each order of the diffusion equation's
+/// Neumann series is positive, hence so is the difference for g = 0.
 DiffusionPart first_order(const BodyMedium& medium, const BodySurface& surface);
 
 }  // namespace mesograin::physics

@@ -1,11 +1,13 @@
 // Every order of scattering comes from exactly one place: the table, the closed form, or the analytic first order.
 #include "physics/model_1_inputs.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "physics/channels.h"
 #include "physics/dielectric_inputs.h"
 #include "physics/dielectric_surface.h"
+#include "physics/forward_peak.h"
 #include "physics/fresnel_moments.h"
 #include "physics/half_space.h"
 #include "physics/medium.h"
@@ -63,11 +65,16 @@ void add_half_space(const Material& material, double eta, bool first_order, Mate
   const bool isotropic = material.g == 0.0;
   const std::vector<double> mu = table_cosines(eta);
   inputs.defines.emplace_back("MULTIPLE_TABLE");
-  Table table = pack(for_each_channel(half_space_media(material),
-                                      [&](const Medium& medium) {
-                                        return HalfSpace(medium, eta).interior_table(mu, first_order && isotropic);
-                                      }),
-                     half_space_table_size, half_space_table_size);
+  const auto table_of = [&](const Medium& medium) {
+    const HalfSpace half_space(medium, eta);
+    if (first_order || isotropic) return half_space.interior_table(mu, first_order && isotropic);
+    std::vector<double> values = half_space.interior_table(mu, true);
+    const std::vector<double> marched = marched_in_half_space(medium, medium.g, mu, mu);
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = std::max(values[i] - marched[i], 0.0);
+    return values;
+  };
+  Table table =
+      pack(for_each_channel(half_space_media(material), table_of), half_space_table_size, half_space_table_size);
   const auto passage = inputs.tables.find("passage");
   if (passage != inputs.tables.end()) add_passages(passage->second, table);
   inputs.tables["multiple_scattering"] = std::move(table);

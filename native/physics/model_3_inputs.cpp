@@ -46,7 +46,8 @@ double half_space_total(const BodyMedium& body, const BodySurface& surface) {
   const Medium medium{body.reduced_sigma_s() / sigma_t, body.sigma_a / sigma_t, 0.0};
   if (surface.cosine_entry) return HalfSpaceInterior(medium).spherical_albedo();
   const double transmittance = surface.eta == 1.0 ? 1.0 : fresnel_transmittance(1.0, 1.0, surface.eta);
-  const double single = medium.albedo * half_space_single_exitance(surface.eta, {1.0}).front() / transmittance;
+  const BodyMedium similar{body.sigma_a, body.reduced_sigma_s(), 0.0};
+  const double single = half_space_single_exitance(similar, surface.eta, {1.0}).front() / transmittance;
   return HalfSpace(medium, surface.eta).albedo_inside(1.0) - single;
 }
 
@@ -84,15 +85,22 @@ void add_single_scattering(const std::array<BodyMedium, 3>& media, double eta, M
     table.texels.emplace_back(glm::dvec4(light.irradiance, light.path_ratio, light.sideways, 1.0));
   inputs.defines.emplace_back("SINGLE_MARCHED");
   inputs.tables["refracted_light"] = std::move(table);
+  const double g = media[0].g;
+  const ForwardPeak peak(g);
   glm::dvec3 sigma_s;
   glm::dvec3 sigma_t;
   for (int channel = 0; channel < 3; ++channel) {
     sigma_s[channel] = media[channel].sigma_s;
-    sigma_t[channel] = media[channel].sigma_t();
+    sigma_t[channel] = media[channel].rest_sigma_t();
   }
-  const double g = media[0].g;
   inputs.uniforms["single.sigma_s"] = glm::vec3(sigma_s);
   inputs.uniforms["single.sigma_t"] = glm::vec3(sigma_t);
+  if (peak.share > 0.0) {
+    inputs.defines.emplace_back("FORWARD_PEAK");
+    inputs.uniforms["single.peak"] = glm::vec3(peak.share * sigma_s);
+    inputs.uniforms["single.rest"] = static_cast<float>(peak.rest);
+    inputs.uniforms["single.rest_g"] = static_cast<float>(peak.rest_g);
+  }
   inputs.uniforms["single.absolute_g"] = static_cast<float>(std::abs(g));
   inputs.uniforms["single.one_minus_absolute_g"] = static_cast<float>(1.0 - std::abs(g));
   inputs.uniforms["single.sign_g"] = g < 0.0 ? -1.0F : 1.0F;
@@ -100,7 +108,7 @@ void add_single_scattering(const std::array<BodyMedium, 3>& media, double eta, M
 
 void add_crossed(const std::array<BodyMedium, 3>& media, MaterialInputs& inputs) {
   inputs.defines.emplace_back("CROSSED");
-  const glm::dvec3 across(2.0 * media[0].sigma_t(), 2.0 * media[1].sigma_t(), 2.0 * media[2].sigma_t());
+  const glm::dvec3 across(2.0 * media[0].rest_sigma_t(), 2.0 * media[1].rest_sigma_t(), 2.0 * media[2].rest_sigma_t());
   if (media[0] == media[1] && media[0] == media[2])
     inputs.uniforms["crossed"] = static_cast<float>(across.x);
   else

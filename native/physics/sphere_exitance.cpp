@@ -6,6 +6,8 @@
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 
+#include "physics/exit_directions.h"
+#include "physics/forward_peak.h"
 #include "physics/physics.h"
 #include "physics/quadrature.h"
 #include "physics/sphere_diffusion.h"
@@ -18,16 +20,17 @@ constexpr int largest_order = 48;
 constexpr int entry_nodes = 16;
 constexpr int depth_nodes = 16;
 
-// Calls visit(t, weight) for nodes that integrate a function times extinction exp(-extinction t) over a path of
+// Calls visit(t, weight) for nodes that integrate a function times what the beam that feeds `part` loses on a path of
 // `length`. Cubes of a variable: dense where a thick grain takes its light in, and reaching to the far end, which the
 // beam itself lights in a dark grain.
 template <typename Visit>
-void for_depths(double extinction, double length, Visit visit) {
+void for_depths(const DiffusionPart& part, double length, Visit visit) {
   constexpr double nothing_left = 50.0;
-  const double end = std::min(length, nothing_left / extinction);
+  const double end = std::min(length, nothing_left / part.spread);
+  const double lost = std::expm1(-part.extinction * length) / std::expm1(-part.spread * length);
   for (const QuadratureNode& node : gauss_legendre(depth_nodes)) {
     const double t = end * node.x * node.x * node.x;
-    visit(t, 3.0 * node.x * node.x * node.weight * end * extinction * std::exp(-extinction * t));
+    visit(t, 3.0 * node.x * node.x * node.weight * end * lost * part.spread * std::exp(-part.spread * t));
   }
 }
 
@@ -99,7 +102,7 @@ Moments collimated_moments(const DiffusionPart& part, double eta) {
   for (Beam beam : entering_beams(eta, entry_nodes)) {
     // Inside a sphere a ray meets the surface at the same angle each time.
     for (int bounce = 0; bounce < 4 && beam.flux > 1e-3; ++bounce) {
-      for_depths(part.extinction, beam.chord, [&](double t, double weight) {
+      for_depths(part, beam.chord, [&](double t, double weight) {
         const glm::dvec2 point = beam.entry + t * beam.direction;
         const double radius = std::min(1.0, glm::length(point));
         moments.add(radius, radius > 0.0 ? std::clamp(point.y / radius, -1.0, 1.0) : 0.0, beam.flux * weight);
@@ -118,7 +121,7 @@ Moments cosine_entry_moments(const DiffusionPart& part) {
   Moments moments(part);
   for (const QuadratureNode& node : gauss_legendre(entry_nodes)) {
     const double mu = node.x;
-    for_depths(part.extinction, 2.0 * mu, [&](double t, double weight) {
+    for_depths(part, 2.0 * mu, [&](double t, double weight) {
       const glm::dvec2 point(t * sine_of_cosine(mu), 1.0 - t * mu);
       const double radius = std::min(1.0, glm::length(point));
       moments.add(radius, radius > 0.0 ? std::clamp(point.y / radius, -1.0, 1.0) : 0.0,
@@ -135,10 +138,12 @@ Moments cosine_entry_moments(const DiffusionPart& part) {
   return moments;
 }
 
-// int extinction e^{-extinction t} e^{-decay t mu} dt / (1 + b decay), over all depths.
+// Single scattering's quadrature resolves no narrower peak than this mean cosine's.
+double tabulated_g(double g) { return std::clamp(g, -0.95, 0.95); }
+
+// int spread e^{-spread t} e^{-decay t mu} dt / (1 + b decay), over all depths.
 double half_space_part(const DiffusionPart& part, double mu_refracted) {
-  return part.source /
-         ((1.0 + part.decay / part.extinction * mu_refracted) * (1.0 + part.boundary_length * part.decay));
+  return part.source / ((1.0 + part.decay / part.spread * mu_refracted) * (1.0 + part.boundary_length * part.decay));
 }
 
 }  // namespace
@@ -183,67 +188,85 @@ std::vector<double> half_space_multiple_exitance(const BodyMedium& medium, const
   return exitance;
 }
 
-SphereSingleScattering::SphereSingleScattering(double eta, const std::vector<double>& cosines)
-    : half_space_(half_space_single_exitance(eta, cosines)), points_(cosines.size()) {
-  constexpr int angles = 6;
+SphereSingleScattering::SphereSingleScattering(double eta, double g, const std::vector<double>& cosines)
+    : eta_(eta), cosines_(cosines), points_(cosines.size()) {
   const SphereRefraction refraction(eta);
+  const double phase_g = tabulated_g(g);
+  const double rest_g = ForwardPeak(phase_g).rest_g;
+  const double sign = g < 0.0 ? -1.0 : 1.0;
   for (std::size_t i = 0; i < cosines.size(); ++i) {
-    const double sine = sine_of_cosine(cosines[i]);
-    const real3 exit(sine, 0.0, cosines[i]);
-    const real3 tangent(cosines[i], 0.0, -sine);
-    for (const QuadratureNode& node : gauss_legendre(angles)) {
-      const double mu = node.x;
-      const double mu_inside = refracted_cosine(mu, eta);
-      const double sine_inside = sine_of_cosine(mu_inside);
-      const double transmittance = eta == 1.0 ? 1.0 : fresnel_transmittance(mu, mu_inside, eta);
-      // Radiance leaves spread by 1/eta^2, scattering is isotropic, the azimuths of half a circle stand for all.
-      const double weight = 0.5 * node.weight * mu * transmittance / (eta * eta) / angles;
-      for (int k = 0; k < angles; ++k) {
-        const double azimuth = PI * (k + 0.5) / angles;
-        const real3 sideways = std::cos(azimuth) * tangent + std::sin(azimuth) * real3(0.0, 1.0, 0.0);
-        const real3 inwards = -mu_inside * exit - sine_inside * sideways;
-        for (const QuadratureNode& depth : gauss_legendre(depth_nodes)) {
-          const double t = 2.0 * mu_inside * depth.x * depth.x * depth.x;
-          const double step = 6.0 * mu_inside * depth.x * depth.x * depth.weight;
-          const real3 point = exit + t * inwards;
-          const double x = std::hypot(point.x, point.y);
-          const RefractedLight light = refraction.at(x, point.z);
-          const double way_in = light.path_ratio * std::max(0.0, sine_of_cosine(x) - point.z);
-          points_[i].push_back({weight * step * light.irradiance, t + way_in});
+    const real3 exit(sine_of_cosine(cosines[i]), 0.0, cosines[i]);
+    for (const ExitDirection& direction : exit_directions(eta, cosines[i], 0.5 * (phase_g + rest_g))) {
+      for (const QuadratureNode& depth : gauss_legendre(depth_nodes)) {
+        const double t = 2.0 * direction.mu * depth.x * depth.x * depth.x;
+        const double step = 6.0 * direction.mu * depth.x * depth.x * depth.weight;
+        const real3 point = exit + t * direction.inwards;
+        const double x = std::hypot(point.x, point.y);
+        const RefractedLight light = refraction.at(x, point.z);
+        const double way_in = light.path_ratio * std::max(0.0, sine_of_cosine(x) - point.z);
+        const double weight = direction.weight * step * light.irradiance;
+        Way way{way_in, t, weight, 0.0};
+        if (g != 0.0) {
+          const double outwards = x > 0.0 ? light.sideways / x : 0.0;
+          const real3 travels(outwards * point.x, outwards * point.y, -sine_of_cosine(light.sideways));
+          const real3 turn = travels + sign * direction.inwards;
+          const double versine = std::min(0.5 * dot(turn, turn), 2.0);
+          way.first *= 4.0 * PI * henyey_greenstein(versine, std::abs(phase_g), 1.0 - std::abs(phase_g));
+          way.later = weight * 4.0 * PI * henyey_greenstein(versine, std::abs(rest_g), 1.0 - std::abs(rest_g));
         }
+        points_[i].push_back(way);
       }
     }
   }
 }
 
-std::vector<double> SphereSingleScattering::exitance(double optical_radius) const {
+std::vector<double> SphereSingleScattering::exitance(const BodyMedium& medium) const {
   // Beyond what the depths resolve, the difference from the half-space goes on falling like the curvature.
   constexpr double largest = 40.0;
-  const double radius = std::min(optical_radius, largest);
-  const double curvature = optical_radius > largest ? largest / optical_radius : 1.0;
+  const double curvature = std::min(largest / std::max(medium.sigma_t(), 1e-300), 1.0);
+  const BodyMedium known{medium.sigma_a * curvature, medium.sigma_s * curvature, medium.g};
+  const std::vector<double> half_space = half_space_single_exitance(known, eta_, cosines_);
+  const ForwardPeak peak(medium.g);
+  const double past_peak = known.rest_sigma_t();
+  const double in_peak = peak.share * known.sigma_s;
   std::vector<double> exitance;
   for (std::size_t i = 0; i < points_.size(); ++i) {
     double sum = 0.0;
-    for (const Way& way : points_[i]) sum += way.weight * std::exp(-radius * way.length);
-    exitance.push_back(half_space_[i] + curvature * (radius * sum - half_space_[i]));
+    for (const Way& way : points_[i]) {
+      const double reached = std::exp(-past_peak * (way.in + way.out));
+      const double met_nothing = in_peak > 0.0 ? std::exp(-in_peak * way.in) : 1.0;
+      sum += reached * (way.first * met_nothing + peak.rest * way.later * (1.0 - met_nothing));
+    }
+    exitance.push_back(half_space[i] + curvature * (known.sigma_s * sum - half_space[i]));
   }
   return exitance;
 }
 
-std::vector<double> half_space_single_exitance(double eta, const std::vector<double>& cosines) {
+std::vector<double> half_space_single_exitance(const BodyMedium& medium, double eta,
+                                               const std::vector<double>& cosines) {
   std::vector<double> exitance(cosines.size(), 0.0);
+  if (medium.sigma_s <= 0.0) return exitance;
+  const double sigma_t = medium.sigma_t();
+  const Medium unit{medium.sigma_s / sigma_t, medium.sigma_a / sigma_t, medium.g};
+  std::vector<double> mu_in;
+  mu_in.reserve(cosines.size());
+  for (const double mu : cosines) mu_in.push_back(refracted_cosine(std::max(mu, 0.0), eta));
+  // Over the cosine outside, where transmission has no kink: mu' dmu' = mu dmu/eta^2 inside.
+  const std::vector<QuadratureNode>& nodes = gauss_legendre(48);
+  std::vector<double> mu_out;
+  mu_out.reserve(nodes.size());
+  for (const QuadratureNode& node : nodes) mu_out.push_back(refracted_cosine(node.x, eta));
+  const std::vector<double> scattered = marched_in_half_space(unit, tabulated_g(medium.g), mu_in, mu_out);
   for (std::size_t i = 0; i < cosines.size(); ++i) {
     const double mu = cosines[i];
     if (mu <= 0.0) continue;
-    const double mu_refracted = refracted_cosine(mu, eta);
     double sum = 0.0;
-    // Over the cosine outside, where transmission has no kink: mu' dmu' = mu dmu/eta^2 inside.
-    for (const QuadratureNode& node : gauss_legendre(48)) {
-      const double mu_exit = refracted_cosine(node.x, eta);
-      sum += node.weight * node.x / (eta * eta) * (eta == 1.0 ? 1.0 : fresnel_transmittance(node.x, mu_exit, eta)) /
-             std::max(mu_exit + mu_refracted, 1e-12);
+    for (std::size_t j = 0; j < nodes.size(); ++j) {
+      const double transmittance = eta == 1.0 ? 1.0 : fresnel_transmittance(nodes[j].x, mu_out[j], eta);
+      sum += nodes[j].weight * nodes[j].x / (eta * eta) * transmittance * scattered[j * cosines.size() + i] /
+             std::max(mu_out[j] + mu_in[i], 1e-12);
     }
-    exitance[i] = 0.5 * mu * (eta == 1.0 ? 1.0 : fresnel_transmittance(mu, mu_refracted, eta)) * sum;
+    exitance[i] = 2.0 * PI * mu * (eta == 1.0 ? 1.0 : fresnel_transmittance(mu, mu_in[i], eta)) * sum;
   }
   return exitance;
 }

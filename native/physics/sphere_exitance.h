@@ -18,25 +18,29 @@ std::vector<double> sphere_multiple_exitance(const BodyMedium& medium, const Bod
 std::vector<double> half_space_multiple_exitance(const BodyMedium& medium, const BodySurface& surface,
                                                  const std::vector<double>& cosines);
 
-/// Light scattered once and isotropically, per albedo; exact but for internal reflection. Gathered along rays that
-/// leave, whose geometry is the same for every medium of one index.
+/// Light scattered once, in the sense of marched_in_half_space; exact but for internal reflection. Gathered along rays
+/// that leave, whose geometry is the same for every medium of one index and mean cosine.
 class SphereSingleScattering {
  public:
-  SphereSingleScattering(double eta, const std::vector<double>& cosines);
+  SphereSingleScattering(double eta, double g, const std::vector<double>& cosines);
 
-  /// At each of the cosines, for a sphere of this many mean free paths' radius.
-  std::vector<double> exitance(double optical_radius) const;
+  /// At each of the cosines, per irradiance; `medium` has the g of the constructor.
+  std::vector<double> exitance(const BodyMedium& medium) const;
 
  private:
   struct Way {
-    double weight;
-    double length;  // in and out
+    double in;
+    double out;
+    double first;  // weight of light that nothing has met before
+    double later;  // of light that has met the peak
   };
-  std::vector<double> half_space_;
+  double eta_;
+  std::vector<double> cosines_;
   std::vector<std::vector<Way>> points_;
 };
 
 /// The same for a half-space.
-std::vector<double> half_space_single_exitance(double eta, const std::vector<double>& cosines);
+std::vector<double> half_space_single_exitance(const BodyMedium& medium, double eta,
+                                               const std::vector<double>& cosines);
 
 }  // namespace mesograin::physics

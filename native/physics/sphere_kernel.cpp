@@ -23,13 +23,13 @@ struct Depth {
   double weight;
 };
 
-// A beam's light by its depth below the surface: exponential with mean mu/extinction. In a sphere the beam is as long
-// as its chord, 2 mu.
-std::vector<Depth> deposit(double extinction, double mu, bool sphere) {
+// A beam's light by its depth below the surface: exponential with mean mu/spread. The beam is as long as its chord in
+// the sphere, 2 mu.
+std::vector<Depth> deposit(const DiffusionPart& part, double mu) {
   constexpr double nothing_left = 50.0;
-  const double fall = extinction / std::max(mu, 1e-3);
-  const double end = sphere ? std::min(2.0, nothing_left / fall) : nothing_left / fall;
-  const double total = sphere ? std::expm1(-2.0 * mu * extinction) / std::expm1(-2.0 * fall) : 1.0;
+  const double fall = part.spread / std::max(mu, 1e-3);
+  const double end = std::min(2.0, nothing_left / fall);
+  const double total = std::expm1(-2.0 * mu * part.extinction) / std::expm1(-2.0 * fall);
   std::vector<Depth> depths;
   for (const QuadratureNode& node : gauss_legendre(depth_nodes)) {
     const double t = end * node.x * node.x * node.x;
@@ -53,7 +53,7 @@ void add_series(const DiffusionPart& part, const BodySurface& surface, double mu
   const SphereDiffusion solution(part.decay, part.boundary_length, largest);
   std::vector<double> transfer(coefficients.size());
   for (const QuadratureNode& entry : entry_cosines(surface, mu))
-    for (const Depth& depth : deposit(part.extinction, entry.x, true)) {
+    for (const Depth& depth : deposit(part, entry.x)) {
       const double radius = 1.0 - depth.t;
       solution.transfer(std::abs(radius), transfer);
       const double weight = factor * part.source * entry.weight * depth.weight;
@@ -88,7 +88,7 @@ std::vector<double> series_kernel(const BodyMedium& medium, const BodySurface& s
 // condition is a line of flux dipoles from z on, falling as exp(-w/b) (the solution of phi + b dphi/dz = 0 by images);
 // each sends z (1 + k d) exp(-k d)/(2 pi d^3).
 double plane_part(const DiffusionPart& part, double distance, double mu) {
-  const double z = std::max(mu, 1e-3) / part.extinction;
+  const double z = std::max(mu, 1e-3) / part.spread;
   const double b = part.boundary_length;
   constexpr double nothing_left = 40.0;
   const double end = nothing_left * std::max(z, b);

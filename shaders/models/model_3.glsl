@@ -5,6 +5,7 @@
 // Not physical: distances are straight through the grain, so a concave one is crossed where light would have to go round.
 //
 // What is chosen at compile time (physics::model_3_inputs), besides what body_light.glsl names:
+//   FORWARD_PEAK         light that was scattered within the phase function's forward peak counts as unscattered
 //   GREY                 red, green and blue are the same medium, and only one is computed
 //   CROSSED              the sphere's light is also what crosses it unscattered
 //   SINGLE_MARCHED       `refracted_light`: first-order scattering is not in the kernel
@@ -32,6 +33,11 @@ struct Single {
   float absolute_g;
   float one_minus_absolute_g;
   float sign_g;
+#ifdef FORWARD_PEAK
+  vec3 peak;  // of sigma_s, not in sigma_t; see physics::ForwardPeak
+  float rest;
+  float rest_g;
+#endif
 };
 uniform Single single;
 uniform sampler2D refracted_light;
@@ -267,8 +273,15 @@ vec3 single_scattering(LightFrame frame, int light, BodyFit fit, vec3 position, 
                           -sqrt(max((1.0 - lighting.z) * (1.0 + lighting.z), 0.0)));
     vec3 turn = direction + single.sign_g * inwards;
     float phase = henyey_greenstein(0.5 * dot(turn, turn), single.absolute_g, single.one_minus_absolute_g);
+#ifdef FORWARD_PEAK
+    // Light that has met the peak before is scattered by the rest alone.
+    Spectrum scattered = mix(Spectrum(single.rest * henyey_greenstein(0.5 * dot(turn, turn), single.rest_g, 1.0 - single.rest_g)),
+                             Spectrum(phase), exp(-SPECTRUM(single.peak) * way_in));
+#else
+    float scattered = phase;
+#endif
     // Where the light's way in hardly grows, far samples are too rare for what they find; each may count as many, but not as any number.
-    sum += entry.lit * lighting.x * phase * drawn * min(exp(rate * t - sigma_t * (t + way_in)), Spectrum(MOST_A_SAMPLE_COUNTS));
+    sum += entry.lit * lighting.x * scattered * drawn * min(exp(rate * t - sigma_t * (t + way_in)), Spectrum(MOST_A_SAMPLE_COUNTS));
   } while (++i < count);
   // What the lit plane's own integral says the samples should have found.
   return single.sigma_s * sum * mean_way / max(plane, Spectrum(1e-30));

@@ -43,8 +43,11 @@ def sphere(native, segments=256, rings=128):
 class Cameras:
     """Orthographic views whose directions integrate over the sphere of directions, the light along +y."""
 
-    def __init__(self, native):
-        nodes, weights = numpy.polynomial.legendre.leggauss(VIEWS)
+    def __init__(self, native, views=VIEWS, facing_power=1):
+        """`facing_power` above 1 crowds the views towards those that face the light, where a phase function peaks."""
+        nodes, weights = numpy.polynomial.legendre.leggauss(views)
+        share = 0.5 * (nodes + 1.0)
+        nodes, weights = 2.0 * share**facing_power - 1.0, weights * facing_power * share**(facing_power - 1)
         centre = (numpy.arange(SIZE) + 0.5) / SIZE * 2.0 - 1.0
         x, y = numpy.meshgrid(centre, -centre)
         inside = x * x + y * y < 1.0

@@ -66,6 +66,9 @@ std::vector<scene::Material> every_choice() {
             if (material.model != scene::Model::model_3) continue;
             material.sigma_s = {1.0, 2.0, 3.0};  // a coloured one is another program than a grey one
             materials.push_back(material);
+            if (roughness > 0.0) continue;
+            material.g = 0.5;
+            materials.push_back(material);
           }
   return materials;
 }

@@ -156,12 +156,14 @@ TEST_P(Continuity, NothingJumpsInAnyParameterOverItsWholeRange) {
 #endif
   // What is scattered twice falls with the square of the scale; a step here is by a factor of 1.78.
   const double twice = 1.0 - 1.0 / (1.78 * 1.78);
+  // From g = 0.85 to 0.95 the phase function at right angles, where these pictures are taken, falls by this much.
+  const double sideways = 0.7;
   const Sweep sweeps[] = {
       {"scale", spaced(1e-6, 1e6, 49, true), [](Material& m, double value) { m.scale = value; }, twice},
       {"sigma_a", spaced(1e-6, 1e6, 49, true), [](Material& m, double value) { m.sigma_a = glm::dvec3(value); }, twice},
       {"eta", spaced(0.5, 4.0, 36, false), [](Material& m, double value) { m.eta = value; }, 0.6},
       {"roughness", spaced(0.0, 1.0, 11, false), [](Material& m, double value) { m.roughness = value; }, 0.05},
-      {"g", spaced(-0.95, 0.95, 20, false), [](Material& m, double value) { m.g = value; }, 0.6}};
+      {"g", spaced(-0.95, 0.95, 20, false), [](Material& m, double value) { m.g = value; }, sideways}};
   struct Theory {
     Profile profile;
     Boundary boundary;

@@ -73,8 +73,8 @@ TEST(SphereExitance, AThickSphereAnswersLikeAHalfSpace) {
       const BodyMedium medium{(1.0 - albedo) * 2e3, albedo * 2e3, 0.0};
       const std::vector<double> sphere = sphere_multiple_exitance(medium, surface_of(eta), cosines);
       const std::vector<double> half_space = half_space_multiple_exitance(medium, surface_of(eta), cosines);
-      const std::vector<double> once = SphereSingleScattering(eta, cosines).exitance(2e3);
-      const std::vector<double> half_space_once = half_space_single_exitance(eta, cosines);
+      const std::vector<double> once = SphereSingleScattering(eta, 0.0, cosines).exitance({0.0, 2e3, 0.0});
+      const std::vector<double> half_space_once = half_space_single_exitance({0.0, 2e3, 0.0}, eta, cosines);
       for (std::size_t i = 0; i < cosines.size(); ++i) {
         EXPECT_NEAR(sphere[i] / half_space[i], 1.0, 0.06) << eta << ' ' << albedo << ' ' << cosines[i];
         if (eta >= 1.0) {

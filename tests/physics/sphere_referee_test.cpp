@@ -3,7 +3,9 @@
 
 #include <cmath>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <numeric>
 
 #include "physics/entering_ring.h"
 #include "physics/sphere_exitance.h"
@@ -49,7 +51,7 @@ TEST(SphereExitance, IsThatOfThePhotonsThatWereTraced) {
     const double eta = entry["eta"];
     const double radius = entry["radius"];
     const BodySurface surface{eta, false, diffusion_boundary(eta)};
-    const std::vector<double> single = SphereSingleScattering(eta, cosines).exitance(radius);
+    const std::vector<double> single = SphereSingleScattering(eta, 0.0, cosines).exitance({0.0, radius, 0.0});
     double mean = 0.0;
     for (std::size_t a = 0; a < albedos.size(); ++a) {
       std::vector<double> model =
@@ -67,6 +69,45 @@ TEST(SphereExitance, IsThatOfThePhotonsThatWereTraced) {
     RecordProperty("mean_l1_eta" + std::to_string(eta) + "_radius" + std::to_string(radius), std::to_string(mean));
   }
   EXPECT_GT(dark_sides, 100);
+}
+
+// The less diffusion can tell, the longer light keeps its direction.
+const std::map<double, double> largest_mean_error{{-0.5, 0.09}, {0.3, 0.05}, {0.6, 0.08}, {0.85, 0.14}, {0.95, 0.2}};
+
+TEST(SphereExitance, IsThatOfThePhotonsWhereScatteringIsNotIsotropic) {
+  std::ifstream file(MESOGRAIN_TEST_DATA "/referee/sphere_anisotropic.json");
+  const nlohmann::json table = nlohmann::json::parse(file);
+  const std::vector<double> albedos = table["albedos"];
+  const std::vector<double> cosines = bin_cosines(table["bins"]);
+  std::map<double, std::vector<double>> errors;
+  for (const nlohmann::json& entry : table["cases"]) {
+    if (entry["entry"] != "refracted") continue;
+    const double eta = entry["eta"];
+    const double radius = entry["radius"];
+    const double g = entry["g"];
+    const BodySurface surface{eta, false, diffusion_boundary(eta)};
+    const SphereSingleScattering single(eta, g, cosines);
+    for (std::size_t a = 0; a < albedos.size(); ++a) {
+      const BodyMedium medium{(1.0 - albedos[a]) * radius, albedos[a] * radius, g};
+      const std::vector<double> once = single.exitance(medium);
+      std::vector<double> model = sphere_multiple_exitance(medium, surface, cosines);
+      for (std::size_t i = 0; i < model.size(); ++i) model[i] += once[i];
+      const Comparison result = compare(model, entry["scattered"][a], entry["scattered_noise"][a], cosines);
+      errors[g].push_back(result.error);
+      // In the thinnest, light is scattered hardly twice, and once is exact but for what is reflected inside.
+      EXPECT_LT(result.error, radius > 1.0 ? 0.5
+                              : eta > 1.0  ? 0.2
+                                           : 0.07)
+          << g << ' ' << eta << ' ' << radius << ' ' << albedos[a];
+    }
+  }
+  ASSERT_EQ(errors.size(), largest_mean_error.size());
+  for (const auto& [g, some] : errors) {
+    EXPECT_EQ(some.size(), 30u);
+    EXPECT_LT(std::accumulate(some.begin(), some.end(), 0.0) / static_cast<double>(some.size()),
+              largest_mean_error.at(g))
+        << g;
+  }
 }
 
 TEST(SphereUnscattered, IsThatOfThePhotonsThatCrossed) {

@@ -114,7 +114,8 @@ void add_tables(CLI::App& application) {
   CLI::App* command = application.add_subcommand("tables", "make or complete the tables the tests read");
   auto directory = std::make_shared<std::string>("tests/data/referee");
   auto threads = std::make_shared<unsigned>(1);
-  auto names = std::make_shared<std::vector<std::string>>(std::vector<std::string>{"half_space", "sphere"});
+  auto names = std::make_shared<std::vector<std::string>>(
+      std::vector<std::string>{"half_space", "sphere", "sphere_anisotropic"});
   command->add_option("--directory", *directory, "where the tables are")->capture_default_str();
   command->add_option("--threads", *threads, "0: as many as the machine has")->capture_default_str();
   command->add_option("--only", *names, "which tables, in this order")->check(CLI::IsMember(*names));
@@ -122,6 +123,7 @@ void add_tables(CLI::App& application) {
     for (const std::string& name : *names) {
       if (name == "half_space") make_half_space_table(*directory, *threads);
       if (name == "sphere") make_sphere_table(*directory, *threads);
+      if (name == "sphere_anisotropic") make_anisotropic_sphere_table(*directory, *threads);
     }
   });
 }

@@ -11,4 +11,7 @@ void make_half_space_table(const std::filesystem::path& directory, unsigned thre
 /// sphere.json: exitance in parallel light over material, eta and radius.
 void make_sphere_table(const std::filesystem::path& directory, unsigned threads);
 
+/// sphere_anisotropic.json: the same for media that scatter forwards or backwards.
+void make_anisotropic_sphere_table(const std::filesystem::path& directory, unsigned threads);
+
 }  // namespace mesograin::referee
