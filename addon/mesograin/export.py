@@ -229,7 +229,7 @@ class _Reader:
 
     def read(self, instance):
         kind = instance.object.type
-        if kind in meshes.DRAWABLE_TYPES:
+        if meshes.is_shape(instance.object):
             self._read_drawable(instance.object, instance.matrix_world)
         elif kind == "LIGHT":
             self._read_light(instance.object, instance.matrix_world)

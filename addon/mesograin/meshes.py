@@ -10,6 +10,12 @@ from . import compat, native_module, smooth_normals
 DRAWABLE_TYPES = ("MESH", "CURVE", "SURFACE", "FONT", "META")
 
 
+def is_shape(thing):
+    """Whether an object among a dependency graph's instances is to be drawn. Blender lists text, curves and metaballs
+    twice, as themselves and as the mesh that they become, and Blender 3.4 crashes where it is to copy the latter."""
+    return thing.type in DRAWABLE_TYPES and (thing.type != "MESH" or thing.original.type not in DRAWABLE_TYPES[1:])
+
+
 class MeshPart(typing.NamedTuple):
     """The triangles of one material slot; `mesh` is a native Mesh and equal parts share it."""
 

@@ -7,6 +7,9 @@ import numpy as np
 import pytest
 from cycles_scenes import RADIUS, depsgraph, make_sphere, sphere_points, unit
 
+from test_export import read_scene
+
+from mesograin import export
 from mesograin.cycles import nodes, reference, shot
 from mesograin.cycles.cache import Cache
 from mesograin.cycles.stage import StageError
@@ -242,6 +245,43 @@ def test_objects_that_are_no_shapes_are_in_nobodys_way(counted):
         collection.objects.link(bpy.data.objects.new("Thing", data))
     reference.render(depsgraph(), "diffuse", (8, 8), samples=2)
     assert len(counted) == 2
+
+
+def text():
+    data = bpy.data.curves.new("Text", "FONT")
+    data.body, data.size, data.extrude = "M", 3.0, 0.2
+    return data
+
+
+def metaball():
+    data = bpy.data.metaballs.new("Drop")
+    data.elements.new().radius = 2.0
+    return data
+
+
+def tube():
+    data = bpy.data.curves.new("Tube", "CURVE")
+    data.bevel_depth = 1.0
+    points = data.splines.new("POLY").points
+    points.add(1)
+    points[0].co, points[1].co = (-1.0, 0.0, 0.0, 1.0), (1.0, 0.0, 0.0, 1.0)
+    return data
+
+
+@pytest.mark.parametrize("make", [text, metaball, tube])
+def test_shapes_that_are_no_meshes_cover_what_ours_do(native, make):
+    make_sphere(FRONT, segments=16, rings=8)
+    scene = bpy.context.scene
+    bpy.data.objects.remove(bpy.data.objects["Sphere"])
+    scene.collection.objects.link(bpy.data.objects.new("Shape", make()))
+    theirs = reference.render(depsgraph(), "diffuse", (32, 32), samples=16, seeds=(1,)).images[0][..., 3]
+    assert len(read_scene().instances) == 1, "it is drawn twice"
+    view = native.View(32, 32)
+    view.set_scene(export.scene_from_depsgraph(depsgraph())[0])
+    view.set_camera(export.camera_from_scene(depsgraph(), 32, 32))
+    view.render(16)
+    ours = view.read()[..., 3]
+    assert ours.sum() > 30.0 and abs(ours - theirs).mean() < 0.02
 
 
 @pytest.mark.parametrize("kind", ["PANO", "LIGHT", "EMPTY"])

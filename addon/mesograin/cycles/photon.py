@@ -121,7 +121,7 @@ def _sphere(depsgraph):
     shapes = [
         (each.object, each.matrix_world.copy())
         for each in depsgraph.object_instances
-        if each.show_self and each.object.type in meshes.DRAWABLE_TYPES
+        if each.show_self and meshes.is_shape(each.object)
     ]
     if len(shapes) == 1 and shapes[0][0].type == "MESH":
         mesh, matrix = shapes[0][0].data, numpy.array(shapes[0][1])

@@ -129,7 +129,7 @@ def _check(depsgraph, kind, overrides):
     materials = {}
     for instance in depsgraph.object_instances:
         # Blender 3.4 crashes at the slots of an object that can have none.
-        drawn = instance.show_self and instance.object.type in meshes.DRAWABLE_TYPES
+        drawn = instance.show_self and meshes.is_shape(instance.object)
         for slot in instance.object.material_slots if drawn else ():
             if slot.material:
                 materials[slot.material.name] = slot.material.original

@@ -89,7 +89,7 @@ class Stage:
                 continue
             if source.type == "LIGHT" and source.data.type == "SUN":
                 self._copy_sun(source.data, instance.matrix_world)
-            elif source.type in meshes.DRAWABLE_TYPES:
+            elif meshes.is_shape(source):
                 self._copy_shape(source, instance.matrix_world)
         if not self._meshes:
             raise StageError("The scene has no visible mesh: add a grain, or switch its rendering on.")
