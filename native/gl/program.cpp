@@ -35,6 +35,10 @@ const char* stage_name(GLenum stage) {
   switch (stage) {
     case GL_VERTEX_SHADER:
       return "vertex";
+    case GL_TESS_CONTROL_SHADER:
+      return "tessellation control";
+    case GL_TESS_EVALUATION_SHADER:
+      return "tessellation evaluation";
     case GL_FRAGMENT_SHADER:
       return "fragment";
     default:
@@ -63,24 +67,22 @@ ShaderHandle compile(const std::string& program, GLenum stage, const ShaderSourc
 GLuint Program::Traits::create() { return glCreateProgram(); }
 void Program::Traits::destroy(GLuint name) { glDeleteProgram(name); }
 
-Program::Program(std::string name, const ShaderSource& vertex, const ShaderSource& fragment) : name_(std::move(name)) {
-  const ShaderHandle vertex_shader = compile(name_, GL_VERTEX_SHADER, vertex);
-  const ShaderHandle fragment_shader = compile(name_, GL_FRAGMENT_SHADER, fragment);
-  glAttachShader(handle_.name(), vertex_shader.name());
-  glAttachShader(handle_.name(), fragment_shader.name());
+Program::Program(std::string name, const std::vector<Stage>& stages) : name_(std::move(name)) {
+  std::vector<ShaderHandle> shaders;
+  for (const Stage& stage : stages) {
+    shaders.push_back(compile(name_, stage.kind, stage.source));
+    glAttachShader(handle_.name(), shaders.back().name());
+  }
   link();
-  glDetachShader(handle_.name(), vertex_shader.name());
-  glDetachShader(handle_.name(), fragment_shader.name());
+  for (const ShaderHandle& shader : shaders) glDetachShader(handle_.name(), shader.name());
   reflect();
 }
 
-Program::Program(std::string name, const ShaderSource& compute) : name_(std::move(name)) {
-  const ShaderHandle shader = compile(name_, GL_COMPUTE_SHADER, compute);
-  glAttachShader(handle_.name(), shader.name());
-  link();
-  glDetachShader(handle_.name(), shader.name());
-  reflect();
-}
+Program::Program(std::string name, const ShaderSource& vertex, const ShaderSource& fragment)
+    : Program(std::move(name), {{GL_VERTEX_SHADER, vertex}, {GL_FRAGMENT_SHADER, fragment}}) {}
+
+Program::Program(std::string name, const ShaderSource& compute)
+    : Program(std::move(name), {{GL_COMPUTE_SHADER, compute}}) {}
 
 void Program::link() {
   glLinkProgram(handle_.name());

@@ -9,6 +9,7 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "gl/handle.h"
 #include "gl/shader_source.h"
@@ -17,9 +18,16 @@
 
 namespace mesograin::gl {
 
+/// One stage of a program: GL_VERTEX_SHADER, GL_TESS_CONTROL_SHADER, ...
+struct Stage {
+  GLenum kind;
+  ShaderSource source;
+};
+
 class Program {
  public:
   /// `name` is used in messages. Throws Error with the file, the line and the driver's log if a stage does not compile.
+  Program(std::string name, const std::vector<Stage>& stages);
   Program(std::string name, const ShaderSource& vertex, const ShaderSource& fragment);
   Program(std::string name, const ShaderSource& compute);
 

@@ -42,6 +42,12 @@ void VertexArray::draw() const {
   glDrawElements(GL_TRIANGLES, index_count_, GL_UNSIGNED_INT, nullptr);
 }
 
+void VertexArray::draw_patches() const {
+  glBindVertexArray(handle_.name());
+  glPatchParameteri(GL_PATCH_VERTICES, 3);
+  glDrawElements(GL_PATCHES, index_count_, GL_UNSIGNED_INT, nullptr);
+}
+
 std::size_t VertexArray::bytes() const {
   return positions_.bytes() + normals_.bytes() + uvs_.bytes() + indices_.bytes();
 }

@@ -18,6 +18,9 @@ class VertexArray {
 
   void draw() const;
 
+  /// Draws each triangle as a patch, for programs with a tessellation stage.
+  void draw_patches() const;
+
   /// Bytes sent to the device.
   std::size_t bytes() const;
 

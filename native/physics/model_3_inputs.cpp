@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 
+#include "physics/beyond_sphere.h"
 #include "physics/body_inputs.h"
 #include "physics/body_medium.h"
 #include "physics/channels.h"
@@ -76,6 +77,13 @@ void add_kernel(const std::array<BodyMedium, 3>& media, const BodySurface& surfa
   inputs.uniforms["sampling.turn"] = static_cast<float>(turn_in_mean_free_paths / thickest);
   inputs.uniforms["sampling.largest_depth"] = static_cast<float>(tables.largest_depth);
   if (profile != Profile::half_space) add_planar_body(channels, surface, resolution, inputs);
+  // A planar profile's own plane is what it answers for.
+  const glm::dvec3 beyond =
+      profile == Profile::half_space ? share_beyond_sphere(tables, media, surface) : glm::dvec3(1.0);
+  if (media[0] == media[1] && media[0] == media[2])
+    inputs.uniforms["beyond_sphere"] = static_cast<float>(beyond.x);
+  else
+    inputs.uniforms["beyond_sphere"] = glm::vec3(beyond);
 }
 
 void add_single_scattering(const std::array<BodyMedium, 3>& media, double eta, MaterialInputs& inputs) {

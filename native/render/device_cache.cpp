@@ -65,9 +65,14 @@ const gl::Program& DeviceCache::surface_program() {
                  gl::ShaderSource({"passes/surface.frag"}, {}));
 }
 
-const gl::Program& DeviceCache::light_map_program() {
-  return program("light_map", gl::ShaderSource({"passes/light_map.vert"}, {}),
-                 gl::ShaderSource({"passes/light_map.frag"}, {}));
+const gl::Program& DeviceCache::light_map_program(bool tessellated) {
+  std::vector<gl::Stage> stages = {{GL_VERTEX_SHADER, gl::ShaderSource({"passes/light_map.vert"}, {})}};
+  if (tessellated) {
+    stages.push_back({GL_TESS_CONTROL_SHADER, gl::ShaderSource({"passes/light_map.tesc"}, {})});
+    stages.push_back({GL_TESS_EVALUATION_SHADER, gl::ShaderSource({"passes/light_map.tese"}, {})});
+  }
+  stages.push_back({GL_FRAGMENT_SHADER, gl::ShaderSource({"passes/light_map.frag"}, {})});
+  return program(tessellated ? "light_map tessellated" : "light_map", stages);
 }
 
 const gl::Program& DeviceCache::count_program() {
@@ -85,9 +90,13 @@ const gl::Program& DeviceCache::shading(const DeviceMaterial& material, Shading 
 
 const gl::Program& DeviceCache::program(const std::string& name, const gl::ShaderSource& vertex,
                                         const gl::ShaderSource& fragment) {
+  return program(name, {{GL_VERTEX_SHADER, vertex}, {GL_FRAGMENT_SHADER, fragment}});
+}
+
+const gl::Program& DeviceCache::program(const std::string& name, const std::vector<gl::Stage>& stages) {
   std::unique_ptr<gl::Program>& slot = programs_[name];
   if (!slot) {
-    slot = std::make_unique<gl::Program>(name, vertex, fragment);
+    slot = std::make_unique<gl::Program>(name, stages);
     ++sent_.programs;
   }
   return *slot;

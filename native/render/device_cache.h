@@ -62,8 +62,8 @@ class DeviceCache {
   /// The program that finds what the camera sees of a mesh, for `shading` to shade.
   const gl::Program& surface_program();
 
-  /// The program that draws a light map; compiled when the first material needs one.
-  const gl::Program& light_map_program();
+  /// The program that draws a light map, of triangles or of patches; compiled when the first material needs one.
+  const gl::Program& light_map_program(bool tessellated);
 
   /// The program that counts how many triangles cover each texel of an unwrapped mesh.
   const gl::Program& count_program();
@@ -84,6 +84,7 @@ class DeviceCache {
     std::shared_ptr<DeviceMaterial> device;
   };
 
+  const gl::Program& program(const std::string& name, const std::vector<gl::Stage>& stages);
   const gl::Program& program(const std::string& name, const gl::ShaderSource& vertex, const gl::ShaderSource& fragment);
 
   std::map<const scene::Mesh*, MeshEntry> meshes_;

@@ -228,10 +228,11 @@ double Frame::pixels_across(const Draw& draw) const {
 
 void Frame::update_light_maps(const std::vector<glm::dvec3>& to_light) {
   light_maps_drawn_ = 0;
+  const auto program = [this](bool tessellated) -> const gl::Program& { return cache_.light_map_program(tessellated); };
   for (const Draw& draw : draws_) {
     if (!draw.light_maps || draw.program == nullptr) continue;
     const int resolution = light_map_resolution(pixels_across(draw), draw.mean_free_paths_across);
-    light_maps_drawn_ += draw.light_maps->update(*draw.mesh, cache_.light_map_program(), to_light, resolution);
+    light_maps_drawn_ += draw.light_maps->update(*draw.mesh, program, to_light, resolution);
   }
 }
 

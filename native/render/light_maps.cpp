@@ -31,10 +31,33 @@ struct DeviceLightFrame {
   glm::vec4 map;     // centre, resolution
 };
 
+// Of a texel's width: what the curved surface may rise above what is drawn.
+constexpr double rise_in_texels = 0.125;
+
+// As edge_rise in shaders/passes/curved_surface.glsl.
+double largest_edge_rise(const scene::Mesh& mesh, const glm::dmat4& object_to_grain) {
+  const glm::dmat3 linear(object_to_grain);
+  const glm::dmat3 normal_to_grain = glm::transpose(glm::inverse(linear));
+  double largest = 0.0;
+  for (const glm::uvec3& triangle : mesh.triangles()) {
+    glm::dvec3 positions[3];
+    glm::dvec3 normals[3];
+    for (int corner = 0; corner < 3; ++corner) {
+      positions[corner] = linear * glm::dvec3(mesh.positions()[triangle[corner]]);
+      normals[corner] = glm::normalize(normal_to_grain * glm::dvec3(mesh.normals()[triangle[corner]]));
+    }
+    for (int a = 0; a < 3; ++a) {
+      const int b = (a + 1) % 3;
+      largest = std::max(largest, 0.125 * std::abs(glm::dot(normals[b] - normals[a], positions[b] - positions[a])));
+    }
+  }
+  return largest;
+}
+
 }  // namespace
 
 LightMaps::LightMaps(scene::MeshPointer mesh, const glm::dmat4& object_to_grain)
-    : mesh_(std::move(mesh)), object_to_grain_(object_to_grain) {}
+    : mesh_(std::move(mesh)), object_to_grain_(object_to_grain), rise_(largest_edge_rise(*mesh_, object_to_grain)) {}
 
 bool LightMaps::are_of(const scene::MeshPointer& mesh, const glm::dmat4& object_to_grain) const {
   return mesh == mesh_ && object_to_grain == object_to_grain_;
@@ -59,7 +82,7 @@ LightMaps::LightSpace LightMaps::fit(const glm::dvec3& to_light, int resolution)
     upper = glm::max(upper, placed);
   }
   const glm::dvec3 middle = 0.5 * (lower + upper);
-  const glm::dvec3 half = 0.5 * (upper - lower);
+  const glm::dvec3 half = 0.5 * (upper - lower) + rise_;
   // A texel of margin keeps the silhouette inside.
   constexpr double smallest = 1e-300;
   space.half_width = std::max({half.x, half.y, smallest}) * (1.0 + 2.0 / resolution);
@@ -76,7 +99,7 @@ LightMaps::LightSpace LightMaps::fit(const glm::dvec3& to_light, int resolution)
   return space;
 }
 
-int LightMaps::update(const gl::VertexArray& device_mesh, const gl::Program& program,
+int LightMaps::update(const gl::VertexArray& device_mesh, const ProgramSource& program,
                       const std::vector<glm::dvec3>& to_light, int resolution) {
   if (maps_ && to_light == to_light_ && resolution <= resolution_) return 0;
   if (to_light.empty()) return 0;
@@ -98,8 +121,8 @@ int LightMaps::update(const gl::VertexArray& device_mesh, const gl::Program& pro
   return layers;
 }
 
-void LightMaps::draw(const gl::VertexArray& device_mesh, const gl::Program& program, const LightSpace& space, int layer,
-                     const gl::Texture& depth) const {
+void LightMaps::draw(const gl::VertexArray& device_mesh, const ProgramSource& program_source, const LightSpace& space,
+                     int layer, const gl::Texture& depth) const {
   const gl::Framebuffer target(*maps_, layer, depth);
   target.bind();
   constexpr float nothing[4] = {-3e38F, 0.0F, 0.0F, -3e38F};
@@ -110,19 +133,25 @@ void LightMaps::draw(const gl::VertexArray& device_mesh, const gl::Program& prog
   glEnable(GL_CULL_FACE);
   const glm::dmat3 linear(space.object_to_light);
   glFrontFace(glm::determinant(linear) < 0.0 ? GL_CW : GL_CCW);
+  // Whether flat triangles would show where the normals tell of a curve.
+  const double largest_rise = rise_in_texels * 2.0 * space.half_width / resolution_;
+  const bool tessellated = rise_ > largest_rise;
+  const gl::Program& program = program_source(tessellated);
+  const auto draw_mesh = [&] { tessellated ? device_mesh.draw_patches() : device_mesh.draw(); };
   program.use();
-  program.set("object_to_clip", glm::mat4(space.light_to_clip * space.object_to_light));
+  program.set("largest_rise", static_cast<float>(largest_rise));
+  program.set("light_to_clip", glm::mat4(space.light_to_clip));
   program.set("object_to_light", glm::mat4(space.object_to_light));
   program.set("normal_to_light", glm::mat3(glm::transpose(glm::inverse(linear))));
 
   glCullFace(GL_BACK);
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_FALSE);
-  device_mesh.draw();
+  draw_mesh();
 
   target.clear_depth();
   glCullFace(GL_FRONT);
   glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_TRUE);
-  device_mesh.draw();
+  draw_mesh();
 
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   glDisable(GL_CULL_FACE);

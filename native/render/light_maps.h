@@ -1,6 +1,7 @@
 // What each light sees of one grain, kept until the grain or the lights change.
 #pragma once
 
+#include <functional>
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
@@ -23,9 +24,12 @@ class LightMaps {
   /// Whether they were made for this mesh, turned and scaled like this; where it stands in the world plays no part.
   bool are_of(const scene::MeshPointer& mesh, const glm::dmat4& object_to_grain) const;
 
+  /// The program that draws a map, of triangles or tessellated.
+  using ProgramSource = std::function<const gl::Program&(bool tessellated)>;
+
   /// Draws the maps of all lights (unit vectors towards them) unless those at hand serve: same directions, and a
   /// resolution of at least `resolution`. Returns how many maps were drawn.
-  int update(const gl::VertexArray& device_mesh, const gl::Program& program, const std::vector<glm::dvec3>& to_light,
+  int update(const gl::VertexArray& device_mesh, const ProgramSource& program, const std::vector<glm::dvec3>& to_light,
              int resolution);
 
   /// Makes them what shaders/models/light_map.glsl reads.
@@ -40,11 +44,12 @@ class LightMaps {
   struct LightSpace;
 
   LightSpace fit(const glm::dvec3& to_light, int resolution) const;
-  void draw(const gl::VertexArray& device_mesh, const gl::Program& program, const LightSpace& space, int layer,
+  void draw(const gl::VertexArray& device_mesh, const ProgramSource& program_source, const LightSpace& space, int layer,
             const gl::Texture& depth) const;
 
   scene::MeshPointer mesh_;
   glm::dmat4 object_to_grain_;
+  double rise_;  // the most that the curved surface rises above the middle of an edge, in scene units
   std::vector<glm::dvec3> to_light_;
   int resolution_ = 0;
   std::optional<gl::TextureArray> maps_;

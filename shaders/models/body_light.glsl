@@ -48,8 +48,10 @@ BodyFit fit_body(SurfacePoint point, Outwards outwards, LightSample light, Light
   vec3 place = position + vec3(abs(cosine) * along, -sign(cosine) * dot(to_light_space(frame, point.normal).xy, along));
   LightMapTexel entry = light_map_at(frame, light.index, place.xy);
 
-  fit.above = entry.lit ? max(entry.position.z - place.z, 0.0) : 0.0;
+  // Beside the silhouette that this place is on, the texel shows what lies far behind: it tells no more than one that shows nothing.
   float own = light_map_tolerance(frame, entry.normal);
+  entry.lit = entry.lit && entry.position.z >= place.z - own;
+  fit.above = entry.lit ? max(entry.position.z - place.z, 0.0) : 0.0;
   fit.visible = light_map_visibility(frame, entry, place, cosine, body.clear);
   float way_in = mix(fit.above, max(entry.position.z - entry.exit_depth, 0.0), entry.lit ? fit.visible : 0.0);
 

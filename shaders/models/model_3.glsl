@@ -59,6 +59,7 @@ uniform Sampling sampling;
 uniform sampler2D kernel;
 uniform sampler2D kernel_inverse;
 
+uniform Spectrum beyond_sphere;  // how much counts of what is gathered beyond the sphere that fits; see physics::share_beyond_sphere
 uniform int taps;  // for one pixel and sample, over all lights
 uniform float grain_reach;  // no point of the grain is farther than this from the origin, in scene units
 
@@ -175,7 +176,7 @@ vec3 on_the_grain(Gathered gathered, vec3 sphere, float lobe, float radius) {
 #endif
 #endif
   Spectrum share = min((gathered.grain + least) / (gathered.sphere + least), Spectrum(1.0));
-  return sphere * share + lobe * max(gathered.grain - gathered.sphere, Spectrum(0.0));
+  return sphere * share + lobe * beyond_sphere * max(gathered.grain - gathered.sphere, Spectrum(0.0));
 }
 
 #ifdef SINGLE_MARCHED

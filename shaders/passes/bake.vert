@@ -16,7 +16,7 @@ out float grain_plane_offset;
 
 void main() {
   grain_position = (object_to_grain * vec4(position, 1.0)).xyz;
-  grain_normal = normal_to_grain * normal;
+  grain_normal = normalize(normal_to_grain * normal);
   grain_plane_offset = tangent_plane_offset(grain_position, grain_normal);
   gl_Position = vec4(2.0 * uv - 1.0 + jitter, 0.0, 1.0);
 }

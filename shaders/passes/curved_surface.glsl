@@ -6,8 +6,13 @@ float tangent_plane_offset(vec3 position, vec3 normal) { return dot(normal, posi
 
 // Half way from the flat triangle to the tangent planes of its corners, sum b_i n_i (p_i - p), which is exact for every quadric to second
 // order in the triangle's size (Phong tessellation, Boubekeur and Alexa 2008, equation 3, with alpha = 1/2). Flat triangles with normals of
-// their own stay flat. The normal need not be of unit length: any that turns with the mesh will do.
+// their own stay flat. `normal` is interpolated between the corners' unit vectors; where those nearly cancel no curve is known.
 vec3 on_curved_surface(vec3 position, vec3 normal, float plane_offset) {
   float rise = 0.5 * (plane_offset - dot(position, normal));
-  return position + normal * (rise / max(dot(normal, normal), 1e-30));
+  return position + normal * (rise / max(dot(normal, normal), 0.25));
+}
+
+// How far the curved surface rises above the middle of the edge between two corners; as above, up to the normal's length.
+float edge_rise(vec3 position_a, vec3 normal_a, vec3 position_b, vec3 normal_b) {
+  return 0.125 * abs(dot(normal_b - normal_a, position_b - position_a));
 }

@@ -17,7 +17,7 @@ out float grain_plane_offset;
 
 void main() {
   grain_position = (object_to_grain * vec4(position, 1.0)).xyz;
-  grain_normal = normal_to_grain * normal;
+  grain_normal = normalize(normal_to_grain * normal);
   grain_plane_offset = tangent_plane_offset(grain_position, grain_normal);
   gl_Position = object_to_clip * vec4(position, 1.0);
   gl_Position.xy += jitter * gl_Position.w;

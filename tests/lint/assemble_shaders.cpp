@@ -1,4 +1,4 @@
-// Writes FOLDER/NAME.vert and FOLDER/NAME.frag for every distinct program that a material can ask for, for every fixed
+// Writes FOLDER/NAME.vert, FOLDER/NAME.frag and any stage between them for every distinct program that a material can ask for, for every fixed
 // pass, and for each file that none of these uses. Fails when such a file is a pass: then this list has fallen behind.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -28,10 +28,13 @@ class Writer {
   }
 
   void write(const std::string& name, const ShaderSource& vertex, const ShaderSource& fragment) {
-    for (const auto& [suffix, source] : {std::pair{".vert", &vertex}, std::pair{".frag", &fragment}}) {
-      std::ofstream(folder_ / (name + suffix)) << source->text();
-      all_ += source->text();
-    }
+    write_stage(name + ".vert", vertex);
+    write_stage(name + ".frag", fragment);
+  }
+
+  void write_stage(const std::string& file, const ShaderSource& source) {
+    std::ofstream(folder_ / file) << source.text();
+    all_ += source.text();
   }
 
   /// The files of the shader library whose first line is in no text written.
@@ -99,7 +102,10 @@ void write_passes(Writer& writer) {
     writer.write(pass, ShaderSource({"passes/full_screen.vert"}, {}), ShaderSource({"passes/" + pass + ".frag"}, {}));
   writer.write("count", ShaderSource({"passes/bake.vert"}, {}), ShaderSource({"passes/count.frag"}, {}));
   writer.write("surface", ShaderSource({"passes/surface.vert"}, {}), ShaderSource({"passes/surface.frag"}, {}));
-  writer.write("light_map", ShaderSource({"passes/light_map.vert"}, {}), ShaderSource({"passes/light_map.frag"}, {}));
+  for (const std::string name : {"light_map", "light_map+tessellated"})
+    writer.write(name, ShaderSource({"passes/light_map.vert"}, {}), ShaderSource({"passes/light_map.frag"}, {}));
+  for (const std::string suffix : {".tesc", ".tese"})
+    writer.write_stage("light_map+tessellated" + suffix, ShaderSource({"passes/light_map" + suffix}, {}));
 }
 
 /// Each on its own, so that it is checked before any program uses it.

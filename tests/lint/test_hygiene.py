@@ -5,10 +5,10 @@ import pytest
 
 from sources import SOURCE, source_files
 
-COMMENT = {".cpp": "//", ".h": "//", ".glsl": "//", ".vert": "//", ".frag": "//", ".comp": "//",
-           ".sh": "#", ".txt": "#", ".cmake": "#"}
-TEXT = (".cpp", ".h", ".glsl", ".vert", ".frag", ".comp", ".py", ".sh", ".txt", ".cmake", ".md", ".html", ".css", ".js",
-        ".json", ".toml", "mesograin", ".ci/run")
+COMMENT = {".cpp": "//", ".h": "//", ".glsl": "//", ".vert": "//", ".tesc": "//", ".tese": "//", ".frag": "//",
+           ".comp": "//", ".sh": "#", ".txt": "#", ".cmake": "#"}
+TEXT = (".cpp", ".h", ".glsl", ".vert", ".tesc", ".tese", ".frag", ".comp", ".py", ".sh", ".txt", ".cmake", ".md",
+        ".html", ".css", ".js", ".json", ".toml", "mesograin", ".ci/run")
 LEFTOVER = re.compile(r"\b(TODO|FIXME|XXX|HACK)\b|^(<<<<<<<|>>>>>>>)", re.MULTILINE)
 SOMEONES_FOLDER = re.compile(r"(?<![\w.}])/(root|home|work|Users)/\w")
 DATA_LIMIT = 6 * 2**20  # bytes that a clone has to carry for the tests

@@ -7,6 +7,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "gl/context_thread.h"
+#include "render/device_cache.h"
 
 namespace mesograin::render {
 namespace {
@@ -59,8 +60,8 @@ Map draw(const scene::MeshPointer& mesh, const glm::dmat4& object_to_grain, cons
          int resolution) {
   return gl::ContextThread::instance().run([&] {
     const gl::VertexArray device(mesh->positions(), mesh->normals(), {}, mesh->triangles());
-    const gl::Program program("light_map", gl::ShaderSource({"passes/light_map.vert"}, {}),
-                              gl::ShaderSource({"passes/light_map.frag"}, {}));
+    DeviceCache cache;
+    const auto program = [&](bool tessellated) -> const gl::Program& { return cache.light_map_program(tessellated); };
     LightMaps maps(mesh, object_to_grain);
     EXPECT_EQ(maps.update(device, program, {to_light}, resolution), 1);
     EXPECT_EQ(maps.update(device, program, {to_light}, resolution), 0) << "an unchanged grain costs nothing";
