@@ -49,16 +49,17 @@ BodyFit fit_body(SurfacePoint point, Outwards outwards, LightSample light, Light
   LightMapTexel entry = light_map_at(frame, light.index, place.xy);
 
   // Beside the silhouette that this place is on, the texel shows what lies far behind: it tells no more than one that shows nothing.
-  float own = light_map_tolerance(frame, entry.normal);
-  entry.lit = entry.lit && entry.position.z >= place.z - own;
+  float own = light_map_tolerance(frame, entry.normal.z);
+  float known = entry.lit ? smoothstep(-2.0 * own, -own, entry.position.z - place.z) : 0.0;
+
   fit.above = entry.lit ? max(entry.position.z - place.z, 0.0) : 0.0;
   fit.visible = light_map_visibility(frame, entry, place, cosine, body.clear);
-  float way_in = mix(fit.above, max(entry.position.z - entry.exit_depth, 0.0), entry.lit ? fit.visible : 0.0);
+  float way_in = mix(fit.above, max(entry.position.z - entry.exit_depth, 0.0), known * fit.visible);
 
   // A sphere of radius r has chords 2 r |cosine|. Where both vanish, and where the map is too coarse to tell, the grain's own radius stands
   // in.
-  float uncertainty = 0.05 + (entry.lit ? min(own / body.radius, 1.0) : 1.0);
-  float steepness = entry.lit ? entry.normal.z : abs(cosine);
+  float uncertainty = 0.05 + mix(1.0, min(own / body.radius, 1.0), known);
+  float steepness = mix(abs(cosine), entry.normal.z, known);
   fit.radius = clamp((0.5 * way_in / body.radius + uncertainty) / (steepness + uncertainty), 0.125, 2.0);
   fit.cosine = mix(-abs(cosine), cosine, fit.visible);
 

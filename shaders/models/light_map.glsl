@@ -44,9 +44,10 @@ vec3 to_light_space(LightFrame frame, vec3 vector) {
 
 float light_map_texel_width(LightFrame frame) { return frame.texel_width; }
 
-// How far a surface of this normal may lie from its own tangent plane in the map, along z: what is nearer than this is the same surface.
-float light_map_tolerance(LightFrame frame, vec3 normal) {
-  return light_map_texel_width(frame) * (1.0 + 2.0 * sqrt(max(1.0 - normal.z * normal.z, 0.0)) / max(normal.z, 0.05));
+// How far a surface that makes this cosine with the light may lie from its own tangent plane in the map, along z: what is nearer than this
+// is the same surface.
+float light_map_tolerance(LightFrame frame, float cosine) {
+  return light_map_texel_width(frame) * (1.0 + 2.0 * sqrt(max(1.0 - cosine * cosine, 0.0)) / max(cosine, 0.05));
 }
 
 LightMapTexel light_map_at(LightFrame frame, int light, vec2 xy) {
@@ -71,6 +72,6 @@ LightMapTexel light_map_at(LightFrame frame, int light, vec2 xy) {
 // point is its own occluder by as much.
 float light_map_visibility(LightFrame frame, LightMapTexel first, vec3 position, float cosine, float clear) {
   float above = first.lit ? max(first.position.z - position.z, 0.0) : 0.0;
-  float own = light_map_tolerance(frame, first.normal);
+  float own = light_map_tolerance(frame, first.normal.z);
   return cosine > 0.0 ? 1.0 - smoothstep(own, 2.0 * own + clear, above) : 0.0;
 }

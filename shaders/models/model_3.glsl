@@ -92,15 +92,14 @@ vec2 seen_from_light(float ring, float azimuth, float cosine, float turn, out fl
 // Single samples that found much where little was expected would stand out as dots for thousands of frames.
 const float MOST_A_SAMPLE_COUNTS = 64.0;
 
-// No light map tells a surface from its neighbours in a texel: what is as near as this to the sphere that fits is the sphere. Else a grain
-// whose mean free path is less than a texel would find its own light too far away.
-float known_height(LightFrame frame, vec3 normal) {
-  return 0.5 * light_map_texel_width(frame) / (body.radius * max(abs(normal.z), 0.1));
-}
-
-// Where the map says `mapped` and the sphere says `sphere`.
-float surface_height(float mapped, float sphere, float known) {
-  return mix(sphere, mapped, smoothstep(known, 2.0 * known, abs(mapped - sphere)));
+// How far the surface at a place is the sphere that fits, 0 or 1 or between them, for all that a light map can tell: at the terminator a texel
+// is as deep as it is long, and the silhouette has corners that light would show. Else a grain whose mean free path is less than a texel
+// would find its own light too far away. `from_axis`: how far the place lies from the sphere's axis along the light; `cosine`: of its normal.
+float is_sphere(LightFrame frame, LightMapTexel mapped, float height, float from_axis, float radius, float cosine) {
+  float texel = light_map_texel_width(frame) / body.radius;
+  float apart = mapped.lit ? abs(height - mapped.position.z / body.radius) / (light_map_tolerance(frame, cosine) / body.radius)
+                           : (radius - from_axis) / texel;
+  return 1.0 - smoothstep(1.0, 2.0, apart);
 }
 
 struct Gathered {
@@ -119,7 +118,6 @@ Gathered gather(LightFrame frame, int light, BodyFit fit, vec3 position, vec3 no
   float narrowest = max(abs(normal.z), 0.05);
   float radius = fit.radius;
   vec3 centre = position - radius * normal;
-  float known = known_height(frame, normal);
   // A sphere turns within tan(angle/2) of its radius, an edge at once: light knows no difference within a few mean free paths.
   float turn = min(radius * tilt / (1.0 + narrowest), sampling.turn) + 1e-6;
 
@@ -151,13 +149,20 @@ Gathered gather(LightFrame frame, int light, BodyFit fit, vec3 position, vec3 no
     float height_squared = radius * radius - dot(from_axis, from_axis);
     LightMapTexel entry = light_map_at(frame, light, place * body.radius);
     float entry_height = entry.position.z / body.radius;
+    float cosine = entry.normal.z;
+    float lit = entry.lit ? 1.0 : 0.0;
     if (height_squared > 0.0) {
       float rise = sqrt(height_squared);
       float sphere_height = centre.z + rise;
       sum.sphere += weight * SPECTRUM(kernel_at(max(distance(vec3(place, sphere_height), position), nearest), rise / radius));
-      entry_height = surface_height(entry_height, sphere_height, known);
+      float same = is_sphere(frame, entry, sphere_height, length(from_axis), radius, rise / radius);
+      // Farther off than this a texel's doubt is little beside the distance.
+      same *= 1.0 - smoothstep(4.0, 8.0, length(spread) * body.radius / light_map_texel_width(frame));
+      entry_height = entry.lit ? mix(entry_height, sphere_height, same) : sphere_height;
+      cosine = entry.lit ? mix(cosine, rise / radius, same) : rise / radius;
+      lit = mix(lit, 1.0, same);
     }
-    if (entry.lit) sum.grain += weight * SPECTRUM(kernel_at(max(distance(vec3(place, entry_height), position), nearest), entry.normal.z));
+    if (lit > 0.0) sum.grain += lit * weight * SPECTRUM(kernel_at(max(distance(vec3(place, entry_height), position), nearest), cosine));
   } while (++i < count);
   float share = exp(-depth_here) * within / float(max(count, 1));
   return Gathered(share * sum.grain, share * sum.sphere);
@@ -187,8 +192,7 @@ struct Entry {
   vec3 normal;
 };
 
-// By the map, but by the sphere that fits where the map can't tell them apart: at the terminator a texel is as deep as it is long, and the
-// silhouette has corners that light would show.
+// By the map, but by the sphere that fits where the map can't tell them apart.
 Entry entry_above(LightMapTexel mapped, LightFrame frame, vec3 point, vec3 centre, float radius) {
   float map_above = mapped.position.z / body.radius - point.z;
   vec2 from_axis = point.xy - centre.xy;
@@ -196,12 +200,10 @@ Entry entry_above(LightMapTexel mapped, LightFrame frame, vec3 point, vec3 centr
   float sphere_above = centre.z + height - point.z;
   vec3 sphere_normal = vec3(from_axis, height) / radius;
 
-  float texel = light_map_texel_width(frame) / body.radius;
-  float tolerance = light_map_tolerance(frame, sphere_normal) / body.radius;
-  float apart = mapped.lit ? abs(sphere_above - map_above) / tolerance : (radius - length(from_axis)) / texel;
-  float same = distance(point, centre) < radius ? 1.0 - smoothstep(1.0, 2.0, apart) : 0.0;
+  float same = distance(point, centre) < radius ? is_sphere(frame, mapped, centre.z + height, length(from_axis), radius, sphere_normal.z) : 0.0;
 
-  float inside = mapped.lit && point.z * body.radius >= mapped.exit_depth && map_above >= -light_map_tolerance(frame, mapped.normal) / body.radius ? 1.0 : 0.0;
+  float tolerance = light_map_tolerance(frame, mapped.normal.z) / body.radius;
+  float inside = mapped.lit && point.z * body.radius >= mapped.exit_depth && map_above >= -tolerance ? 1.0 : 0.0;
   Entry entry;
   entry.lit = mix(inside, 1.0, same);
   entry.above = mapped.lit ? mix(map_above, sphere_above, same) : sphere_above;

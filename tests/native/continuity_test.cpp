@@ -96,8 +96,9 @@ class Continuity : public testing::TestWithParam<Model> {
     }
     double low = sweep.values[sharpest - 1];
     double high = sweep.values[sharpest];
-    std::vector<float> before = pictures[sharpest - 1];
-    std::vector<float> after = pictures[sharpest];
+    // Drawn anew: the thickest of the sweep's grains left a finer light map, which serves all that follow.
+    std::vector<float> before = at(low);
+    std::vector<float> after = at(high);
     // Where light begins to enter a rarer grain it begins like a square root: half as much takes a quarter of the step.
     for (int halving = 0; halving < 14; ++halving) {
       const double middle = 0.5 * (low + high);

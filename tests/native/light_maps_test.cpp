@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <glm/gtc/constants.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "gl/context_thread.h"
@@ -84,6 +85,42 @@ TEST(LightMaps, OfAConcaveGrainSeeTheFirstSurfaceAndTheFirstExit) {
   const Map map = draw(boxes({{{-1, -1, -3}, {1, 1, -2}}, {{-1, -1, 2}, {1, 1, 3}}}), glm::dmat4(1.0), {0, 0, 1}, 64);
   EXPECT_FLOAT_EQ(map.centre()[0], 3.0F);
   EXPECT_FLOAT_EQ(map.centre()[3], 2.0F);
+}
+
+// A unit sphere of flat triangles whose corners have the sphere's normals.
+scene::MeshPointer coarse_sphere(int segments, int rings) {
+  std::vector<glm::vec3> positions;
+  std::vector<glm::uvec3> triangles;
+  for (int ring = 0; ring <= rings; ++ring)
+    for (int segment = 0; segment <= segments; ++segment) {
+      const double polar = glm::pi<double>() * ring / rings;
+      const double azimuth = glm::two_pi<double>() * segment / segments;
+      positions.emplace_back(std::sin(polar) * std::cos(azimuth), std::sin(polar) * std::sin(azimuth), std::cos(polar));
+    }
+  for (int ring = 0; ring < rings; ++ring)
+    for (int segment = 0; segment < segments; ++segment) {
+      const auto a = static_cast<unsigned>(ring * (segments + 1) + segment);
+      const unsigned b = a + static_cast<unsigned>(segments) + 1;
+      triangles.emplace_back(a, b, b + 1);
+      triangles.emplace_back(a, b + 1, a + 1);
+    }
+  return std::make_shared<scene::Mesh>(positions, positions, triangles);
+}
+
+TEST(LightMaps, OfACoarseMeshAreOfTheCurvedSurfaceItsNormalsTellOf) {
+  const Map map = draw(coarse_sphere(24, 12), glm::dmat4(1.0), glm::normalize(glm::dvec3(1.0, 0.4, 0.3)), 512);
+  std::size_t lit = 0;
+  double farthest = 0.0;
+  for (std::size_t i = 0; i < map.texels.size(); i += 4) {
+    const double height = map.texels[i];
+    if (height < 0.3) continue;
+    ++lit;
+    // On the unit sphere a place is its normal. The triangles' middles lie 0.014 below.
+    const double sine_squared = std::pow(map.texels[i + 1], 2) + std::pow(map.texels[i + 2], 2);
+    farthest = std::max(farthest, std::abs(height - std::sqrt(1.0 - sine_squared)));
+  }
+  EXPECT_GT(lit, 150000U);
+  EXPECT_LT(farthest, 0.002);
 }
 
 TEST(LightMaps, FollowScaleAndMirroring) {
