@@ -1,4 +1,4 @@
-"""Models 2 and 3 on a torus, which no sphere fits and which throws its shadow on itself, against Cycles' volume paths."""
+"""Models 2 and 3 on a torus, which no sphere fits and which shadows itself, against Cycles' volume paths."""
 
 import json
 import pathlib
@@ -27,7 +27,8 @@ def torus(around=96, across=48, radius=1.0, tube=0.4):
 
 def picture(model, scale, to_light, size=96, samples=32):
     """The red channel, (size, size), of a torus of albedo 0.9 with `scale` mean free paths a unit."""
-    material = native.Material(model=model, sigma_s=(0.9,) * 3, sigma_a=(0.1,) * 3, scale=scale, boundary="index_matched")
+    material = native.Material(model=model, sigma_s=(0.9,) * 3, sigma_a=(0.1,) * 3, scale=scale,
+                               boundary="index_matched")
     view = native.View(size, size)
     light = native.DirectionalLight(tuple(to_light), (numpy.pi,) * 3)
     view.set_scene(native.Scene(instances=[native.Instance(torus(), material, numpy.eye(4))], lights=[light]))
