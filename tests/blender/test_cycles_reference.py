@@ -247,6 +247,29 @@ def test_objects_that_are_no_shapes_are_in_nobodys_way(counted):
     assert len(counted) == 2
 
 
+@pytest.mark.parametrize("degrees, bar", [(20.0, 0.005), (90.0, 0.04)])
+def test_a_wide_sun_is_the_same_on_both_sides(native, degrees, bar):
+    make_sphere(FRONT, segments=32, rings=16)
+    bpy.data.lights[0].angle = math.radians(degrees)
+    theirs = reference.render(depsgraph(), "diffuse", (24, 24), samples=256, seeds=(1,)).images[0][..., :3]
+    view = native.View(24, 24)
+    view.set_scene(export.scene_from_depsgraph(depsgraph())[0])
+    view.set_camera(export.camera_from_scene(depsgraph(), 24, 24))
+    view.render(256)
+    assert view.read()[..., :3].sum() == pytest.approx(theirs.sum(), rel=bar)
+
+
+def test_a_sun_that_cycles_cannot_render_like_ours_is_named(counted):
+    make_sphere(FRONT, segments=16, rings=8)
+    bpy.data.lights[0].angle = math.pi
+    if nodes.features().even_suns:
+        reference.render(depsgraph(), "diffuse", (8, 8), samples=2)
+        return
+    with pytest.raises(reference.ReferenceError, match="flat disc, unlike ours beyond 90 degrees; got 180"):
+        reference.render(depsgraph(), "diffuse", (8, 8), samples=2)
+    assert counted == []
+
+
 def text():
     data = bpy.data.curves.new("Text", "FONT")
     data.body, data.size, data.extrude = "M", 3.0, 0.2

@@ -18,6 +18,7 @@ class NodeFeatures:
     glass_distribution: str  # of the Glass BSDF: `SHARP` where there is one, else one that roughness 0 makes sharp
     facets_have_fresnel: bool  # the Glass BSDF reflects by each facet
     has_phase_choice: bool  # Volume Scatter offers several phase functions
+    even_suns: bool = False  # a wide sun is equally bright all over; else it is a flat disc, brighter towards its rim
 
 
 @dataclass(frozen=True)

@@ -90,6 +90,7 @@ def features():
             # That came with the same rewrite.
             facets_have_fresnel=merged,
             has_phase_choice=hasattr(tree.nodes.new("ShaderNodeVolumeScatter"), "phase"),
+            even_suns=merged,  # came with Blender 4.0, too, and shows in no property
         )
     finally:
         bpy.data.node_groups.remove(tree)

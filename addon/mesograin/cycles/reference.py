@@ -7,11 +7,14 @@ from dataclasses import dataclass
 import numpy
 
 from .. import meshes
-from . import kinds, photon, shot
+from . import kinds, nodes, photon, shot
 from .limits import limits
 from .shot import PROVENANCE, ReferenceError
 
 __all__ = ["PROVENANCE", "SEEDS", "Reference", "ReferenceError", "Sampling", "render"]
+
+WIDEST_SUN = math.radians(90.5)
+"""Where a flat disc is the sun: a Lambertian sphere differs by 3 % under one of 90 degrees, by 8 % under 120."""
 
 SEEDS = (1, 2)
 """Two independent images by default: their difference tells the noise, their mean is the reference."""
@@ -140,6 +143,12 @@ def _check(depsgraph, kind, overrides):
     ):
         degrees = math.degrees(kind.least_sun)
         notes.append(f"Suns are taken {degrees:.0f} degrees wide on both sides, since Cycles cannot find smaller ones.")
+    widest = 0.0 if kind.referee or nodes.features().even_suns else max(
+        (instance.object.data.angle for instance in depsgraph.object_instances
+         if instance.object.type == "LIGHT" and instance.object.data.type == "SUN"), default=0.0)
+    if not widest <= WIDEST_SUN:
+        raise ReferenceError("This Blender's Cycles renders a sun as a flat disc, unlike ours beyond "
+                             f"{math.degrees(WIDEST_SUN):.0f} degrees; got {math.degrees(widest):.0f}: narrow it.")
     for name, material in sorted(materials.items()):
         for limit in limits(shot.grain_values(depsgraph, overrides, material), kind.recipe):
             sentence = f"Material '{name}': {limit.sentence}"

@@ -1,11 +1,13 @@
 # A scene of its own for each reference, copied from the evaluated one, so that the user's scene is never touched.
 """See `Stage`."""
 
+import math
+
 import addon_utils
 import bpy
 
 from .. import meshes
-from . import settings
+from . import nodes, settings
 
 
 class StageError(Exception):
@@ -99,8 +101,11 @@ class Stage:
     def _copy_sun(self, source, matrix):
         light = self._own(bpy.data.lights.new("Mesograin sun", "SUN"))
         light.color = source.color
-        light.energy = source.energy
         light.angle = max(source.angle, self._least_sun)
+        # Where Cycles' sun is even, it is brighter than ours by what the cosine takes from its rim: a plane facing
+        # theirs receives the strength, one facing ours a little less.
+        rim = (1.0 + math.cos(0.5 * light.angle)) / 2.0 if nodes.features().even_suns else 1.0
+        light.energy = source.energy * rim
         light.cycles.max_bounces = 1024
         self._add("Mesograin sun", light, matrix)
 
