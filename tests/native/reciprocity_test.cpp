@@ -18,8 +18,6 @@ using scene::Material;
 using scene::Model;
 using scene::Profile;
 
-constexpr int size = 32;
-
 class Reciprocity : public testing::Test {
  protected:
   // Radiant intensity per irradiance, but for a factor: an ellipsoid, for every sphere is symmetric by itself.
@@ -27,7 +25,7 @@ class Reciprocity : public testing::Test {
     view_.set_scene(
         {{{mesh_, material, glm::scale(glm::dmat4(1.0), glm::dvec3(1.0, 0.6, 0.8))}}, {{to_light, glm::dvec3(1.0)}}});
     view_.set_camera(camera_at(glm::dmat4(1.0), to_viewer));
-    const std::vector<float> pixels = draw(view_, 2);
+    const std::vector<float> pixels = draw(view_, samples_);
     double sum = 0.0;
     for (std::size_t i = 0; i < pixels.size(); i += 4) sum += pixels[i];
     return sum;
@@ -50,7 +48,8 @@ class Reciprocity : public testing::Test {
 
   void SetUp() override { view_.set_taps(32); }
 
-  View view_{size, size};
+  View view_{32, 32};
+  int samples_ = 2;
   scene::MeshPointer mesh_ = std::make_shared<const scene::Mesh>(scene::unit_sphere(48, 24));
 };
 
@@ -64,9 +63,12 @@ Material material_of(Model model, Profile profile, Boundary boundary, double sca
 }
 
 // A profile of the distance alone is the same both ways, and what enters is as much as what leaves: the surface
-// integral of both is reciprocal, and straight single scattering is. (One per cent is left with any number of samples
-// and pixels, another is what these few leave.)
+// integral of both is reciprocal, and straight single scattering is. (A picture of 32 by 32 pixels of a coarser mesh
+// leaves more than twice as much as this one does.)
 TEST_F(Reciprocity, Model3IsReciprocalWithAPlanarProfile) {
+  view_.resize(48, 48);
+  samples_ = 4;
+  mesh_ = std::make_shared<const scene::Mesh>(scene::unit_sphere(96, 48));
   for (const double scale : {2.0, 15.0})
     for (const auto& [profile, boundary] :
          {std::pair{Profile::dipole, Boundary::dielectric}, std::pair{Profile::dipole, Boundary::index_matched},
@@ -74,7 +76,7 @@ TEST_F(Reciprocity, Model3IsReciprocalWithAPlanarProfile) {
           std::pair{Profile::better_dipole, Boundary::lambert_lambert},
           std::pair{Profile::photon_beam, Boundary::index_matched}}) {
       const Material material = material_of(Model::model_3, profile, boundary, scale);
-      EXPECT_LE(difference(material), 0.027) << to_json(material);
+      EXPECT_LE(difference(material), 0.0125) << to_json(material);
     }
 }
 
