@@ -48,7 +48,7 @@ def test_the_command_tells_the_numbers_and_the_verdict(tmp_path, capsys, monkeyp
     monkeypatch.setenv("MESOGRAIN_CACHE", str(tmp_path / "cache"))
     make_sphere(SUNS, segments=64, rings=32, model="lambert")
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "grain.blend"))
-    words = "--compare --size 64x32 --samples 8 --reference-samples 4 -o".split()
+    words = "--compare --size 64x32 --samples 64 --reference-samples 128 -o".split()
     chosen = arguments.parse([str(tmp_path / "grain.blend"), *words, str(tmp_path / "a.exr")])
     command._compare(chosen, depsgraph(), "Sphere", {}, Progress(io.StringIO()))
     said = capsys.readouterr().out
