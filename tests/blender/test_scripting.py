@@ -60,6 +60,11 @@ def test_a_material_that_is_no_number_is_named(sphere, compare):
     assert case.entry["material"][sphere.name]["roughness"] is None
 
 
+def test_a_fraction_that_cannot_be_reached_ends_at_the_most_seeds(sphere, compare):
+    [case] = compare(until=1e-300, most_seeds=3).cases
+    assert case.error == "" and case.entry["reference_seeds"] == [1, 2, 3] and not case.entry["until"]["reached"]
+
+
 def test_the_scene_stays_as_it_is(sphere, compare):
     def kept():
         names = ("scenes", "objects", "meshes", "materials", "worlds", "images")

@@ -161,5 +161,6 @@ def _until(case, request, size, sampling, image, mirror, progress):
 
 def _wanted_seeds(count, ratio, request):
     """How many seeds it takes, as noise falls with the root of their number; at most twice as many in one go."""
-    needed = 2 * count if ratio is None else math.ceil(count * (ratio / request.until) ** 2)
+    # Bounded, because a tiny fraction overflows when it is squared.
+    needed = 2 * count if ratio is None else math.ceil(count * min(ratio / request.until, 1e6) ** 2)
     return min(max(count + 1, min(needed, 2 * count)), request.most_seeds)
