@@ -1,5 +1,6 @@
-// Writes FOLDER/NAME.vert, FOLDER/NAME.frag and any stage between them for every distinct program that a material can ask for, for every fixed
-// pass, and for each file that none of these uses. Fails when such a file is a pass: then this list has fallen behind.
+// Writes FOLDER/NAME.vert, FOLDER/NAME.frag and any stage between them for every distinct program that a material can
+// ask for, for every fixed pass, and for each file that none of these uses. Fails when such a file is a pass: then this
+// list has fallen behind.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
