@@ -181,7 +181,10 @@ vec3 on_the_grain(Gathered gathered, vec3 sphere, float lobe, float radius) {
 #endif
 #endif
   Spectrum share = min((gathered.grain + least) / (gathered.sphere + least), Spectrum(1.0));
-  return sphere * share + lobe * beyond_sphere * max(gathered.grain - gathered.sphere, Spectrum(0.0));
+  // A twentieth more is how samples and facets lie about the sphere, no surface that goes on beyond it.
+  Spectrum more = max(gathered.grain - gathered.sphere, Spectrum(0.0));
+  Spectrum about = min(more, 0.05 * gathered.sphere);
+  return sphere * share + lobe * (about + beyond_sphere * (more - about));
 }
 
 #ifdef SINGLE_MARCHED
