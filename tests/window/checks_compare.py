@@ -43,7 +43,7 @@ def check_it_compares_beside_and_shows_what_it_found(window):
     bpy.data.materials["Translucent"].mesograin.reflectance = (0.4, 0.2, 0.8)
     yield from window.converged_picture(area)
     silent = yield from finished(window)
-    assert silent < 0.5, f"Blender did not answer for {silent:.0%} of the comparison"
+    assert silent < 0.75, f"Blender did not answer for {silent:.0%} of the comparison"
     assert session.error == "" and [case["status"] for case in session.results["cases"]] == ["done", "done"]
     shown = yield from window.picture(properties)
     assert (np.abs(shown - quiet).max(axis=-1) > 0.1).sum() > 1000, "the panel shows no numbers"
