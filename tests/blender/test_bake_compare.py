@@ -1,6 +1,8 @@
 # Cycles' bake beside ours: the same texels, the same light, kept in the cache, nothing left behind.
 import io
 import json
+import threading
+import time
 
 import bpy
 import numpy as np
@@ -66,6 +68,29 @@ def test_the_view_from_the_camera_is_bent_as_cycles_bends_it():
     above = compare(size=(256, 128))[-1]
     assert camera["metrics"]["relative_l1"] < 0.02 and above["metrics"]["relative_l1"] < 0.02
     assert camera["reference"] == "glossy"
+
+
+def test_no_thread_of_python_disturbs_a_bake():
+    # What an operator looks up in Python while another thread runs Python crashes Blender before Python 3.12.
+    make_sphere(SUNS, model="lambert", segments=16, rings=8)
+    window = bpy.context.window
+    shown, layer = window.scene, window.view_layer.name
+    over = threading.Event()
+
+    def busy():
+        while not over.is_set():
+            time.sleep(0.0)
+
+    threads = [threading.Thread(target=busy) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    try:
+        assert all(compare(size=(16, 8), samples=1, theirs=1)[1].mean[..., 3].any() for _ in range(60))
+    finally:
+        over.set()
+        for thread in threads:
+            thread.join()
+    assert window.scene == shown and window.view_layer.name == layer
 
 
 def test_a_thick_translucent_grain_agrees_with_the_subsurface_node():

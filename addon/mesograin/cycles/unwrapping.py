@@ -1,6 +1,7 @@
 # What Cycles bakes of one object of a staged scene, instead of what its camera sees.
 """See `Unwrapping`."""
 
+import contextlib
 import hashlib
 from dataclasses import dataclass
 
@@ -71,12 +72,11 @@ class Unwrapping:
         return numpy.ascontiguousarray(pixels.reshape(height, width, 4)[::-1])
 
     def _bake(self, placed, scene, on_progress):
-        view_layer = scene.view_layers[0]
-        view_layer.update()
-        chosen = {"active_object": placed, "object": placed, "selected_objects": [placed],
-                  "selected_editable_objects": [placed]}
-        with Console(on_progress) as console, \
-                bpy.context.temp_override(scene=scene, view_layer=view_layer, **chosen):
+        with _shown(scene), Console(on_progress) as console:
+            for other in scene.objects:
+                other.select_set(other == placed)
+            scene.view_layers[0].objects.active = placed
+            scene.view_layers[0].update()
             try:
                 outcome = bpy.ops.object.bake(type="COMBINED", uv_layer=self._layer(placed).name)
             except RuntimeError as error:
@@ -96,3 +96,22 @@ class Unwrapping:
         if layer is None:
             raise ReferenceError(f"Object '{self.name}' has no UVs to bake at: unwrap it (UV > Unwrap in Edit Mode).")
         return layer
+
+
+@contextlib.contextmanager
+def _shown(scene):
+    """While it lasts, the window shows `scene`, which is what an operator without an override works on.
+
+    Not `temp_override`: an operator runs without Python's lock, and Blender before Python 3.12 looks up what Python
+    overrides without taking it whenever any other thread of Python's runs, as the console's does; that crashes.
+    """
+    window = bpy.context.window
+    if window is None:
+        raise ReferenceError("Cycles bakes what a window shows, and here is none: "
+                             "bake from a script or an operator, not from a timer.")
+    before, layer = window.scene, window.view_layer
+    window.scene = scene
+    try:
+        yield
+    finally:
+        window.scene, window.view_layer = before, layer
