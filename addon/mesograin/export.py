@@ -75,6 +75,16 @@ def scene_from_depsgraph(depsgraph, cache=None):
     return values.to_native(), values.warnings
 
 
+def named(kind):
+    """Blender's word for a kind of thing, such as AREA, in a sentence: with its article."""
+    return f"{'an' if kind[0] in 'AEIOU' else 'a'} {kind.lower()}"
+
+
+def is_sun(thing):
+    """Whether an object is a light that is rendered; other lights have no angle either."""
+    return thing.type == "LIGHT" and thing.data.type == "SUN"
+
+
 class Region(typing.NamedTuple):
     """Part of a picture, in pixels from its lower left corner, as Blender counts them."""
 
@@ -169,7 +179,7 @@ def material_values(material, millimetres_per_unit):
     """MaterialValues of a Blender material, or of the default grain where a slot is empty (None)."""
     if material is None:
         return MaterialValues("(none)", tuple(_default_parameters(millimetres_per_unit)))
-    return MaterialValues(material.name, tuple(_parameters(material.mesograin, millimetres_per_unit)))
+    return MaterialValues(material.name_full, tuple(_parameters(material.mesograin, millimetres_per_unit)))
 
 
 def read_scene(depsgraph, cache):
@@ -234,7 +244,7 @@ class _Reader:
         elif kind == "LIGHT":
             self._read_light(instance.object, instance.matrix_world)
         elif kind in ("CURVES", "POINTCLOUD", "VOLUME"):
-            self._warn(f"Object '{instance.object.name}' is a {kind.lower()} object, which Mesograin does not draw: "
+            self._warn(f"Object '{instance.object.name}' is {named(kind)} object, which Mesograin does not draw: "
                        "convert it to a mesh.")
 
     def scene_values(self, scene):
@@ -257,14 +267,14 @@ class _Reader:
                 return  # a family of metaballs is drawn with its first member
             self._warn(f"Object '{evaluated_object.name}' has no faces, so nothing of it is drawn.")
             return
-        if matrix_world.determinant() == 0.0:
-            self._warn(f"Object '{evaluated_object.name}' is scaled to nothing, so it is not drawn.")
-            return
         # Heaps have instances by the ten thousands, and slices are the fastest way out of a Blender matrix.
         to_world = matrix_world[0][:] + matrix_world[1][:] + matrix_world[2][:] + matrix_world[3][:]
         if not math.isfinite(sum(to_world)):
             self._warn(f"Object '{evaluated_object.name}' has a place, rotation or scale that is no number, so it is "
                        "not drawn.")
+            return
+        if not meshes.has_extent(matrix_world):
+            self._warn(f"Object '{evaluated_object.name}' is scaled to nothing, so it is not drawn.")
             return
         for part in parts:
             self._instances.append(InstanceValues(evaluated_object.name, part.mesh,
@@ -281,8 +291,8 @@ class _Reader:
 
     def _read_light(self, evaluated_object, matrix_world):
         light = evaluated_object.data
-        if light.type != "SUN":
-            self._warn(f"Light '{evaluated_object.name}' is a {light.type.lower()} light; only suns are rendered.")
+        if not is_sun(evaluated_object):
+            self._warn(f"Light '{evaluated_object.name}' is {named(light.type)} light; only suns are rendered.")
             return
         if light.use_nodes:
             self._warn(f"Light '{evaluated_object.name}' has nodes, which are left out: its own colour and strength "

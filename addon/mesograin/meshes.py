@@ -1,5 +1,6 @@
 # Evaluated Blender geometry as native meshes, one for each material slot; what did not change is neither read nor sent.
 import hashlib
+import math
 import typing
 import weakref
 
@@ -14,6 +15,26 @@ def is_shape(thing):
     """Whether an object among a dependency graph's instances is to be drawn. Blender lists text, curves and metaballs
     twice, as themselves and as the mesh that they become, and Blender 3.4 crashes where it is to copy the latter."""
     return thing.type in DRAWABLE_TYPES and (thing.type != "MESH" or thing.original.type not in DRAWABLE_TYPES[1:])
+
+
+def is_drawn(thing, matrix_world):
+    """Whether one of a dependency graph's instances is drawn where its matrix puts it, if it has faces."""
+    return is_shape(thing) and has_extent(matrix_world) and is_finite(matrix_world)
+
+
+THINNEST = 1e-7
+"""How short an object's shortest axis may be beside its longest: single precision tells no more apart."""
+
+
+def has_extent(matrix_world):
+    """Whether an object is not scaled to nothing along any axis; Cycles ends Blender at one that is."""
+    lengths = [abs(length) for length in matrix_world.to_scale()]
+    return matrix_world.determinant() != 0.0 and not min(lengths) < THINNEST * max(lengths)
+
+
+def is_finite(matrix_world):
+    """Whether an object's place, rotation and scale are numbers."""
+    return math.isfinite(sum(sum(row) for row in matrix_world))
 
 
 class MeshPart(typing.NamedTuple):

@@ -30,9 +30,13 @@ class Ours:
     def parameters(self, chosen):
         """{material name: {parameter: value}} as a case renders them. chosen: {parameter: value} of the case."""
         return {
-            instance.material.name: {**dict(instance.material.values), **self._overrides, **chosen}
+            instance.material.name: dict(self._material(instance.material, chosen).values)
             for instance in self._scene.instances
         }
+
+    def _material(self, material, chosen):
+        values = {**dict(material.values), **self._overrides, **chosen}
+        return export.MaterialValues(material.name, tuple(values.items()))
 
     @property
     def samples(self):
@@ -52,14 +56,8 @@ class Ours:
     def begin(self, chosen, least_sun=0.0, taps=None):
         """Starts a picture without samples. chosen: the case's choice of parameters. least_sun: radians; narrower suns
         are widened to this. taps: of model 3, for each sample; None as they were."""
-        parameters = self.parameters(chosen)
         instances = tuple(
-            dataclasses.replace(
-                instance,
-                material=export.MaterialValues(
-                    instance.material.name, tuple(parameters[instance.material.name].items())
-                ),
-            )
+            dataclasses.replace(instance, material=self._material(instance.material, chosen))
             for instance in self._scene.instances
         )
         scene = dataclasses.replace(self._scene, instances=instances, lights=self._lights(least_sun)).to_native()

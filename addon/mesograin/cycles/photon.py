@@ -89,7 +89,10 @@ def _run(words, tell):
 def _scene(depsgraph, size, overrides):
     """The scene as mesograin-referee reads it (docs/scene-json.md). Raises ReferenceError if it is not that simple."""
     values = export.read_scene(depsgraph, meshes.MeshCache())
+    values.to_native()  # says which light or material has values that cannot be
     centre, radius = _sphere(depsgraph)
+    if not values.lights:
+        raise ReferenceError("The scene has no visible sun light: add one.")
     parameters = {**dict(values.instances[0].material.values), **overrides}
     if len({instance.material for instance in values.instances}) > 1:
         raise ReferenceError("The photon reference traces one sphere of one material; the scene's has several.")
@@ -121,8 +124,9 @@ def _sphere(depsgraph):
     shapes = [
         (each.object, each.matrix_world.copy())
         for each in depsgraph.object_instances
-        if each.show_self and meshes.is_shape(each.object)
+        if each.show_self and meshes.is_drawn(each.object, each.matrix_world)
     ]
+    shapes = [(shape, matrix) for shape, matrix in shapes if shape.type != "MESH" or shape.data.polygons]
     if len(shapes) == 1 and shapes[0][0].type == "MESH":
         mesh, matrix = shapes[0][0].data, numpy.array(shapes[0][1])
         points = numpy.empty((len(mesh.vertices), 3), numpy.float32)
@@ -141,7 +145,8 @@ def _sphere(depsgraph):
 
 def _camera(depsgraph, size):
     camera = depsgraph.scene_eval.camera
-    if camera is None or camera.data.type != "PERSP" or camera.data.shift_x or camera.data.shift_y:
+    lens = camera.data if camera is not None and camera.type == "CAMERA" else None
+    if lens is None or lens.type != "PERSP" or lens.shift_x or lens.shift_y:
         raise ReferenceError("The photon reference needs a perspective camera without shift: set the camera so.")
     clip = camera.calc_matrix_camera(depsgraph, x=size[0], y=size[1])
     matrix = camera.matrix_world

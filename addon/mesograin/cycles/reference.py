@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy
 
-from .. import meshes
+from .. import export, meshes
 from . import kinds, nodes, photon, shot
 from .limits import limits
 from .shot import PROVENANCE, ReferenceError
@@ -132,21 +132,18 @@ def _check(depsgraph, kind, overrides):
     materials = {}
     for instance in depsgraph.object_instances:
         # Blender 3.4 crashes at the slots of an object that can have none.
-        drawn = instance.show_self and meshes.is_shape(instance.object)
+        drawn = instance.show_self and meshes.is_drawn(instance.object, instance.matrix_world)
         for slot in instance.object.material_slots if drawn else ():
             if slot.material:
-                materials[slot.material.name] = slot.material.original
+                materials[slot.material.name_full] = slot.material.original
     notes = []
-    if kind.least_sun and any(
-        instance.object.type == "LIGHT" and instance.object.data.angle < kind.least_sun
-        for instance in depsgraph.object_instances
-    ):
+    suns = [instance.object.data.angle for instance in depsgraph.object_instances
+            if instance.show_self and export.is_sun(instance.object)]
+    if any(angle < kind.least_sun for angle in suns):
         degrees = math.degrees(kind.least_sun)
         notes.append(f"Suns are taken {degrees:.0f} degrees wide on both sides, since Cycles cannot find smaller ones.")
-    widest = 0.0 if kind.referee or nodes.features().even_suns else max(
-        (instance.object.data.angle for instance in depsgraph.object_instances
-         if instance.object.type == "LIGHT" and instance.object.data.type == "SUN"), default=0.0)
-    if not widest <= WIDEST_SUN:
+    widest = max(suns, default=0.0)
+    if not (kind.referee or nodes.features().even_suns or widest <= WIDEST_SUN):
         raise ReferenceError("This Blender's Cycles renders a sun as a flat disc, unlike ours beyond "
                              f"{math.degrees(WIDEST_SUN):.0f} degrees; got {math.degrees(widest):.0f}: narrow it.")
     for name, material in sorted(materials.items()):

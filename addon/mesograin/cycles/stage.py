@@ -6,7 +6,7 @@ import math
 import addon_utils
 import bpy
 
-from .. import meshes
+from .. import export, meshes
 from . import nodes, settings
 
 
@@ -76,7 +76,7 @@ class Stage:
         if source is None:
             raise StageError("The scene has no camera: add one, or choose one in the scene's properties.")
         if source.type != "CAMERA" or source.data.type == "PANO":
-            is_what = "is panoramic" if source.type == "CAMERA" else f"is a {source.type.lower()}"
+            is_what = "is panoramic" if source.type == "CAMERA" else f"is {export.named(source.type)}"
             raise StageError(f"A comparison needs a perspective or orthographic camera, and '{source.name}' {is_what}: "
                              "choose another in the scene's properties.")
         camera = self._own(bpy.data.cameras.new("Mesograin camera"))
@@ -89,9 +89,9 @@ class Stage:
             source = instance.object
             if not instance.show_self:
                 continue
-            if source.type == "LIGHT" and source.data.type == "SUN":
+            if export.is_sun(source):
                 self._copy_sun(source.data, instance.matrix_world)
-            elif meshes.is_shape(source):
+            elif meshes.is_drawn(source, instance.matrix_world):
                 self._copy_shape(source, instance.matrix_world)
         if not self._meshes:
             raise StageError("The scene has no visible mesh: add a grain, or switch its rendering on.")
@@ -119,6 +119,8 @@ class Stage:
             if mesh is None:
                 return
             self._own(mesh)
+            if not mesh.polygons:
+                return
             self._meshes[key] = mesh
             mesh.materials.clear()
             for material in materials:

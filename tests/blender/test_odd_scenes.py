@@ -1,0 +1,141 @@
+# Comparing scenes as artists leave them: what is not rendered changes nothing, and what cannot be is one sentence.
+import io
+import math
+import os
+
+import bpy
+import numpy as np
+import pytest
+from cycles_scenes import REFEREE, make_sphere
+from mathutils import Matrix
+from test_export import add_mesh_object, add_object
+
+from mesograin.comparison import progress, run
+from mesograin.cycles.cache import Cache
+
+KINDS = ("diffuse", "volume_index_matched", "volume_dielectric", "photon")
+WIDE = math.radians(30.0)
+
+
+@pytest.fixture(autouse=True)
+def referee(monkeypatch):
+    if not os.access(REFEREE, os.X_OK):
+        pytest.skip("the photon tracer is not built")
+    monkeypatch.setenv("MESOGRAIN_REFEREE", str(REFEREE))
+
+
+@pytest.fixture
+def compare(tmp_path):
+    """The cases of the current scene against every one of KINDS, 16 pixels wide."""
+
+    def do(kinds=KINDS):
+        request = run.Request(models=("lambert", "model_1"), references=kinds, out=tmp_path / "out", size=(16, 16),
+                              samples=4, reference_samples=4, frames=1, cache=Cache(tmp_path / "cache"), command="it")
+        return run.compare(request, progress.Progress(io.StringIO()))["cases"]
+
+    return do
+
+
+@pytest.fixture
+def scene():
+    make_sphere([((1.0, 1.0, 1.0), 20.0)], segments=32, rings=16)
+    bpy.data.lights["Sun"].angle = WIDE
+    return bpy.context.scene
+
+
+def add_other_lights():
+    for kind in ("POINT", "SPOT", "AREA"):
+        add_object(kind.title(), bpy.data.lights.new(kind.title(), kind))
+
+
+def add_things_that_are_no_grain():
+    add_object("Empty", None)
+    add_object("Lattice", bpy.data.lattices.new("Lattice"))
+    add_object("Smoke", bpy.data.volumes.new("Smoke"))
+    add_mesh_object("Dust", [], [])
+    add_mesh_object("Wire", [(0, 0, 0), (1, 0, 0)], [])
+
+
+def add_objects_without_extent():
+    grain = bpy.data.objects["Sphere"].data
+    for number, scale in enumerate(((0.0, 0.0, 0.0), (1.0, 1.0, 0.0), (1.0, 1.0, 1e-20), (math.nan, 1.0, 1.0))):
+        add_object(f"Flat {number}", grain).scale = scale
+
+
+def turn_inside_out():
+    bpy.data.objects["Sphere"].scale = (-1.0, 1.0, 1.0)
+
+
+def empty_the_slot():
+    bpy.data.objects["Sphere"].material_slots[0].material = None
+
+
+def name_slots_that_are_gone():
+    mesh = bpy.data.objects["Sphere"].data
+    mesh.polygons.foreach_set("material_index", [number % 7 for number in range(len(mesh.polygons))])
+
+
+@pytest.mark.parametrize("change", [add_other_lights, add_things_that_are_no_grain, add_objects_without_extent,
+                                    turn_inside_out, empty_the_slot, name_slots_that_are_gone])
+def test_what_is_not_rendered_changes_nothing(scene, compare, change):
+    before = compare()
+    change()
+    after = compare()
+    for plain, odd in zip(before, after):
+        assert (plain["status"], odd["status"]) == ("done", "done"), odd.get("error")
+        # Where the mirrored sphere is the same one, its paths are not: the bound is what so few samples leave.
+        bound = 0.25 if change is turn_inside_out and plain["reference"] == "volume_dielectric" else 1e-3
+        assert odd["metrics"]["bias"] == pytest.approx(plain["metrics"]["bias"], rel=bound)
+
+
+def take_the_camera(scene):
+    scene.camera = add_object("Eye", None, Matrix.Translation((0.0, 0.0, 6.5)))
+
+
+def remove_sun(scene):
+    bpy.data.objects.remove(bpy.data.objects["Sun"])
+
+
+def remove_faces(scene):
+    bpy.data.objects["Sphere"].data.clear_geometry()
+
+
+def flatten(scene):
+    bpy.data.objects["Sphere"].scale.z = 0.0
+
+
+def give_the_sun_no_number(scene):
+    bpy.data.lights["Sun"].energy = math.nan
+
+
+@pytest.mark.parametrize("change, traced, photons", [
+    (take_the_camera, "'Eye' is an empty", "perspective camera"),
+    (remove_sun, "no visible sun", "no visible sun"),
+    (remove_faces, "no visible mesh", "single sphere"),
+    (flatten, "no visible mesh", "single sphere"),
+    (give_the_sun_no_number, "Light 'Sun'", "Light 'Sun'"),
+])
+def test_what_cannot_be_rendered_is_one_sentence(scene, compare, change, traced, photons):
+    change(scene)
+    for case in compare():
+        assert case["status"] == "failed"
+        assert (photons if case["reference"] == "photon" else traced) in case["error"], case["error"]
+
+
+def test_linked_material_of_the_same_name_is_another(scene, compare, tmp_path, native):
+    """The local sphere on the left is dark, the one from a library on the right bright."""
+    grain, library = bpy.data.objects["Sphere"], str(tmp_path / "library.blend")
+    grain.scale = (0.4, 0.4, 0.4)
+    grain.location.x = 1.3
+    bpy.data.materials["Sand"].mesograin.reflectance = (0.9, 0.9, 0.9)
+    bpy.data.libraries.write(library, {grain})
+    with bpy.data.libraries.load(library, link=True) as (_, wanted):
+        wanted.objects = ["Sphere"]
+    scene.collection.objects.link(wanted.objects[0])
+    grain.location.x = -1.3
+    bpy.data.materials["Sand"].mesograin.reflectance = (0.1, 0.1, 0.1)
+    [case] = compare(("diffuse",))
+    assert case["metrics"]["relative_l1"] < 0.1
+    assert sorted(values["reflectance"][0] for values in case["material"].values()) == pytest.approx([0.1, 0.9])
+    ours = native.read_exr(tmp_path / "out" / case["files"]["model"])[0]
+    assert np.median(ours[6:10, 10:14, 0]) > 5.0 * np.median(ours[6:10, 2:6, 0]) > 0.0
