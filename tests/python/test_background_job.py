@@ -1,5 +1,6 @@
 """A job's process is watched and cancelled, and its files appear whole or not at all, whatever the process does."""
 
+import os
 import sys
 import time
 
@@ -119,6 +120,12 @@ def test_standard_input_lasts_as_long_as_the_parent(start):
     until(lambda: started.sentences)
     time.sleep(0.2)
     assert started.state == job.RUNNING
+
+
+def test_a_job_leaves_the_cores_to_blender_first(start):
+    started = start("time.sleep(0.5); send('sentence', text=str(os.nice(0))); send('failed', text='')")
+    until(lambda: started.sentences or not started.running)
+    assert int(started.sentences[0]) == min(os.nice(0) + job.NICENESS, 19)
 
 
 def test_a_program_that_is_not_there_is_one_sentence(tmp_path):

@@ -17,6 +17,8 @@ from . import protocol
 RUNNING, DONE, FAILED, CANCELLED = "running", "done", "failed", "cancelled"
 PATIENCE_SECONDS = 2.0
 """What a cancelled process is given to end by itself, before it is killed."""
+NICENESS = 10
+"""How much further back a job's process stands than Blender, whose window answers while Cycles takes every core."""
 
 
 class Job:
@@ -56,6 +58,10 @@ class Job:
             self._clean()
             self._end(FAILED, f"{command[0]} cannot be run ({error.strerror}).")
             return
+        # At once, since only threads started later inherit it; a process that has already ended needs none.
+        with contextlib.suppress(ProcessLookupError):
+            own = os.getpriority(os.PRIO_PROCESS, 0)
+            os.setpriority(os.PRIO_PROCESS, self._process.pid, min(own + NICENESS, 19))
         self._thread = threading.Thread(target=self._watch, name="mesograin-job", daemon=True)
         self._thread.start()
 
