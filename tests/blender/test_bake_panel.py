@@ -138,7 +138,7 @@ def test_only_what_can_be_baked_is_offered(asked):
     (lambda asked: setattr(asked, "out", "/nowhere/a.exr"), "choose another place"),
     (lambda asked: setattr(asked, "out", asked.out + ".png"), "must end in .exr"),
     (lambda asked: bpy.data.meshes[0].uv_layers.remove(bpy.data.meshes[0].uv_layers[0]), "no UVs to bake at"),
-    (lambda asked: setattr(bpy.data.objects["Sphere"], "hide_viewport", True), "there are: none"),
+    (lambda asked: setattr(bpy.data.objects["Sphere"], "hide_render", True), "there are: none"),
 ])
 def test_what_is_wrong_is_one_sentence(asked, change, sentence):
     change(asked)

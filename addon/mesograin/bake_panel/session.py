@@ -7,7 +7,7 @@ from pathlib import Path
 
 import bpy
 
-from .. import native_module, reference_cache
+from .. import as_rendered, native_module, reference_cache
 from ..baking import surface
 from ..comparison.progress import duration
 from ..side_task.session import Session
@@ -129,11 +129,11 @@ def prepare(context):
     asked = context.scene.mesograin_bake
     path = output(context.scene)
     surface.require_writable(path)
-    depsgraph = context.evaluated_depsgraph_get()
-    name = surface.choose(depsgraph)
-    if asked.compare:
-        return _prepare_compared(asked, path, name)
-    chosen = surface.Surface(depsgraph, name, (asked.width, asked.height), asked.view_from)
+    with as_rendered.depsgraph(context) as depsgraph:
+        name = surface.choose(depsgraph)
+        if asked.compare:
+            return _prepare_compared(asked, path, name)
+        chosen = surface.Surface(depsgraph, name, (asked.width, asked.height), asked.view_from)
     return Bake(chosen, path, asked.samples, asked.margin, asked.half)
 
 

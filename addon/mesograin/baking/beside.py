@@ -5,7 +5,7 @@ from pathlib import Path
 
 import bpy
 
-from .. import native_module
+from .. import as_rendered, native_module
 from ..comparison.progress import Calls
 from ..comparison.results import OutputError
 from ..cycles.cache import Cache
@@ -27,9 +27,9 @@ def bake(name, out, file, size, samples, view_from, reference, reference_samples
     try:
         native = native_module.get()
         need_cycles()
-        depsgraph = bpy.context.evaluated_depsgraph_get()
-        found = comparison.compare(depsgraph, name, tuple(size), samples, view_from, {}, None, reference,
-                                   reference_samples, Cache(cache, cache_limit), progress)
+        with as_rendered.depsgraph(bpy.context) as depsgraph:
+            found = comparison.compare(depsgraph, name, tuple(size), samples, view_from, {}, None, reference,
+                                       reference_samples, Cache(cache, cache_limit), progress)
         comparison.write(Path(out) / file, *found)
     except (native_module.Unavailable, OutputError, ReferenceError, StageError, ValueError) as error:
         raise BakeError(str(error)) from error

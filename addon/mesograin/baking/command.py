@@ -26,10 +26,16 @@ def _run(chosen, _):
 
 def _bake(chosen, progress):
     import bpy
+    from mesograin import as_rendered
+
+    with as_rendered.depsgraph(bpy.context) as depsgraph:
+        _bake_shown(chosen, depsgraph, progress)
+
+
+def _bake_shown(chosen, depsgraph, progress):
     from mesograin import export
     from mesograin.baking import surface
 
-    depsgraph = bpy.context.evaluated_depsgraph_get()
     overrides = export.overrides(chosen.settings, depsgraph.scene)
     name = surface.choose(depsgraph, chosen.object)
     if chosen.compare:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import bpy
 
-from .. import export, native_module
+from .. import as_rendered, export, native_module
 from ..cycles import kinds, nodes, reference
 from ..cycles.stage import StageError
 from ..report.reading import RESULTS_FORMAT
@@ -18,16 +18,21 @@ __all__ = ["Case", "Request", "cases", "compare"]
 
 
 def compare(request, progress):
-    """Compares every case of a Request in Blender's current scene and writes its files; returns the results.
+    """Compares every case of a Request in Blender's current scene, as it renders; writes the files, returns the
+    results.
 
     A case that fails is recorded with its sentence and the others go on. progress: a `progress.Progress`.
     Raises OutputError if the folder cannot be written, native.Error or Unavailable if nothing can be rendered,
     progress.Cancelled after `progress.cancel()`; what was finished stays.
     """
+    with as_rendered.depsgraph(bpy.context) as depsgraph:
+        return _compare(request, depsgraph, progress)
+
+
+def _compare(request, depsgraph, progress):
     scene = bpy.context.scene
     output = Output(request.out)
     size = request.size or _size(scene)
-    depsgraph = bpy.context.evaluated_depsgraph_get()
     overrides = export.overrides(request.settings, scene)
     ours = Ours(depsgraph, size, overrides)
     for warning in ours.warnings:

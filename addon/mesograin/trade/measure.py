@@ -11,7 +11,7 @@ from pathlib import Path
 
 import bpy
 
-from .. import export, native_module
+from .. import as_rendered, export, native_module
 from ..comparison import definitions, masks, origin
 from ..comparison.ours import Ours
 from ..comparison.results import Output
@@ -68,15 +68,20 @@ class Request:
 
 
 def measure(request, progress):
-    """Measures a Request in Blender's current scene and writes trade.json, trade.csv and EXR files into its folder;
-    returns what trade.json holds. Points that the folder has already, measured alike, are not measured again.
+    """Measures a Request in Blender's current scene, as it renders, and writes trade.json, trade.csv and EXR files into
+    its folder; returns what trade.json holds. Points that the folder has already, measured alike, are not measured
+    again.
 
     progress: a `comparison.progress.Progress`. Raises OutputError if the folder cannot be written, ReferenceError or
     StageError if Cycles cannot render, native.Error or Unavailable if nothing can be drawn.
     """
+    with as_rendered.depsgraph(bpy.context) as depsgraph:
+        return _measure(request, depsgraph, progress)
+
+
+def _measure(request, depsgraph, progress):
     native = native_module.get()
     output = Output(request.out)
-    depsgraph = bpy.context.evaluated_depsgraph_get()
     overrides = export.overrides(request.settings, bpy.context.scene)
     ours = Ours(depsgraph, request.size, overrides, parts=1)
     for warning in ours.warnings:
