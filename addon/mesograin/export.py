@@ -29,6 +29,7 @@ class InstanceValues:
     mesh: object  # native.Mesh, equal by identity
     material: MaterialValues
     object_to_world: tuple  # 16 numbers, row-major
+    broken_uvs: bool = False  # as a meshes.MeshPart's
 
     def to_native(self, native, material):
         transform = np.array(self.object_to_world).reshape(4, 4)
@@ -267,6 +268,10 @@ class _Reader:
                 return  # a family of metaballs is drawn with its first member
             self._warn(f"Object '{evaluated_object.name}' has no faces, so nothing of it is drawn.")
             return
+        if not any(part.has_area for part in parts):
+            self._warn(f"Object '{evaluated_object.name}' has faces without any area, so nothing of it is drawn: "
+                       "spread its vertices.")
+            return
         # Heaps have instances by the ten thousands, and slices are the fastest way out of a Blender matrix.
         to_world = matrix_world[0][:] + matrix_world[1][:] + matrix_world[2][:] + matrix_world[3][:]
         if not math.isfinite(sum(to_world)):
@@ -278,7 +283,8 @@ class _Reader:
             return
         for part in parts:
             self._instances.append(InstanceValues(evaluated_object.name, part.mesh,
-                                                  self._material(evaluated_object, part.slot), to_world))
+                                                  self._material(evaluated_object, part.slot), to_world,
+                                                  part.broken_uvs))
 
     def _material(self, evaluated_object, slot):
         slots = evaluated_object.material_slots

@@ -38,10 +38,13 @@ def is_finite(matrix_world):
 
 
 class MeshPart(typing.NamedTuple):
-    """The triangles of one material slot; `mesh` is a native Mesh and equal parts share it."""
+    """The triangles of one material slot; `mesh` is a native Mesh and equal parts share it. has_area: of any triangle.
+    broken_uvs: whether there were UVs, but some that are no numbers; the mesh then has none."""
 
     slot: int
     mesh: object
+    has_area: bool
+    broken_uvs: bool
 
 
 # Equal content is one native mesh, wherever it comes from: undo, a second viewport or a final render resend nothing.
@@ -90,7 +93,7 @@ def _read_mesh(mesh, name):
     if not mesh.polygons:
         return ()
     compat.calculate_corners(mesh)
-    corners, of_loop = _corners(mesh)
+    corners, of_loop, broken_uvs = _corners(mesh)
     triangles = np.empty((len(mesh.loop_triangles), 3), dtype=np.int32)
     mesh.loop_triangles.foreach_get("loops", triangles.ravel())
     triangles = of_loop[triangles]
@@ -98,18 +101,32 @@ def _read_mesh(mesh, name):
     mesh.loop_triangles.foreach_get("material_index", slots)
     used = np.unique(slots)
     if len(used) == 1:
-        return (MeshPart(int(used[0]), _native_mesh(name, corners, triangles)),)
+        return (_part(name, used[0], corners, triangles, broken_uvs),)
     parts = []
     for slot in used:
         kept, compact = np.unique(triangles[slots == slot], return_inverse=True)
         kept_corners = [None if array is None else array[kept] for array in corners]
-        parts.append(MeshPart(int(slot), _native_mesh(name, kept_corners, compact.reshape(-1, 3))))
+        parts.append(_part(name, slot, kept_corners, compact.reshape(-1, 3), broken_uvs))
     return tuple(parts)
 
 
+def _part(name, slot, corners, triangles, broken_uvs):
+    return MeshPart(int(slot), _native_mesh(name, corners, triangles), _has_area(corners[0], triangles), broken_uvs)
+
+
+def _has_area(positions, triangles):
+    # Nearly always one of the first has, so that the rest need not be looked at.
+    for some in (triangles[:64], triangles[64:]):
+        first, second, third = (positions[some[:, corner]].astype(np.float64) for corner in range(3))
+        if np.cross(second - first, third - first).any():
+            return True
+    return False
+
+
 def _corners(mesh):
-    """((positions, normals, UVs or None), rows), one row for each corner that differs from its vertex' first one: flat
-    faces and UV seams share no vertices. rows: which one each loop has."""
+    """((positions, normals, UVs or None), rows, broken), one row for each corner that differs from its vertex' first
+    one: flat faces and UV seams share no vertices. rows: which one each loop has. broken: as a MeshPart's
+    `broken_uvs`."""
     positions = np.empty((len(mesh.vertices), 3), dtype=np.float32)
     mesh.vertices.foreach_get("co", positions.ravel())
     vertex_of_corner = np.empty(len(mesh.loops), dtype=np.int32)
@@ -119,9 +136,13 @@ def _corners(mesh):
     if layer is not None:
         uvs = np.empty((len(mesh.loops), 2), dtype=np.float32)
         layer.data.foreach_get("uv", uvs.ravel())
+    # Only a bake needs them, and says so; a picture does not.
+    broken = uvs is not None and not np.isfinite(uvs).all()
+    if broken:
+        uvs = None
     normals = smooth_normals.settle(mesh, compat.corner_normals(mesh))
     kept, of_loop = _weld(vertex_of_corner, normals, uvs)
-    return (positions[vertex_of_corner[kept]], normals[kept], None if uvs is None else uvs[kept]), of_loop
+    return (positions[vertex_of_corner[kept]], normals[kept], None if uvs is None else uvs[kept]), of_loop, broken
 
 
 def _weld(vertex, *values):

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from mathutils import Matrix
 from mesograin import status
+from mesograin.baking import surface
 from test_export import add_camera, add_cube, add_mesh_object, add_object, add_sun
 
 
@@ -220,8 +221,27 @@ def test_object_scaled_to_nothing(scene, render):
 
 def test_degenerate_faces(scene, render):
     add_mesh_object("Sliver", [(0, 0, 2), (0, 0, 2), (0, 0, 2)], [(0, 1, 2)])
-    picture, _ = warnings_of_render(render)
+    add_mesh_object("Partly", [(0, 0, 2), (0, 0, 2), (0, 0, 2), (9, 9, -9), (9, 8, -9), (8, 9, -9)],
+                    [(0, 1, 2)] * 70 + [(3, 4, 5)])
+    picture, warnings = warnings_of_render(render)
     assert (picture == picture).all() and picture[8, 8, 0] > 0.1
+    [sentence] = warnings
+    assert_one_sentence(sentence, "Object 'Sliver'", "without any area")
+
+
+def test_uvs_that_are_no_numbers_matter_to_a_bake_alone(scene, render):
+    before = render()
+    cube = bpy.data.objects["Cube"]
+    layer = cube.data.uv_layers.new()
+    layer.data[3].uv.x = math.nan
+    picture, warnings = warnings_of_render(render)
+    assert warnings == ()
+    np.testing.assert_allclose(picture, before, atol=1e-6)
+    with pytest.raises(surface.BakeError, match="Object 'Cube' has UVs that are no numbers: unwrap it anew"):
+        surface.Surface(bpy.context.evaluated_depsgraph_get(), "Cube", (8, 8))
+    layer.data[3].uv.x = 0.5
+    cube.data.update_tag()
+    surface.Surface(bpy.context.evaluated_depsgraph_get(), "Cube", (8, 8))
 
 
 def test_panoramic_camera(scene, render):

@@ -39,6 +39,8 @@ class Surface:
         native = native_module.get()
         scene = export.read_scene(depsgraph, meshes.MeshCache())
         instances = _instances(scene, name)
+        if any(scene.instances[index].broken_uvs for index in instances):
+            raise BakeError(f"Object '{name}' has UVs that are no numbers: unwrap it anew (UV > Unwrap in Edit Mode).")
         if not all(scene.instances[index].mesh.has_uvs for index in instances):
             raise BakeError(f"Object '{name}' has no UVs to bake at: unwrap it (UV > Unwrap in Edit Mode).")
         changed = tuple(_with(instance, overrides or {}) for instance in scene.instances)

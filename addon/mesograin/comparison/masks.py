@@ -22,7 +22,8 @@ def select(masks, image, theirs, mirror=None):
     """(mask, what the silhouette alone keeps, [{'name', 'pixels', 'removed'}, ...]): masks applied one after another.
 
     masks: of `mask_names.parse`. image: ours. theirs: Reference. mirror: (h, w) bool, where the sun is seen in a smooth
-    interface, or None. The masks that look at the error look at `rse`. Raises native.Error for a crop outside.
+    interface, or None. The masks that look at the error look at `rse`. Raises native.Error for a crop outside and
+    if no pixel is left.
     """
     native = native_module.get()
     coverage = numpy.min([each[..., 3] for each in theirs.images], axis=0)
@@ -47,7 +48,24 @@ def select(masks, image, theirs, mirror=None):
         text = ",".join(f"{number:g}" for number in numbers)
         steps.append(_step(f"{name}:{text}" if text else name, mask, kept))
         mask = kept
+    if not mask.any():
+        raise native.Error(_nothing_left(coverage, steps))
     return mask, whole, steps
+
+
+def _nothing_left(coverage, steps):
+    """One sentence: which mask took what, and what to do."""
+    touched, wholly = int((coverage > 0.0).sum()), int((coverage == 1.0).sum())
+    if not touched:
+        return "There is no pixel to compare, because the reference shows no grain: point the camera at one."
+    took = [f"{step['name']} took {step['removed']}" for step in steps if step["removed"]]
+    last = next(step["name"] for step in steps if not step["pixels"])
+    if last.startswith("silhouette"):
+        cure = "choose a larger picture or a smaller rim, such as silhouette:0, or move the camera nearer"
+    else:
+        cure = f"widen {last} or leave it out" if last != "mirror" else "turn the sun or the camera"
+    return (f"No pixel is left to compare: of {touched} that the grain touches, {wholly} of them wholly, "
+            f"{', '.join(took)}: {cure}.")
 
 
 def _step(name, before, after):
