@@ -10,6 +10,7 @@ from cycles_scenes import RADIUS, depsgraph, make_sphere, sphere_points, unit
 from test_export import read_scene
 
 from mesograin import export
+from mesograin.comparison.ours import Ours
 from mesograin.cycles import nodes, reference, shot
 from mesograin.cycles.cache import Cache
 from mesograin.cycles.stage import StageError
@@ -257,6 +258,22 @@ def test_a_wide_sun_is_the_same_on_both_sides(native, degrees, bar):
     view.set_camera(export.camera_from_scene(depsgraph(), 24, 24))
     view.render(256)
     assert view.read()[..., :3].sum() == pytest.approx(theirs.sum(), rel=bar)
+
+
+@pytest.mark.parametrize("degrees, bar", [(0.0, 1e-3), (20.0, 2e-3), (60.0, 0.01)])
+def test_a_plane_that_faces_a_wide_sun_receives_the_mean_cosine(native, degrees, bar):
+    """As docs/scene-json.md has it."""
+    make_sphere([((0.0, 0.0, 1.0), 2.0)])
+    bpy.data.objects.remove(bpy.data.objects["Sphere"])
+    bpy.ops.mesh.primitive_plane_add(size=20.0)
+    bpy.data.lights[0].angle = math.radians(degrees)
+    expected = 2.0 * (1.0 + math.cos(math.radians(degrees) / 2.0)) / 2.0 * 0.5 / math.pi
+    theirs = reference.render(depsgraph(), "diffuse", (16, 16), samples=256, seeds=(1,),
+                              overrides={"reflectance": (0.5,) * 3}).images[0][..., :3]
+    assert theirs.mean() == pytest.approx(expected, rel=bar)
+    ours = Ours(depsgraph(), (16, 16), {"reflectance": (0.5,) * 3})
+    ours.begin({"model": "lambert"})
+    assert np.mean(ours.refine(256), axis=0)[..., :3].mean() == pytest.approx(expected, rel=1e-3)
 
 
 def test_a_sun_that_cycles_cannot_render_like_ours_is_named(counted):
