@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 
+#include "physics/beam_depths.h"
 #include "physics/exit_directions.h"
 #include "physics/forward_peak.h"
 #include "physics/physics.h"
@@ -19,20 +20,6 @@ namespace {
 constexpr int largest_order = 48;
 constexpr int entry_nodes = 16;
 constexpr int depth_nodes = 16;
-
-// Calls visit(t, weight) for nodes that integrate a function times what the beam that feeds `part` loses on a path of
-// `length`. Cubes of a variable: dense where a thick grain takes its light in, and reaching to the far end, which the
-// beam itself lights in a dark grain.
-template <typename Visit>
-void for_depths(const DiffusionPart& part, double length, Visit visit) {
-  constexpr double nothing_left = 50.0;
-  const double end = std::min(length, nothing_left / part.spread);
-  const double lost = std::expm1(-part.extinction * length) / std::expm1(-part.spread * length);
-  for (const QuadratureNode& node : gauss_legendre(depth_nodes)) {
-    const double t = end * node.x * node.x * node.x;
-    visit(t, 3.0 * node.x * node.x * node.weight * end * lost * part.spread * std::exp(-part.spread * t));
-  }
-}
 
 struct Beam {
   glm::dvec2 entry;      // (distance from the axis, height), the light comes down the axis
