@@ -2,14 +2,21 @@
 import csv
 import io
 import json
+import pathlib
+import subprocess
+import time
 
+import bpy
+import numpy as np
 import pytest
 from cycles_scenes import REFEREE, make_sphere
 
+from mesograin import native_module
 from mesograin.comparison import ours, progress
 from mesograin.cycles.cache import Cache
 from mesograin.trade import measure
 
+COMMAND = pathlib.Path(__file__).resolve().parents[2] / "addon/mesograin/trade/command.py"
 SUNS = [((1.0, 1.0, 1.0), 20.0)]
 
 
@@ -69,6 +76,75 @@ def test_every_point_is_measured_and_taken_over(tmp_path, native, monkeypatch):
 
     trade(tmp_path, settings={"scale": 2.0})
     assert len(begun) == 4, "what was measured on another material is not taken over"
+
+
+TIMES = ("milliseconds", "frame_ms", "passes_ms")
+
+
+def start(folder, name):
+    """`trade` of a file in a process of its own, which writes to `name` and has references of its own."""
+    words = ["--samples", "1", "4", "--taps", "2", "4", "--models", "model_1", "model_3", "--reference-samples", "32",
+             "--size", "64x64", "--frames", "150", "--set", "scale=4", "--out", folder / name]
+    command = [bpy.app.binary_path, "-b", "--factory-startup", "--python-exit-code", "1", "--python", COMMAND, "--",
+               folder / "grain.blend", *words, "--cache", folder / f"{name} cache"]
+    with open(folder / f"{name}.log", "w", encoding="utf-8") as log:
+        return subprocess.Popen(command, stdout=log, stderr=subprocess.STDOUT)
+
+
+def written(path):
+    try:
+        return json.loads(path.read_text())
+    except FileNotFoundError:
+        return {"points": []}
+
+
+def succeed(process, folder, name):
+    process.wait(timeout=120)
+    said = (folder / f"{name}.log").read_text()
+    assert process.returncode == 0 and "Results:" in said, said
+
+
+def test_a_killed_run_goes_on_where_it_was_and_ends_alike(tmp_path):
+    make_sphere(SUNS, sigma_s=(0.9,) * 3, sigma_a=(0.1,) * 3)
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "grain.blend"))
+    succeed(start(tmp_path, "whole"), tmp_path, "whole")
+    file, cache = tmp_path / "killed/trade.json", tmp_path / "killed cache"
+    kept, files = [], {}
+    for reached in (lambda: len(list(cache.glob("*.exr"))) >= 1, lambda: len(written(file)["points"]) >= 1,
+                    lambda: len(written(file)["points"]) >= 3, lambda: written(file).get("complete")):
+        process = start(tmp_path, "killed")
+        while not reached():
+            assert process.poll() is None, (tmp_path / "killed.log").read_text()
+            time.sleep(0.005)
+        process.kill()
+        process.wait()
+        points = written(file)["points"]
+        assert points[:len(kept)] == kept, "what was measured is taken over as it was"
+        # A file that is written again is another one, because files appear whole.
+        assert {path: path.stat().st_ino for path in files} == files, "nothing is rendered again"
+        pictures = [tmp_path / "killed" / point["picture"] for point in points]
+        kept, files = points, {path: path.stat().st_ino for path in [*cache.glob("*.exr"), *pictures]}
+    succeed(start(tmp_path, "killed"), tmp_path, "killed")
+    ours, theirs = written(file), written(tmp_path / "whole/trade.json")
+    assert ours["points"] == kept and ours["complete"]
+    for point in (*ours["points"], *theirs["points"]):
+        for name in TIMES:
+            point.pop(name, None)
+    assert ours["points"] == theirs["points"]
+    assert ours["reference"].pop("seconds") and theirs["reference"].pop("seconds")
+    assert ours["reference"] == theirs["reference"] and ours["reference"]["noise_floor"] > 0.0
+    for picture in (tmp_path / "whole/pictures").iterdir():
+        same = native_module.get().read_exr(tmp_path / "killed/pictures" / picture.name)[0]
+        np.testing.assert_array_equal(same, native_module.get().read_exr(picture)[0])
+
+
+def test_a_point_whose_picture_is_gone_is_measured_again(tmp_path):
+    make_sphere(SUNS, sigma_s=(4.0, 4.0, 4.0), sigma_a=(0.2, 0.2, 0.2))
+    found = trade(tmp_path, models=("model_1",))
+    (tmp_path / "out/pictures/model_1.samples3.exr").unlink()
+    again = trade(tmp_path, models=("model_1",))
+    assert (tmp_path / "out/pictures/model_1.samples3.exr").is_file()
+    assert [point["error"] for point in again["points"]] == [point["error"] for point in found["points"]]
 
 
 def test_a_smooth_interface_is_judged_in_blocks_under_a_wide_sun(tmp_path):

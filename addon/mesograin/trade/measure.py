@@ -182,17 +182,21 @@ class _Book:
     def __init__(self, results, output, truth, mask, fingerprint):
         self._results, self._output, self._truth, self._mask = results, output, truth, mask
         results["fingerprint"] = fingerprint
+        # Here, because a run that takes over every point measures nothing else.
+        itself = native_module.get().compare(truth.mean, *truth.images, mask=mask)
+        results["reference"]["noise_floor"] = itself["noise_floor"][results["reference"]["judged_by"]]
+        results["reference"]["mask"] = itself["mask"]
         self._known = {}
         try:
             earlier = json.loads((output.folder / RESULTS).read_text(encoding="utf-8"))
             if earlier.get("fingerprint") == fingerprint:
                 self._known = {point["name"]: point for point in earlier["points"]}
-        except (OSError, ValueError, KeyError, AttributeError):
+        except (OSError, ValueError, KeyError, AttributeError, TypeError):
             pass  # nothing there, or nothing of ours
 
     def has(self, name):
-        """Whether a point was measured before; if so, it is taken over."""
-        if name not in self._known:
+        """Whether a point was measured before and its picture is there; if so, it is taken over."""
+        if name not in self._known or not (self._output.folder / self._known[name]["picture"]).is_file():
             return False
         if self._known[name] not in self._results["points"]:
             self._results["points"].append(self._known[name])
@@ -204,13 +208,10 @@ class _Book:
 
     def add(self, name, image, **point):
         metrics = native_module.get().compare(image, *self._truth.images, mask=self._mask)
-        floor, mask = metrics["noise_floor"], metrics["mask"]
         kept = {name: metrics[name] for name in METRICS}
         judged_by = self._results["reference"]["judged_by"]
-        self._results["reference"]["noise_floor"] = floor[judged_by]
-        self._results["reference"]["mask"] = mask
         self._results["points"].append(
-            {"name": name, **point, **curve.place(metrics, floor, judged_by), "metrics": kept,
+            {"name": name, **point, **curve.place(metrics, metrics["noise_floor"], judged_by), "metrics": kept,
              "picture": f"pictures/{name}.exr"}
         )
         self._write()
