@@ -3,6 +3,7 @@
 A part that crashes, hangs or runs no test counts as a failure.
 """
 import argparse
+import itertools
 import json
 import os
 import pathlib
@@ -16,6 +17,8 @@ from dataclasses import asdict, dataclass, field
 
 SOURCE = pathlib.Path(__file__).resolve().parent.parent
 PARTS = ("lint", "physics", "native", "python", "blender", "window")
+FATAL = "Fatal Python error"
+MOST_CALLS = 8  # of a crash
 LIMIT = 40 * 60  # seconds for one suite; only a hang takes so long
 
 
@@ -135,7 +138,7 @@ class Runner:
         if code != 0 and result.failed == 0:
             how = f"ended by signal {-code}" if isinstance(code, int) and code < 0 else f"exit code {code}"
             result.failed += 1
-            result.failures.append((suite.name, f"{how}\n{tail(log)}"))
+            result.failures.append((suite.name, f"{how}\n{last_words(log)}"))
         elif not readable or result.passed + result.failed == 0:
             result.failed += 1
             result.failures.append((suite.name, f"ran no test\n{tail(log)}"))
@@ -184,12 +187,31 @@ def telling(text, count=12):
     return (lines[:1] + marked if marked else lines)[:count]
 
 
+def last_words(path):
+    """Of a process that a signal ended: where Python was, innermost call first, down to the test; else a log's end."""
+    lines = read_lines(path)
+    begun = [number for number, line in enumerate(lines) if FATAL in line]  # after pytest's dots
+    if not begun:
+        return tail(path)
+    died = lines[begun[-1]:]
+    # Other threads may stand before the one that died.
+    at = next((number for number, line in enumerate(died) if line.startswith("Current thread")), 0)
+    calls = list(itertools.takewhile(lambda line: line.startswith("  ") and "/_pytest/" not in line, died[at + 1:]))
+    if len(calls) > MOST_CALLS:
+        calls = [*calls[:MOST_CALLS - 2], "  ...", calls[-1]]
+    return "\n".join([died[0][died[0].index(FATAL):], *died[at:at + 1], *calls])
+
+
 def tail(path, count=30):
     """The last lines of a log."""
+    return "\n".join(read_lines(path)[-count:])
+
+
+def read_lines(path):
     try:
-        return "\n".join(path.read_text(errors="replace").splitlines()[-count:])
+        return path.read_text(errors="replace").splitlines()
     except OSError:
-        return ""
+        return []
 
 
 def main():

@@ -4,6 +4,7 @@ import pathlib
 import re
 import subprocess
 import sys
+import textwrap
 import zipfile
 
 import pytest
@@ -122,6 +123,29 @@ class TestRunTests:
     ], ids=["crash", "nothing", "no test", "no file", "all skipped", "failed after its tests"])
     def test_a_suite_that_proves_nothing_failed(self, run, script):
         assert run(script).failed == 1
+
+    @pytest.mark.parametrize("depth", [2, 40])
+    def test_a_crash_says_in_which_test_and_call(self, run, capsys, tmp_path, depth):
+        (tmp_path / "test_it.py").write_text(textwrap.dedent(f"""
+            import os, signal, threading, time
+
+            def deep(left):
+                deep(left - 1) if left else innermost()
+
+            def innermost():
+                os.kill(os.getpid(), signal.SIGSEGV)
+
+            def test_that_crashes():
+                threading.Thread(target=time.sleep, args=(9,), daemon=True).start()
+                deep({depth})
+            """))
+        result = run(f"exec {sys.executable} -m pytest -p no:cacheprovider {tmp_path / 'test_it.py'}")
+        assert result.failed == 1
+        said = capsys.readouterr().out
+        assert "ended by signal 11" in said and "Fatal Python error: Segmentation fault" in said
+        frames = [line for line in said.splitlines() if "test_it.py\", line" in line]
+        assert frames[0].endswith("in innermost") and frames[-1].endswith("in test_that_crashes"), said
+        assert len(said.splitlines()) <= 15
 
 
 def test_the_package_holds_what_blender_needs(tmp_path):
