@@ -42,8 +42,10 @@ def test_plots_have_the_data_in_them(sweep):
     plot = "plots/relative_l1-over-scale.svg"
     assert (sweep / "out" / plot).read_bytes() == (sweep / "again" / plot).read_bytes()
     text = (sweep / "out" / plot).read_text()
-    for word in ("scale (multiplies", "relative L1", "model_1", "model_2", "Test"):
+    for word in ("scale (multiplies", "relative L1", "model_1", "model_2", "Test", "%"):
         assert word in text
+    marks = re.findall(r">([\d.]+)</text>", text)
+    assert marks == ["1", "2", "4"], "the axis is marked where the sweep has values"
     assert (sweep / "out/plots/bias-over-scale.png").read_bytes()[:4] == b"\x89PNG"
 
 

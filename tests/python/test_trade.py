@@ -13,7 +13,9 @@ from addon_rooms import ADDON, room
 
 arguments = room("trade.arguments")
 curve = room("trade.curve")
+plots = room("report.plots")
 reading = room("report.reading")
+trade_plot = room("report.trade_plot")
 
 BUILDER = ADDON / "mesograin" / "report" / "build.py"
 
@@ -197,6 +199,20 @@ def test_the_plot_is_a_file_too_and_names_everything(folder):
                   "time of a picture", "error: relative L1"):
         assert words in svg
     assert (folder / "plots/trade.png").read_bytes()[:4] == b"\x89PNG"
+
+
+def test_numbers_at_points_that_lie_close_cover_nothing():
+    points = [point("model_3", 4 ** number, 3.0 * 4 ** number * factor, 0.02 + 0.001 * taps / 16, taps=taps)
+              for number in range(4) for taps, factor in ((4, 1.0), (16, 1.1), (64, 3.7))] + path_tracer(1, 4, 16)
+    results = {"points": points, "front": [points[0]["name"]], "summary": curve.summary(points),
+               "reference": {"judged_by": "relative_l1", "noise_floor": 0.01}}
+    figure = trade_plot.trade(results)(plots._PAGE)
+    figure.canvas.draw()
+    [axes] = figure.axes
+    boxes = [text.get_window_extent() for text in axes.texts if text.get_text()]
+    assert 8 <= len(boxes) <= len(points), "most have a number, and not all have room for one"
+    for number, box in enumerate(boxes):
+        assert not box.count_overlaps(boxes[:number] + boxes[number + 1:])
 
 
 def test_a_wrong_option_is_told_by_the_command_that_was_called(capsys):

@@ -3,7 +3,10 @@
 
 import math
 
-from .plots import log_axis, new_figure
+from matplotlib.ticker import FixedLocator, FuncFormatter
+from matplotlib.transforms import ScaledTranslation
+
+from .plots import log_axis, new_figure, percent
 
 METRICS = {
     "relative_l1": "relative L1:  Σ|i − r| / Σr",
@@ -39,15 +42,25 @@ def over(results, axis, metric):
         colours = (palette.ours, palette.theirs, palette.second, palette.third, palette.ink)
         for number, (label, line) in enumerate(lines.items()):
             x, y, floor = zip(*sorted(line), strict=True)
-            axes.errorbar(
+            drawn, caps, bars = axes.errorbar(
                 x, y, yerr=floor if any(floor) else None, label=label, color=colours[number % len(colours)],
                 marker=MARKERS[number % len(MARKERS)], linestyle=DASHES[number // len(colours) % len(DASHES)],
                 markersize=4, linewidth=1.3, elinewidth=0.8, capsize=2,
             )
-        numbers = [point[0] for line in lines.values() for point in line]
-        if min(numbers) > 0 and max(numbers) / min(numbers) > 20:
+            # Side by side, because all lines have their points at the same values.
+            aside = (number - 0.5 * (len(lines) - 1)) * min(4.0, 24.0 / len(lines))
+            shifted = axes.transData + ScaledTranslation(aside / 72.0, 0.0, figure.dpi_scale_trans)
+            for artist in (drawn, *caps, *bars):
+                artist.set_transform(shifted)
+        numbers = sorted({point[0] for line in lines.values() for point in line})
+        if min(numbers) > 0 and max(numbers) / min(numbers) >= 20:
             axes.set_xscale("log")
             log_axis(axes.xaxis, numbers, 1.2, lambda value, _: f"{value:g}")
+        if _far_apart(numbers, axes.get_xscale() == "log"):
+            axes.xaxis.set_major_locator(FixedLocator(numbers))
+            axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+        if metric == "relative_l1":
+            axes.yaxis.set_major_formatter(FuncFormatter(percent))
         if metric == "bias":
             axes.axhline(1.0, color=palette.quiet, linewidth=0.8, zorder=0)
         else:
@@ -60,6 +73,13 @@ def over(results, axis, metric):
         return figure
 
     return draw
+
+
+def _far_apart(numbers, logarithmic):
+    """Whether values of an axis can all be its ticks."""
+    places = [math.log(number) for number in numbers] if logarithmic else numbers
+    gaps = [after - before for before, after in zip(places, places[1:])]
+    return bool(gaps) and min(gaps) >= 0.08 * (places[-1] - places[0])
 
 
 def _lines(results, axis, metric):

@@ -5,6 +5,8 @@ from .plots import log_axis, new_figure, percent
 from .wording import times
 
 MARKERS = ("o", "s", "^", "D", "v", "P", "X")
+LEGEND_LEAVES = 0.7
+"""Of the figure's width, about."""
 
 
 def trade(results):
@@ -34,7 +36,7 @@ def trade(results):
         floor = results["reference"]["noise_floor"]
         axes.axhline(floor, color=palette.quiet, linewidth=0.9, linestyle=(0, (1, 2)),
                      label="noise floor of the converged render")
-        _gain(axes, results, palette)
+        gain = _gain(axes, results, palette)
         axes.set_xlabel("time of a picture")
         metric = "relative L1 in 8×8 blocks" if judged_by.endswith("_blocks") else "relative L1"
         axes.set_ylabel(f"error: {metric},\nthe converged render's noise taken off")
@@ -42,6 +44,7 @@ def trade(results):
         log_axis(axes.xaxis, [*reached, *(point["milliseconds"] for point in points)], 1.7, _tick, steps=(1,))
         errors = [size for point in points for size in (point["error"], point["metrics"][judged_by])]
         log_axis(axes.yaxis, [*errors, floor], 1.5, percent, steps=(1, 2, 5))
+        _label(axes, points, gain, palette)
         axes.grid(True, which="major")
         axes.legend(frameon=False, fontsize=8, loc="upper left", bbox_to_anchor=(1.0, 1.0))
         return figure
@@ -58,8 +61,34 @@ def _line(axes, line, colour, marker, label, palette, judged_by):
         axes.plot([at] * 2, [error, raw], color=colour, linewidth=0.8, alpha=0.4)
         axes.plot([at], [error], marker=marker, markersize=5.5, color=colour, linestyle="none",
                   fillstyle="full" if point["resolved"] else "none", label=label if number == 0 else None)
-        axes.annotate(f"{point['samples']}", (at, error), (0, -6), textcoords="offset points", ha="center", va="top",
-                      fontsize=7, color=palette.quiet)
+
+
+def _label(axes, points, gain, palette):
+    """The number of samples under or over each point, where it covers no other number or point. Once the axes have
+    their limits. gain: where the factor stands, or None."""
+
+    def place(at):
+        # The legend takes its share of the width when the figure is laid out.
+        x, y = axes.transData.transform(at) * 72.0 / axes.figure.dpi
+        return LEGEND_LEAVES * x, y
+
+    places = [place((point["milliseconds"], point["error"])) for point in points]
+    taken = [(x, y, 4.0, 4.0) for x, y in places]
+    if gain is not None:
+        x, y = place(gain)
+        taken.append((x, y + 9.0, 24.0, 7.0))
+    for at, (point, (x, y)) in enumerate(zip(points, places, strict=True)):
+        text = f"{point['samples']}"
+        wide = 2.4 * len(text) + 1.0
+        others = taken[:at] + taken[at + 1:]
+        for side in (-1, 1):
+            middle = y + 10.0 * side
+            if any(abs(x - u) < wide + w and abs(middle - v) < 4.0 + h for u, v, w, h in others):
+                continue
+            axes.annotate(text, (point["milliseconds"], point["error"]), (0, 6 * side), textcoords="offset points",
+                          ha="center", va="top" if side < 0 else "bottom", fontsize=7, color=palette.quiet)
+            taken.append((x, middle, wide, 4.0))
+            break
 
 
 def _tick(milliseconds, _):
@@ -76,10 +105,10 @@ def _front(axes, results, palette):
 
 
 def _gain(axes, results, palette):
-    """The arrow from our most exact setting to where the path tracer is as near."""
+    """The arrow from our most exact setting to where the path tracer is as near; returns its middle, or None."""
     entry = next(iter(results["summary"]), None)
     if entry is None or not entry["ratio"] or entry["ratio"] < 2.0:
-        return
+        return None
     if entry["traced_known"] == "beyond":
         last = max((point for point in results["points"] if point["side"] == "traced"),
                    key=lambda point: point["milliseconds"])
@@ -88,5 +117,7 @@ def _gain(axes, results, palette):
     ours, theirs, error = entry["milliseconds"], entry["traced_milliseconds"], entry["error"]
     axes.annotate("", (theirs, error), (ours, error), arrowprops={
         "arrowstyle": "<->", "color": palette.quiet, "linewidth": 0.9, "shrinkA": 6, "shrinkB": 2})
-    axes.annotate(times(entry["ratio"]), ((ours * theirs) ** 0.5, error), (0, 3), textcoords="offset points",
-                  ha="center", va="bottom", fontsize=10, color=palette.ink)
+    middle = ((ours * theirs) ** 0.5, error)
+    axes.annotate(times(entry["ratio"]), middle, (0, 3), textcoords="offset points", ha="center", va="bottom",
+                  fontsize=10, color=palette.ink)
+    return middle

@@ -171,7 +171,7 @@
       stage.addEventListener("pointerenter", () => { this.flipped = true; if (this.mode === "flip") this.draw(); });
       stage.addEventListener("pointerleave", () => { this.flipped = false; if (this.mode === "flip") this.draw(); });
       stage.addEventListener("keydown", (event) => {
-        const step = { ArrowLeft: -0.02, ArrowRight: 0.02 }[event.key];
+        const step = { ArrowLeft: -0.02, ArrowRight: 0.02, Home: -1, End: 1 }[event.key];
         if (step && this.mode === "split") { this.split = Math.min(1, Math.max(0, this.split + step)); this.draw(); event.preventDefault(); }
         if (event.key === " " && this.mode === "flip") { this.flipped = !this.flipped; this.draw(); event.preventDefault(); }
       });
