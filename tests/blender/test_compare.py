@@ -453,6 +453,21 @@ def test_the_parts_add_up_to_the_whole():
         np.testing.assert_allclose(summed, seen["all"][..., :3], rtol=2e-4, atol=1e-5)
 
 
+def test_two_comparisons_into_one_folder_leave_each_other_whole_files(tmp_path, monkeypatch):
+    output, replace = results.Output(tmp_path), os.replace
+
+    def after_another_process(source, target):
+        monkeypatch.setattr(os, "replace", replace)
+        with monkeypatch.context() as there:
+            there.setattr(os, "getpid", lambda: 1)
+            output.write_text("results.json", "theirs")
+        replace(source, target)
+
+    monkeypatch.setattr(os, "replace", after_another_process)
+    output.write_text("results.json", "ours")
+    assert (tmp_path / "results.json").read_text() == "ours" and len(list(tmp_path.iterdir())) == 1
+
+
 def test_the_verdict_is_tested_where_the_truth_is_known(tmp_path):
     make_sphere(SUNS, roughness=0.4, sigma_s=(0.9,) * 3, sigma_a=(0.1,) * 3)
     asked = {"references": ("diffuse", "glossy", "volume_index_matched"), "models": ("lambert", "conductor", "model_1")}

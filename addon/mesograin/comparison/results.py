@@ -39,8 +39,8 @@ class Output:
                 os.fsync(probe.fileno())
         except OSError as error:
             raise OutputError(
-                f"The output folder {self.folder} cannot be written ({error.strerror}): free or choose another with"
-                " --out."
+                f"The output folder {self.folder} cannot be written ({error.strerror}): make room for it or choose"
+                " another with --out."
             ) from error
 
     def write_exr(self, name, pixels, provenance):
@@ -69,7 +69,8 @@ class Output:
 
     def _write_bytes(self, path, content):
         """The file appears whole or not at all, and is on the disk when this returns."""
-        partial = path.with_name(path.name + ".part")
+        # Of this process alone, since another may write into the same folder.
+        partial = path.with_name(f"{path.name}.{os.getpid()}.part")
         try:
             with open(partial, "wb") as file:
                 file.write(content)

@@ -108,7 +108,8 @@ def keep(native, cache, key, shot):
                 ),
             )
         except (OSError, native.Error) as error:
-            print(f"The reference is not kept: {error}")
+            reason = f"{cache.folder}: {error.strerror}." if isinstance(error, OSError) else error
+            print(f"The reference is not kept: {reason}")
     return shot
 
 

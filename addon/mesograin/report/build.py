@@ -39,7 +39,7 @@ def main(words):
             html = sweep_page.build(*reading.read_sweep(chosen.folder), out.parent)
         else:
             html = page_builder.build(*reading.read(chosen.folder), out.parent)
-        partial = out.with_name(out.name + ".part")
+        partial = out.with_name(f"{out.name}.{os.getpid()}.part")
         try:
             partial.write_text(html, encoding="utf-8")
             os.replace(partial, out)
