@@ -45,12 +45,15 @@ BodyFit fit_body(SurfacePoint point, Outwards outwards, LightSample light, Light
   float cosine = dot(point.normal, light.to_light);
   // Light inside knows no edge sharper than a mean free path: the look is at a place nearby on the tangent plane, another with every sample.
   vec2 along = body.clear * (2.0 * low_discrepancy(uint(sample_index), pcg4d(uvec4(uvec2(gl_FragCoord.xy), 1u, uint(light.index))).xy) - 1.0);
-  vec3 place = position + vec3(abs(cosine) * along, -sign(cosine) * dot(to_light_space(frame, point.normal).xy, along));
+  vec3 aside = vec3(abs(cosine) * along, -sign(cosine) * dot(to_light_space(frame, point.normal).xy, along));
+  vec3 place = position + aside;
   LightMapTexel entry = light_map_at(frame, light.index, place.xy);
 
   // Beside the silhouette that this place is on, the texel shows what lies far behind: it tells no more than one that shows nothing.
   float own = light_map_tolerance(frame, entry.normal.z);
-  float known = entry.lit ? smoothstep(-2.0 * own, -own, entry.position.z - place.z) : 0.0;
+  // The surface itself bends away from its tangent plane, and a fine map shows it: twice as far as the grain's sphere is no silhouette yet.
+  float bent = own + dot(aside, aside) / (body.radius * max(abs(cosine), 0.2));
+  float known = entry.lit ? smoothstep(-2.0 * bent, -bent, entry.position.z - place.z) : 0.0;
 
   fit.above = entry.lit ? max(entry.position.z - place.z, 0.0) : 0.0;
   fit.visible = light_map_visibility(frame, entry, place, cosine, body.clear);
