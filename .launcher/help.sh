@@ -222,10 +222,10 @@ Measures. Times are given as ratios within one run, so that they mean the same o
   --frames N    the median is over so many frames (default: 100)
   --json FILE   also writes the result there
 
-  accuracy      how far each model's sphere is from photon Monte Carlo: ten materials, three indices, five radii; about ten minutes
+  accuracy      how far each model's sphere is from photon Monte Carlo: ten materials, three indices, five radii, and five g; about twelve minutes
   --models M    only these (default: model_1 model_2 model_3)
   --taps N      model 3's samples per pixel (default: 16 64)
-  --out FOLDER  where accuracy.json and accuracy.csv go (default: accuracy)
+  --out FOLDER  where accuracy.html, accuracy.json and the CSV files go (default: accuracy)
 
   false_alarms  how often the significance test calls Cycles' renders different that differ in their seed alone; about ten minutes
   --groups N    groups of four seeds for each kind of reference (default: 300)

@@ -3,11 +3,11 @@
     accuracy.py BUILD_FOLDER [--models M ...] [--taps N ...] [--out FOLDER] [--fresh] [--markdown FILE]
 
 Exitance is what is compared: radiance is rendered from directions all around the sphere and summed over them, so no
-exit lobe is assumed. relative_l1 is sum|model - truth|/sum truth over bins of cos(normal, light), total is
-sum model/sum truth, dark_ratio the same for cosines below -1/2, noise_floor the truth's own standard error as a
-relative_l1. Truth: scattering of every order from one up (tests/data/referee).
-thesis_relative_l1 and so on are the same numbers of the thesis' form of the model (thesis_models.py), noise apart.
-shade_ms is a frame's shade pass, 64x64 pixels. Writes accuracy.json, accuracy.csv and accuracy.html, prints the means.
+exit lobe is assumed. The figures are those of sphere_exitance.compare; truth: scattering of every order from one up
+(tests/data/referee). thesis_relative_l1 and so on are the same figures of the thesis' form of the model
+(thesis_models.py). shade_ms is a frame's shade pass, 64x64 pixels. The same where scattering is not isotropic follows
+(anisotropic.py), with the most samples. Writes accuracy.json, accuracy.csv, anisotropic.csv and accuracy.html, prints
+the means.
 """
 import argparse
 import csv
@@ -18,71 +18,12 @@ import sys
 import time
 
 import accuracy_page
+import anisotropic
 import numpy
 import thesis_models
+from sphere_exitance import SIZE, Cameras, compare, sphere
 
-SIZE = 64
-VIEWS = 10
 REFEREE = pathlib.Path(__file__).resolve().parents[1] / "data" / "referee" / "sphere.json"
-
-
-def sphere(native, segments=256, rings=128):
-    """A smooth UV sphere of radius 1."""
-    theta = numpy.linspace(0.0, numpy.pi, rings + 1)[:, None]
-    phi = numpy.linspace(0.0, 2.0 * numpy.pi, segments + 1)[None, :]
-    points = numpy.stack(numpy.broadcast_arrays(
-        numpy.sin(theta) * numpy.cos(phi), numpy.sin(theta) * numpy.sin(phi), numpy.cos(theta)), axis=-1)
-    points = points.reshape(-1, 3).astype(numpy.float32)
-    first = (numpy.arange(rings)[:, None] * (segments + 1) + numpy.arange(segments)[None, :]).ravel()
-    below = first + segments + 1
-    triangles = numpy.concatenate([numpy.stack(half, axis=-1)
-                                   for half in ((first, below, below + 1), (first, below + 1, first + 1))])
-    return native.Mesh(points, points, triangles.astype(numpy.uint32))
-
-
-class Cameras:
-    """Orthographic views whose directions integrate over the sphere of directions, the light along +y."""
-
-    def __init__(self, native, views=VIEWS, facing_power=1):
-        """`facing_power` above 1 crowds the views towards those that face the light, where a phase function peaks."""
-        nodes, weights = numpy.polynomial.legendre.leggauss(views)
-        share = 0.5 * (nodes + 1.0)
-        nodes, weights = 2.0 * share**facing_power - 1.0, weights * facing_power * share**(facing_power - 1)
-        centre = (numpy.arange(SIZE) + 0.5) / SIZE * 2.0 - 1.0
-        x, y = numpy.meshgrid(centre, -centre)
-        inside = x * x + y * y < 1.0
-        z = numpy.sqrt(numpy.maximum(0.0, 1.0 - x * x - y * y))
-        clip = numpy.diag([1.0, 1.0, -0.5, 1.0])
-        self.views = []
-        for node, weight in zip(nodes, weights):
-            sine = numpy.sqrt(1.0 - node * node)
-            rotation = numpy.eye(4)
-            rotation[:3, :3] = [[1.0, 0.0, 0.0], [0.0, sine, -node], [0.0, node, sine]]
-            cosine = sine * y + node * z  # of normal and light
-            # The mean over all directions is half the sum over the nodes; a pixel counts its area, 4 pi times.
-            share = 0.5 * weight * 4.0 * numpy.pi * (2.0 / SIZE) ** 2
-            self.views.append((native.Camera(rotation, clip), inside, cosine, share))
-
-    def exitance(self, view, samples, bins):
-        """(bins, 3) flux per area, per unit irradiance."""
-        flux = numpy.zeros((bins, 3))
-        for camera, inside, cosine, weight in self.views:
-            view.set_camera(camera)
-            view.render(samples)
-            pixels = view.read()[..., :3].astype(float)
-            index = numpy.clip(((cosine + 1.0) * 0.5 * bins).astype(int), 0, bins - 1)
-            for channel in range(3):
-                flux[:, channel] += weight * numpy.bincount(index.ravel(), pixels[..., channel].ravel(), bins)
-        return flux / (4.0 * numpy.pi / bins)
-
-
-def compare(exitance, truth, noise, cosines):
-    dark = cosines < -0.5
-    return {"relative_l1": float(numpy.abs(exitance - truth).sum() / truth.sum()),
-            "total": float(exitance.sum() / truth.sum()),
-            "dark_ratio": float(exitance[dark].sum() / max(truth[dark].sum(), 1e-30)),
-            "dark_relative_l1": float(numpy.abs(exitance - truth)[dark].sum() / max(truth[dark].sum(), 1e-30)),
-            "noise_floor": float(noise.sum() / truth.sum())}
 
 
 class Thesis:
@@ -176,6 +117,13 @@ def summary(rows):
         yield f"{model + (f' N={taps}' if taps else ''):18}" + "".join(f"{100.0 * mean:9.2f}" for mean in means)
 
 
+def write_csv(path, rows):
+    with open(path, "w", newline="") as file:
+        writer = csv.DictWriter(file, rows[0] if rows else ())
+        writer.writeheader()
+        writer.writerows(rows)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("build", type=pathlib.Path)
@@ -191,19 +139,27 @@ def main():
     results = arguments.out / "accuracy.json"
     made_by = {"about": __doc__, "device": native.device_info()["renderer"], "version": native.__version__}
 
-    def save(rows):
-        results.write_text(json.dumps({**made_by, "rows": rows}, indent=1))
+    known = json.loads(results.read_text()) if results.exists() and not arguments.fresh else {}
+    # Another version's rows hold other figures.
+    known = known if known.get("about") == __doc__ else {}
+    found = {"rows": known.get("rows", []), "anisotropic": known.get("anisotropic", [])}
 
-    known = json.loads(results.read_text()) if results.exists() and not arguments.fresh else {"rows": []}
-    rows = run(native, arguments.models, arguments.taps, known["rows"], save)
+    def save(name):
+        def keep(rows):
+            found[name] = rows
+            results.write_text(json.dumps({**made_by, **found}, indent=1))
+        return keep
+
+    rows = run(native, arguments.models, arguments.taps, found["rows"], save("rows"))
+    anisotropic_rows = anisotropic.run(native, [model for model in arguments.models if model != "model_1"],
+                                       max(arguments.taps), found["anisotropic"], save("anisotropic"))
     device = made_by["device"]
-    with open(arguments.out / "accuracy.csv", "w", newline="") as file:
-        writer = csv.DictWriter(file, rows[0])
-        writer.writeheader()
-        writer.writerows(rows)
-    (arguments.out / "accuracy.html").write_text(accuracy_page.render("accuracy.html.j2", rows, device))
+    write_csv(arguments.out / "accuracy.csv", rows)
+    write_csv(arguments.out / "anisotropic.csv", anisotropic_rows)
+    given = rows, anisotropic.by_g(anisotropic_rows), device
+    (arguments.out / "accuracy.html").write_text(accuracy_page.render("accuracy.html.j2", *given))
     if arguments.markdown:
-        arguments.markdown.write_text(accuracy_page.render("accuracy.md.j2", rows, device))
+        arguments.markdown.write_text(accuracy_page.render("accuracy.md.j2", *given))
     print("\n".join(summary(rows)))
 
 

@@ -107,12 +107,22 @@ def _list(rows, key="relative_l1"):
     return text + (f" and {len(rows) - len(shown)} more" if len(rows) > len(shown) else "")
 
 
-def render(template, rows, device):
-    """The text of a page in this folder."""
+def dark(row, prefix=""):
+    """The dark side's ratio to the truth, or a dash where too few photons came to tell."""
+    told = row["dark_noise"] is not None and row["dark_noise"] < 0.25
+    return f"{row[prefix + 'dark_ratio']:.2f}" if told else "–"
+
+
+def render(template, rows, by_g, device):
+    """The text of a page in this folder. by_g: what `anisotropic.by_g` gives."""
     environment = jinja2.Environment(loader=jinja2.FileSystemLoader(HERE), trim_blocks=True, lstrip_blocks=True,
                                      keep_trailing_newline=True, autoescape=template.endswith(".html.j2"),
                                      undefined=jinja2.StrictUndefined)
     environment.filters["percent"] = lambda value: f"{100.0 * value:.1f}"
+    environment.filters["dark"] = dark
     radii, lines = by_radius(rows)
-    return environment.get_template(template).render(radii=radii, lines=lines, known=known(rows), rows=rows,
-                                                     findings=findings(rows), device=device)
+    values_of_g, anisotropic = by_g
+    return environment.get_template(template).render(
+        radii=radii, lines=lines, known=known(rows), rows=rows, findings=findings(rows), device=device,
+        values_of_g=values_of_g,
+        anisotropic=[(name_of(model, taps), means) for model, taps, means in anisotropic])

@@ -8,8 +8,8 @@ import numpy
 import pytest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "bench"))
-import accuracy  # noqa: E402
 import anisotropic  # noqa: E402
+import sphere_exitance  # noqa: E402
 
 
 @pytest.fixture(scope="module", name="bench")
@@ -40,12 +40,12 @@ def test_light_scattered_forwards_crosses_between_lambert_surfaces(bench, model,
     albedo = numpy.array(bench.table["albedos"])
     made_of = native.Material(model=model, sigma_s=tuple(albedo * radius), sigma_a=tuple((1.0 - albedo) * radius), g=g,
                               boundary="lambert_lambert")
-    view = native.View(accuracy.SIZE, accuracy.SIZE)
+    view = native.View(sphere_exitance.SIZE, sphere_exitance.SIZE)
     view.set_taps(64)
-    instance = native.Instance(accuracy.sphere(native), made_of, numpy.eye(4))
+    instance = native.Instance(sphere_exitance.sphere(native), made_of, numpy.eye(4))
     view.set_scene(native.Scene(instances=[instance],
                                 lights=[native.DirectionalLight((0.0, 1.0, 0.0), (1.0, 1.0, 1.0))]))
-    exitance = accuracy.Cameras(native).exitance(view, 1, bench.table["bins"])
+    exitance = sphere_exitance.Cameras(native).exitance(view, 1, bench.table["bins"])
     for channel, scattered in enumerate(case["scattered"]):
         truth = numpy.array(scattered) + numpy.array(case["ballistic"])
         assert abs(exitance[:, channel].sum() / truth.sum() - 1.0) < 0.08

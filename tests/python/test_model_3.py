@@ -10,7 +10,7 @@ import pytest
 
 TESTS = pathlib.Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(TESTS / "bench"))
-import accuracy  # noqa: E402
+import sphere_exitance  # noqa: E402
 
 REFEREE = json.loads((TESTS / "data/referee/sphere.json").read_text())
 BINS = REFEREE["bins"]
@@ -27,7 +27,7 @@ def show(made_of, size):
     """A view of the unit sphere, lit along +y."""
     view = native.View(size, size)
     light = native.DirectionalLight((0.0, 1.0, 0.0), (1.0, 1.0, 1.0))
-    instance = native.Instance(accuracy.sphere(native), made_of, numpy.eye(4))
+    instance = native.Instance(sphere_exitance.sphere(native), made_of, numpy.eye(4))
     view.set_scene(native.Scene(instances=[instance], lights=[light]))
     return view
 
@@ -105,9 +105,9 @@ def test_it_is_the_integral_of_its_profile(profile):
     exact = integral_over_sphere(profile_of(profile, albedo, eta), radius, eta)
     if profile != "dipole":
         exact = exact + albedo * numpy.array(case["unit_single"])
-    view = show(material(albedo, radius, eta, profile=profile), accuracy.SIZE)
+    view = show(material(albedo, radius, eta, profile=profile), sphere_exitance.SIZE)
     view.set_taps(64)
-    exitance = accuracy.Cameras(native).exitance(view, 1, BINS)[:, 1]
+    exitance = sphere_exitance.Cameras(native).exitance(view, 1, BINS)[:, 1]
     assert numpy.abs(exitance - exact).sum() < 0.02 * exact.sum()
     truth = numpy.array(case["scattered"][index])
     assert numpy.abs(exitance - truth).sum() < numpy.abs(exact - truth).sum() + 0.02 * truth.sum()
@@ -121,7 +121,7 @@ def test_light_that_crosses_unscattered_leaves_lambert_surfaces(model, radius):
     truth = numpy.array(case["scattered"][REFEREE["albedos"].index(0.9)]) + numpy.array(case["ballistic"])
     made_of = native.Material(model=model, sigma_s=(0.9 * radius,) * 3, sigma_a=(0.1 * radius,) * 3,
                               boundary="lambert_lambert")
-    exitance = accuracy.Cameras(native).exitance(show(made_of, accuracy.SIZE), 1, BINS)[:, 1]
+    exitance = sphere_exitance.Cameras(native).exitance(show(made_of, sphere_exitance.SIZE), 1, BINS)[:, 1]
     assert abs(exitance.sum() / truth.sum() - 1.0) < 0.03
     assert numpy.abs(exitance - truth).sum() < 0.1 * truth.sum()
 
@@ -157,7 +157,7 @@ def test_extreme_media_stay_finite(model, sigma_s, sigma_a, eta, g):
                               eta=eta, g=g, boundary="dielectric")
     view = native.View(32, 32)
     light = native.DirectionalLight((0.0, 1.0, 0.3), (1.0, 1.0, 1.0))
-    instance = native.Instance(accuracy.sphere(native), made_of, numpy.diag([0.5, 1.0, 1.5, 1.0]))
+    instance = native.Instance(sphere_exitance.sphere(native), made_of, numpy.diag([0.5, 1.0, 1.5, 1.0]))
     view.set_scene(native.Scene(instances=[instance], lights=[light]))
     view.set_camera(native.Camera.look_at((4.0, 2.0, 3.0), (0.0, 0.0, 0.0), (0.0, 0.0, 1.0), 40.0))
     view.render(2)
@@ -175,7 +175,7 @@ def test_facets_under_smooth_normals_do_not_show(coarse, scale, rms, most):
     for segments in (coarse, 256):
         view = native.View(128, 128)
         light = native.DirectionalLight((0.8, 0.5, 0.3), (1.0, 1.0, 1.0))
-        mesh = accuracy.sphere(native, segments, segments // 2)
+        mesh = sphere_exitance.sphere(native, segments, segments // 2)
         instance = native.Instance(mesh, material(0.9, scale, 1.0), numpy.eye(4))
         view.set_scene(native.Scene(instances=[instance], lights=[light]))
         view.set_camera(native.Camera.look_at((0.0, 6.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 1.0), 21.0))
