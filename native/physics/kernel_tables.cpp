@@ -56,6 +56,10 @@ Distribution distribution(const Channels& channels, const std::vector<double>& d
     if (total > 0.0)
       for (std::size_t j = 0; j < distances.size(); ++j) result.density[j] += values[j] / total;
   }
+  // What is met is never much nearer than what was drawn, often farther. A kernel that falls towards no distance, as
+  // without its first orders, would be met there far more often than it is drawn.
+  for (std::size_t j = distances.size() - 1; j > 0; --j)
+    result.density[j - 1] = std::max(result.density[j - 1], result.density[j]);
   // Where a kernel has rounded to nothing it must still be sampled, or the least light there would weigh without
   // bounds.
   for (double& density : result.density) density += least_share / (PI * distances.back() * distances.back());

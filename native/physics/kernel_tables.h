@@ -14,8 +14,9 @@ struct KernelTables {
   /// RGB: the kernel times the transmittance at entry. Alpha: -log of the share of light that goes farther than s_j (of
   /// the mean over the channels).
   Table profile;
-  /// Columns k are shares exp(-largest_depth (k/(n-1))^2) of the light that goes farther. x: the distance; y: the mean
-  /// kernel there over its integral over the plane, the density to divide by.
+  /// Columns k are shares exp(-largest_depth (k/(n-1))^2) of the light that goes farther. x: the distance; y: the
+  /// density to divide by, never rising with the distance: the mean of the largest kernels from there on, each over its
+  /// integral over the plane.
   Table inverse;
   double shortest = 0.0;
   double step = 0.0;

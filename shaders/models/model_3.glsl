@@ -154,7 +154,8 @@ Gathered gather(LightFrame frame, int light, BodyFit fit, vec3 position, vec3 no
     if (height_squared > 0.0) {
       float rise = sqrt(height_squared);
       float sphere_height = centre.z + rise;
-      sum.sphere += weight * SPECTRUM(kernel_at(max(distance(vec3(place, sphere_height), position), nearest), rise / radius));
+      float apart = max(distance(vec3(place, sphere_height), position), nearest);
+      sum.sphere += min(weight * SPECTRUM(kernel_at(apart, rise / radius)), Spectrum(MOST_A_SAMPLE_COUNTS));
       float same = is_sphere(frame, entry, sphere_height, length(from_axis), radius, rise / radius);
       // Farther off than this a texel's doubt is little beside the distance.
       same *= 1.0 - smoothstep(4.0, 8.0, length(spread) * body.radius / light_map_texel_width(frame));
@@ -162,7 +163,10 @@ Gathered gather(LightFrame frame, int light, BodyFit fit, vec3 position, vec3 no
       cosine = entry.lit ? mix(cosine, rise / radius, same) : rise / radius;
       lit = mix(lit, 1.0, same);
     }
-    if (lit > 0.0) sum.grain += lit * weight * SPECTRUM(kernel_at(max(distance(vec3(place, entry_height), position), nearest), cosine));
+    if (lit > 0.0) {
+      float apart = max(distance(vec3(place, entry_height), position), nearest);
+      sum.grain += lit * min(weight * SPECTRUM(kernel_at(apart, cosine)), Spectrum(MOST_A_SAMPLE_COUNTS));
+    }
   } while (++i < count);
   float share = exp(-depth_here) * within / float(max(count, 1));
   return Gathered(share * sum.grain, share * sum.sphere);

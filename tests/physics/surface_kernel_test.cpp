@@ -104,14 +104,32 @@ TEST(KernelTables, SampleWhatTheyHold) {
     constexpr int samples = 20000;
     for (int i = 0; i < samples; ++i) {
       const double depth = -std::log1p(-(i + 0.5) / samples);
+      // The nearest entry, as in gather in shaders/models/model_3.glsl.
       const double column = std::sqrt(depth / tables.largest_depth) * (tables.inverse.width - 1);
-      const int cell = static_cast<int>(column);
-      const glm::dvec4 drawn =
-          glm::mix(glm::dvec4(tables.inverse.texels[cell]), glm::dvec4(tables.inverse.texels[cell + 1]), column - cell);
+      const glm::dvec4 drawn(tables.inverse.texels[static_cast<std::size_t>(std::lround(column))]);
       sum += kernel.evaluate({drawn.x}, 1.0).front() / drawn.y / samples;
     }
     EXPECT_NEAR(sum / plane_integral(kernel, 1e-6 / radius, 6.0), 1.0, 3e-3) << radius;
   }
+}
+
+// What is met is as far as what was drawn, or farther: no sample may weigh much more than the light that is there.
+TEST(KernelTables, DrawNothingMoreRarelyThanItIsMet) {
+  for (double radius : {0.1, 0.6, 2.4, 7.2, 40.0})
+    for (double g : {-0.5, 0.0, 0.3, 0.5, 0.9}) {
+      const SphereKernel kernel({0.1 * radius, 0.9 * radius, g}, surface_of(1.3));
+      const KernelTables tables = kernel_tables({&kernel, &kernel, &kernel}, surface_of(1.3), 0.05 / radius, 2.0, true);
+      const int width = tables.profile.width;
+      for (int k = 0; k < tables.inverse.width; ++k) {
+        const glm::dvec4 drawn(tables.inverse.texels[static_cast<std::size_t>(k)]);
+        ASSERT_GT(drawn.y, 0.0) << radius << ' ' << g << ' ' << k;
+        const int first = static_cast<int>(std::ceil(std::log1p(drawn.x / tables.shortest) / tables.step));
+        for (int i = 0; i < tables.profile.height; ++i)
+          for (int j = std::min(first, width - 1); j < width; ++j)
+            ASSERT_LT(tables.profile.texels[static_cast<std::size_t>(i * width + j)].r / drawn.y, 8.0)
+                << radius << ' ' << g << ' ' << k << ' ' << i << ' ' << j;
+      }
+    }
 }
 
 }  // namespace

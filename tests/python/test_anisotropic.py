@@ -30,6 +30,25 @@ def test_light_scattered_forwards_is_kept(bench, model, g, bar, bar_of_total):
             assert abs(row["total"] - 1.0) < bar_of_total, what
 
 
+@pytest.mark.parametrize("g, radius", [(0.3, 0.6), (0.5, 2.4), (0.9, 7.2)])
+def test_no_sample_in_millions_stands_out(bench, monkeypatch, g, radius):
+    """What is hardly ever drawn weighs no more than what is always: dots would stay for thousands of frames."""
+    monkeypatch.setattr(sphere_exitance, "SIZE", 1000)
+    albedo = numpy.array(bench.table["albedos"])
+    view = native.View(1000, 1000)
+    view.set_taps(16)
+    made_of = native.Material(model="model_3", sigma_s=tuple(albedo * radius), sigma_a=tuple((1.0 - albedo) * radius),
+                              g=g, eta=1.0, boundary="index_matched", specular=False)
+    view.set_scene(native.Scene(
+        instances=[native.Instance(sphere_exitance.sphere(native), made_of, numpy.eye(4))],
+        lights=[native.DirectionalLight((0.0, 1.0, 0.0), (1.0, 1.0, 1.0))]))
+    for camera, inside, _, _ in sphere_exitance.Cameras(native, views=8, facing_power=2).views[3:6:2]:
+        view.set_camera(camera)
+        view.render(1)
+        brightest = view.read()[..., :3].max(axis=-1)[inside]
+        assert brightest.max() < 5.0 * numpy.quantile(brightest, 0.9995)
+
+
 @pytest.mark.parametrize("model", ["model_2", "model_3"])
 @pytest.mark.parametrize("g", [0.6, 0.85])
 @pytest.mark.parametrize("radius", [0.6, 2.4, 7.2])
