@@ -102,7 +102,7 @@ Frame::Draw Frame::make_draw(const scene::Instance& instance, std::size_t index)
   draw.program = &cache_.shading(*draw.material, Shading::seen);
   const glm::dvec3 reduced = material.scale * (material.sigma_a + (1.0 - material.g) * material.sigma_s);
   draw.mean_free_paths_across = 2.0 * draw.radius * std::max({reduced.r, reduced.g, reduced.b});
-  if (draw.material->light_maps()) draw.light_maps = take_light_maps(instance.mesh, draw.object_to_grain());
+  if (draw.material->light_maps()) draw.light_maps = take_light_maps(draw);
   return draw;
 }
 
@@ -110,10 +110,14 @@ glm::dmat4 Frame::object_to_clip(const Draw& draw) const {
   return camera_.camera_to_clip * (camera_.world_to_camera * draw.object_to_world);
 }
 
-std::unique_ptr<LightMaps> Frame::take_light_maps(const scene::MeshPointer& mesh, const glm::dmat4& object_to_grain) {
+std::unique_ptr<LightMaps> Frame::take_light_maps(const Draw& wanted) {
+  // Maps as fine as another material needed them would show this one as it was never drawn by itself.
+  const auto least = [](const Draw& draw) { return light_map_resolution(0.0, draw.mean_free_paths_across); };
+  const glm::dmat4 object_to_grain = wanted.object_to_grain();
   for (Draw& draw : draws_)
-    if (draw.light_maps && draw.light_maps->are_of(mesh, object_to_grain)) return std::move(draw.light_maps);
-  return std::make_unique<LightMaps>(mesh, object_to_grain);
+    if (draw.light_maps && draw.light_maps->are_of(wanted.source, object_to_grain) && least(draw) == least(wanted))
+      return std::move(draw.light_maps);
+  return std::make_unique<LightMaps>(wanted.source, object_to_grain);
 }
 
 void Frame::set_scene(scene::Scene scene) {

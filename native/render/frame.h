@@ -91,7 +91,7 @@ class Frame {
   Draw make_draw(const scene::Instance& instance, std::size_t index);
 
   /// Those of the scene before, if they serve, so that a change elsewhere costs no light map.
-  std::unique_ptr<LightMaps> take_light_maps(const scene::MeshPointer& mesh, const glm::dmat4& object_to_grain);
+  std::unique_ptr<LightMaps> take_light_maps(const Draw& wanted);
   void update_light_maps(const std::vector<glm::dvec3>& to_light);
   void shade(const std::vector<glm::dvec3>& to_light);
 
