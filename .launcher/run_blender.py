@@ -5,10 +5,12 @@
 Signals reach Blender once, and its exit code is passed on.
 """
 import os
+import pathlib
 import re
 import signal
 import subprocess
 import sys
+import tempfile
 
 CHATTER = re.compile(
     rb"^(Blender \d|Read (blend|prefs|new)|Fra:\d|Saved: |Saving: |Blender quit|Info: |\s*Time: |Writing |Writing: |"
@@ -20,12 +22,16 @@ def run(log_path, command):
     """Returns the exit code: Blender's, 130 or 143 when it was interrupted, 1 when it crashed."""
     os.makedirs(os.path.dirname(log_path), exist_ok=True)
     received = []
-    with open(log_path, "wb") as log:
+    with open(log_path, "wb") as log, tempfile.TemporaryDirectory(prefix="mesograin-") as folder:
+        # What a command looks at once it can be interrupted: a Blender that starts swallows the first SIGINT.
+        asked = pathlib.Path(folder) / "interrupted"
         # A session of its own: Ctrl-C in the terminal would otherwise reach Blender twice.
-        blender = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, start_new_session=True)
+        blender = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, start_new_session=True,
+                                   env={**os.environ, "MESOGRAIN_INTERRUPTED": str(asked)})
 
         def pass_on(number, _frame):
             received.append(number)
+            asked.touch()
             # The second request is meant: Blender may hang where it looks at no signal.
             blender.send_signal(number if len(received) == 1 else signal.SIGKILL)
 

@@ -363,6 +363,17 @@ def test_interruption_is_prompt_and_clean(scene, start, tmp_path):
     assert not [name for name in left if not name.endswith((".exr", ".png", ".json", ".csv")) or ".part" in name]
 
 
+def test_interruption_while_blender_starts_is_not_lost(scene, start, tmp_path, monkeypatch):
+    """Blender itself swallows the first SIGINT before Python runs; here it has come already."""
+    asked = tmp_path / "interrupted"
+    asked.touch()
+    monkeypatch.setenv("MESOGRAIN_INTERRUPTED", str(asked))
+    process = start("--models", "lambert", "--size", "32x32", "--reference-samples", "4", "--samples", "4")
+    _, said = process.communicate(timeout=120)
+    assert process.returncode == 130
+    assert "Interrupted" in said and "Traceback" not in said and not (tmp_path / "out" / "results.json").exists()
+
+
 def test_second_run_finds_its_references(scene, start, tmp_path):
     words = ("--models", "lambert", "--size", "32x32", "--reference-samples", "4", "--samples", "4")
     for cached in (False, True):

@@ -29,6 +29,7 @@ def main(name, parse, run, interrupted=interruption.INTERRUPTED):
     chosen = parse(words)
     with interruption.Interruption() as interruptions:
         try:
+            interruptions.raise_missed()
             code = run(chosen, words)
         except CommandError as error:
             complain(name, error)
