@@ -2,11 +2,8 @@
 // Mesa's log errs by 1e-3 near 1, its acos by 2.7e-4 and its atan by 2e-5 (relative). Every series below is long enough for double.
 #pragma once
 
-// log(1 + x), by log((1+z)/(1-z)) = 2 atanh(z), z = x/(2+x) (Abramowitz & Stegun 4.1.27); |z| <= 0.2 where the series is used.
-pure real log1p(real x) {
-  if (x < -0.333333 || x > 0.5) return log(1.0 + x);
-  real z = x / (2.0 + x);
-  real t = z * z;
+// 1 + t/3 + t^2/5 + ...: atanh(z)/z at t = z^2 (Abramowitz & Stegun 4.6.33), atan(y)/y at t = -y^2 (4.4.42); |t| <= 0.04.
+pure real odd_series(real t) {
   real sum = 1.0 / 21.0;
   sum = sum * t + 1.0 / 19.0;
   sum = sum * t + 1.0 / 17.0;
@@ -17,7 +14,14 @@ pure real log1p(real x) {
   sum = sum * t + 1.0 / 7.0;
   sum = sum * t + 1.0 / 5.0;
   sum = sum * t + 1.0 / 3.0;
-  return 2.0 * z * (1.0 + t * sum);
+  return 1.0 + t * sum;
+}
+
+// log(1 + x), by log((1+z)/(1-z)) = 2 atanh(z), z = x/(2+x) (Abramowitz & Stegun 4.1.27); |z| <= 0.2 where the series is used.
+pure real log1p(real x) {
+  if (x < -0.333333 || x > 0.5) return log(1.0 + x);
+  real z = x / (2.0 + x);
+  return 2.0 * z * odd_series(z * z);
 }
 
 // exp(x) - 1, by its Taylor series where the difference would cancel (Abramowitz & Stegun 4.2.1).
@@ -69,18 +73,7 @@ pure real arc_tangent(real x) {
   if (beyond_one) y = 1.0 / y;
   y = y / (1.0 + sqrt(1.0 + y * y));
   y = y / (1.0 + sqrt(1.0 + y * y));
-  real t = -y * y;
-  real sum = 1.0 / 21.0;
-  sum = sum * t + 1.0 / 19.0;
-  sum = sum * t + 1.0 / 17.0;
-  sum = sum * t + 1.0 / 15.0;
-  sum = sum * t + 1.0 / 13.0;
-  sum = sum * t + 1.0 / 11.0;
-  sum = sum * t + 1.0 / 9.0;
-  sum = sum * t + 1.0 / 7.0;
-  sum = sum * t + 1.0 / 5.0;
-  sum = sum * t + 1.0 / 3.0;
-  real angle = 4.0 * y * (1.0 + t * sum);
+  real angle = 4.0 * y * odd_series(-y * y);
   if (beyond_one) angle = 0.5 * PI - angle;
   return x < 0.0 ? -angle : angle;
 }
