@@ -13,6 +13,7 @@ from cycles_scenes import REFEREE, make_sphere
 
 from mesograin import native_module
 from mesograin.comparison import ours, progress
+from mesograin.cycles import shot
 from mesograin.cycles.cache import Cache
 from mesograin.trade import measure
 
@@ -76,6 +77,22 @@ def test_every_point_is_measured_and_taken_over(tmp_path, native, monkeypatch):
 
     trade(tmp_path, settings={"scale": 2.0})
     assert len(begun) == 4, "what was measured on another material is not taken over"
+
+
+def test_no_point_pays_for_the_start_of_cycles(tmp_path, monkeypatch):
+    make_sphere(SUNS, sigma_s=(4.0, 4.0, 4.0), sigma_a=(0.2, 0.2, 0.2))
+    trade(tmp_path, traced_samples=(1,))
+    sizes = []
+    render = shot.render_stage
+
+    def rendered(native, scene, *rest):
+        sizes.append((scene.render.resolution_x, scene.render.resolution_y))
+        return render(native, scene, *rest)
+
+    monkeypatch.setattr(shot, "render_stage", rendered)
+    trade(tmp_path, traced_samples=(1, 4))
+    assert set(sizes[:-1]) == {(8, 8)}, "its first render here, the converged one being known, is not timed"
+    assert sizes[-1] == (24, 20)
 
 
 TIMES = ("milliseconds", "frame_ms", "passes_ms")
