@@ -74,5 +74,6 @@ def test_window(launched, launch, check):
 def test_blender_ends_well_and_shows_no_traceback(launched, launch):
     # The exit code does not tell: Blender ends with 1 after a render that failed as it should.
     _, output = launched(launch)
-    assert output.rstrip().endswith("Blender quit"), f"Blender did not end by itself:\n{output[-4000:]}"
+    # xvfb-run may have the last word, that it could not clean up after itself.
+    assert "Blender quit" in output.splitlines()[-3:], f"Blender did not end by itself:\n{output[-4000:]}"
     assert "Traceback" not in output, output[-4000:]
