@@ -46,13 +46,9 @@ ensure_product() {
   ensure_built release "$build" "$1" "the native module"
 }
 
-# ensure_referee WORD...: builds the photon renderer if one of the words asks for that kind of reference.
+# The photon renderer, which one kind of reference is rendered by.
 ensure_referee() {
-  for word in "$@"; do
-    [ "$word" = photon ] || continue
-    ensure_built release "$build" mesograin-referee "the photon renderer"
-    MESOGRAIN_REFEREE=${MESOGRAIN_REFEREE:-$build/tests/referee/mesograin-referee}
-    export MESOGRAIN_REFEREE
-    return
-  done
+  ensure_built release "$build" mesograin-referee "the photon renderer"
+  MESOGRAIN_REFEREE=${MESOGRAIN_REFEREE:-$build/tests/referee/mesograin-referee}
+  export MESOGRAIN_REFEREE
 }

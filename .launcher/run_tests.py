@@ -58,7 +58,8 @@ def suites_of(part, options):
     if part == "lint":
         return [pytest_suite("lint", options.python, SOURCE / "tests/lint")]
     if part == "physics":
-        return google_tests(part, build / "tests/physics", {}) + google_tests(part, build / "tests/referee", {})
+        return [suite for room in ("physics", "transport", "referee")
+                for suite in google_tests(part, build / "tests" / room, {})]
     if part == "native":
         strict = {"ASAN_OPTIONS": "detect_leaks=1:detect_stack_use_after_return=1",
                   "UBSAN_OPTIONS": "print_stacktrace=1"}
@@ -152,17 +153,17 @@ class Runner:
             print(f"{part:<44}", end="")
             self.report(Result(part, failed=1, failures=[(part, "has no test to run")]), None)
 
-    def add_run(self, path):
-        """Adds the results of a run that has already ended, in another Debian; returns the Blender it ran."""
+    def add_run(self, title, path):
+        """Adds the results of a run that has already ended, in the Debian of this title; returns the Blender it ran."""
         try:
             run = json.loads(pathlib.Path(path).read_text())
         except (OSError, ValueError) as error:
-            print(f"{'Debian 13':<44}", end="")
-            self.report(Result("Debian 13", failed=1, failures=[("Debian 13", f"left no summary: {error}")]), None)
+            print(f"{title:<44}", end="")
+            self.report(Result(title, failed=1, failures=[(title, f"left no summary: {error}")]), None)
             return None
         for fields in run["results"]:
             result = Result(**fields)
-            result.name += " in Debian 13" if "4." not in result.name else ""
+            result.name += f" in {title}" if run["blender"] not in result.name else ""
             print(f"{result.name:<44}", end="")
             self.report(result, path)
         return run["blender"]
@@ -218,7 +219,8 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     for name in ("--build", "--python", "--blender", "--blender-version", "--results"):
         parser.add_argument(name, required=True)
-    parser.add_argument("--also", metavar="SUMMARY", help="summary.json of a run in Debian 13, to be summed with this")
+    parser.add_argument("--also", metavar="TITLE=SUMMARY", action="append", default=[],
+                        help="summary.json of a run in another Debian, to be summed with this")
     parser.add_argument("parts", nargs="+", choices=PARTS)
     options = parser.parse_args()
     runner = Runner(options)
@@ -229,8 +231,7 @@ def main():
             if part in options.parts:
                 runner.run_part(part)
         versions = [options.blender_version]
-        if options.also:
-            versions += filter(None, [runner.add_run(options.also)])
+        versions += filter(None, [runner.add_run(*also.split("=", 1)) for also in options.also])
     except KeyboardInterrupt:
         runner.end_child()
         print("\nmesograin: interrupted", file=sys.stderr)
@@ -243,10 +244,11 @@ def summarise(runner, options, versions):
     ran_blender = any(part in options.parts for part in ("blender", "window"))
     print(f"Blender run: {', '.join(versions) if ran_blender else 'none'}", end="")
     families = {version.split(".")[0] for version in versions} if ran_blender else set()
-    missing = [f"{family}.x" for family in ("3", "4") if family not in families]
+    missing = [f"{family}.x" for family in ("3", "4", "5") if family not in families]
     print(f"; not run: {', '.join(missing)}." if missing else ".")
-    if "4" not in families and ran_blender:
-        print("./mesograin test --blender-4 also runs Blender 4.3.")
+    for family, name in (("4", "Blender 4.3"), ("5", "Blender 5 of Debian sid")):
+        if family not in families and ran_blender:
+            print(f"./mesograin test --blender-{family} also runs {name}.")
     passed, failed, skipped = (sum(getattr(result, name) for result in runner.results)
                                for name in ("passed", "failed", "skipped"))
     summary = {"blender": options.blender_version, "versions": versions, "passed": passed, "failed": failed,

@@ -12,8 +12,9 @@ bl_info = {
 __version__ = ".".join(str(number) for number in bl_info["version"])
 
 # In the order of their imports: each room knows only those before it.
-ROOMS = ("compat", "smooth_normals", "native_module", "properties", "presets", "status", "meshes", "export", "viewport",
-         "engine", "panels", "reference_cache", "preferences", "side_task.settings", "side_task.session",
+ROOMS = ("compat", "smooth_normals", "native_module", "properties", "presets", "status", "meshes", "heaps", "lights",
+         "surroundings", "plain_materials", "export", "viewport", "viewport_text", "engine", "panels",
+         "reference_cache", "preferences", "side_task.settings", "side_task.session",
          "side_task.pictures", "side_task.operators", "side_task.panel", "side_task.results",
          "compare_panel.properties", "compare_panel.session", "compare_panel.operators", "compare_panel.panel",
          "bake_panel.properties", "bake_panel.compared", "bake_panel.session", "bake_panel.operators",

@@ -1,4 +1,4 @@
-# All that differs between the Blenders we serve (3.4 to 4.3), asked for by feature and never by version.
+# All that differs between the Blenders we serve (3.4 to 5.2), asked for by feature and never by version.
 import numpy as np
 
 
@@ -39,8 +39,35 @@ def borrowed_panels():
         engines = getattr(panel, "COMPAT_ENGINES", None)
         if engines is None:
             continue
-        if ("BLENDER_RENDER" in engines and panel.__name__ not in drawn_by_us) or panel.__name__ in tied_by_name:
+        # The Node Editor's copy of a panel is another class with the very same set of engines.
+        name = panel.__name__.removeprefix("NODE_")
+        if ("BLENDER_RENDER" in engines and name not in drawn_by_us) or panel.__name__ in tied_by_name:
             yield panel
+
+
+def new_group_socket(tree, name, in_out, kind):
+    """Gives a node group an input or output, `in_out` INPUT or OUTPUT."""
+    if hasattr(tree, "interface"):
+        tree.interface.new_socket(name, in_out=in_out, socket_type=kind)
+    else:
+        (tree.inputs if in_out == "INPUT" else tree.outputs).new(kind, name)
+
+
+def ask_for_layers(image_settings):
+    """Makes a render's file an EXR of one part that holds many layers."""
+    if hasattr(image_settings, "media_type"):  # which has become a choice of its own
+        image_settings.media_type = "MULTI_LAYER_IMAGE"
+    image_settings.file_format = "OPEN_EXR_MULTILAYER"
+    if hasattr(image_settings, "use_exr_interleave"):
+        image_settings.use_exr_interleave = True
+
+
+def relative_path_options():
+    """`options` of a path property that may begin with //, where this Blender wants to be told."""
+    import bpy
+
+    known = "is_path_supports_blend_relative" in bpy.types.Property.bl_rna.properties
+    return {"options": {"ANIMATABLE", "PATH_SUPPORTS_BLEND_RELATIVE"}} if known else {}
 
 
 def set_linear(image):
@@ -53,6 +80,29 @@ def set_linear(image):
             continue
 
 
+def has_choice_of_nodes(datablock):
+    """Whether a material, light or world may be without nodes. From Blender 5 on all have them, and asking warns."""
+    return not getattr(datablock.bl_rna.properties["use_nodes"], "is_deprecated", False)
+
+
+def uses_nodes(datablock):
+    return datablock.use_nodes if has_choice_of_nodes(datablock) else datablock.node_tree is not None
+
+
+def use_nodes(datablock):
+    """Makes nodes say what a material, light or world is."""
+    if has_choice_of_nodes(datablock):
+        datablock.use_nodes = True
+
+
+def has_printed_statistics():
+    """Whether a Blender without a window prints how far a render is; from Blender 5 on it tells its handlers alone."""
+    import bpy
+
+    # That shows in no property; scenes' compositing groups came with the same version.
+    return "compositing_node_group" not in bpy.types.Scene.bl_rna.properties
+
+
 def draw_progress(layout, owner, name, text):
     """A bar for the property `name` of `owner`, a percentage."""
     if hasattr(layout, "progress"):
@@ -60,3 +110,12 @@ def draw_progress(layout, owner, name, text):
         layout.progress(factor=percent / 100.0, text=f"{percent:.0f} %, {text}")
     else:
         layout.prop(owner, name, text=text, slider=True)
+
+
+def has_even_lights():
+    """Whether Cycles takes an area light's watts for those of a Lambertian emitter, and a spot for a point light in a
+    cone. Before Blender 4.0 an area light had pi / 4 of that, and a spot weakened with the cosine from its axis."""
+    import bpy
+
+    # That shows in no property; lights for some objects alone came with the same version.
+    return "light_linking" in bpy.types.Object.bl_rna.properties

@@ -6,7 +6,7 @@ import weakref
 import bpy
 import numpy as np
 
-from . import compat, export, native_module, status, viewport
+from . import compat, export, native_module, status, viewport, viewport_text
 
 # How long a final render may go without looking whether it was cancelled, and without showing how far it is.
 POLL_SECONDS = 0.05
@@ -28,9 +28,11 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
         self._texture = None
         self._transparent = False  # whether the texture is
         self._warnings = ()
+        self._error = ""  # of the viewport, one sentence
 
-    def update_render_passes(self, _scene, _view_layer):
-        """Combined is the only pass, and Blender registers it itself."""
+    def update_render_passes(self, scene, view_layer):
+        # The compositor's Render Layers node has a socket for each pass that is registered, and for no other.
+        self.register_pass(scene, view_layer, "Combined", 4, "RGBA", "COLOR")
 
     # Final renders
 
@@ -112,6 +114,7 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
     # Rendered viewports
 
     def view_update(self, _context, depsgraph):
+        self._error = ""
         try:
             self._view_update(depsgraph)
         except _sentences() as error:
@@ -134,6 +137,8 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
             self._view_draw(context, depsgraph)
         except _sentences() as error:
             self._complain(status.VIEWPORT, status.Status(error=str(error)))
+        if self._error and viewport_text.is_hidden(context.space_data):
+            viewport_text.draw(context.region, self._error)
 
     def _view_draw(self, context, depsgraph):
         session, region, scene = self._session, context.region, depsgraph.scene
@@ -144,7 +149,7 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
                 pixels = session.picture()  # at rest nothing new would come
             if pixels is not None:
                 self._take(pixels, region, scene)
-            if session.busy:
+            if session.busy or pixels is not None:  # the text line of a redraw is what was said before it
                 self.tag_redraw()
         if self._texture is not None:
             self._draw_texture(scene, region)
@@ -155,9 +160,11 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
             pixels[..., 3] = 1.0
         self._texture = _texture(pixels)
         session = self._session
-        self.update_stats("", f"Sample {session.samples}/{scene.mesograin.viewport_samples}")
-        status.put(status.VIEWPORT, status.Status(session.samples, region.width, region.height, session.timings(),
-                                                  self._warnings))
+        self._error = ""
+        self.update_stats("", _line(session.samples, scene.mesograin.viewport_samples, self._warnings))
+        if status.put(status.VIEWPORT, status.Status(session.samples, region.width, region.height, session.timings(),
+                                                     self._warnings)):
+            _redraw_panels()
 
     def _draw_texture(self, scene, region):
         import gpu
@@ -173,10 +180,33 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
     def _complain(self, kind, complaint):
         """Puts one sentence where the artist is looking: the panel, the picture's own text line and the reports."""
         self.update_stats("", complaint.error)
-        if status.put(kind, complaint) or kind == status.RENDER:
+        news = status.put(kind, complaint)
+        if news or kind == status.RENDER:
             self.report({"ERROR"}, complaint.error)
         if kind == status.RENDER:
             self.error_set(complaint.error)
+            return
+        if complaint.error != self._error:  # the line above is part of the next redraw only
+            self._error = complaint.error
+            self.tag_redraw()
+        if news:
+            _redraw_panels()
+
+
+def _line(samples, target, warnings):
+    """The text over a viewport: how far it is, and what the artist has to know of it."""
+    if not warnings:
+        return f"Sample {samples}/{target}"
+    more = f" (and {len(warnings) - 1} more: Render Properties > Sampling)" if len(warnings) > 1 else ""
+    return f"Sample {samples}/{target} | {warnings[0]}{more}"
+
+
+def _redraw_panels():
+    """The panels that show what the last pictures left; nothing else redraws them after a viewport."""
+    for window in bpy.context.window_manager.windows:
+        for area in window.screen.areas:
+            if area.type == "PROPERTIES":
+                area.tag_redraw()
 
 
 def _eyes(render):

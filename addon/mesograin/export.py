@@ -5,7 +5,8 @@ import typing
 
 import numpy as np
 
-from . import meshes, native_module, properties
+from . import heaps, lights, meshes, native_module, plain_materials, properties, surroundings
+from .schema import parameters
 
 
 @dataclasses.dataclass(frozen=True)
@@ -16,9 +17,15 @@ class MaterialValues:
     values: tuple  # (parameter, value) pairs
 
     def to_native(self, native):
-        """Raises native.Error naming the material if a value is out of range."""
+        """Raises native.Error naming the material if a value is out of range, or one that its model does not know."""
+        values = dict(self.values)
+        model, profile = values["model"], values["profile"]
+        known = parameters.profiles_of(model)
+        if profile not in known:
+            raise native.Error(f"Material '{self.name}': {model} knows the profiles {', '.join(known)}; "
+                               f"got '{profile}': choose one of these.")
         try:
-            return native.Material(**dict(self.values))
+            return native.Material(**values)
         except native.Error as error:
             raise native.Error(f"Material '{self.name}': {error}") from error
 
@@ -37,36 +44,35 @@ class InstanceValues:
 
 
 @dataclasses.dataclass(frozen=True)
-class LightValues:
-    name: str
-    direction_to_light: tuple
-    irradiance: tuple
-    angle: float
-
-    def to_native(self, native):
-        try:
-            return native.DirectionalLight(direction_to_light=self.direction_to_light, irradiance=self.irradiance,
-                                           angle=self.angle)
-        except native.Error as error:
-            raise native.Error(f"Light '{self.name}': {error}") from error
-
-
-@dataclasses.dataclass(frozen=True)
 class SceneValues:
     """All that a picture depends on but its camera; two are equal if they look the same."""
 
     instances: tuple
-    lights: tuple
+    lights: tuple  # lights.SunValues and lights.PlacedLightValues
     warnings: tuple
+    world: surroundings.WorldValues = surroundings.WorldValues()
+    heaps: tuple = ()  # heaps.HeapValues, drawn beside the instances
+
+    @property
+    def materials(self):
+        """MaterialValues of all that is drawn, each once."""
+        return tuple(dict.fromkeys(drawn.material for drawn in (*self.instances, *self.heaps)))
+
+    def with_materials(self, change):
+        """The scene with `change` of each of its MaterialValues."""
+        return dataclasses.replace(self, **{
+            field: tuple(dataclasses.replace(drawn, material=change(drawn.material)) for drawn in getattr(self, field))
+            for field in ("instances", "heaps")})
 
     def to_native(self):
         """The native Scene. Raises native.Error with a sentence that names the datablock at fault."""
         native = native_module.get()
-        materials = {values: values.to_native(native) for values in
-                     dict.fromkeys(instance.material for instance in self.instances)}
+        materials = {values: values.to_native(native) for values in self.materials}
+        instances, arrays = ([drawn.to_native(native, materials[drawn.material]) for drawn in group]
+                             for group in (self.instances, self.heaps))
         return native.Scene(
-            instances=[instance.to_native(native, materials[instance.material]) for instance in self.instances],
-            lights=[light.to_native(native) for light in self.lights])
+            instances=instances, arrays=arrays,
+            lights=[light.to_native(native) for light in self.lights], world=self.world.to_native(native))
 
 
 def scene_from_depsgraph(depsgraph, cache=None):
@@ -180,15 +186,16 @@ def material_values(material, millimetres_per_unit):
     """MaterialValues of a Blender material, or of the default grain where a slot is empty (None)."""
     if material is None:
         return MaterialValues("(none)", tuple(_default_parameters(millimetres_per_unit)))
-    return MaterialValues(material.name_full, tuple(_parameters(material.mesograin, millimetres_per_unit)))
+    values = dict(_parameters(material.mesograin, millimetres_per_unit))
+    if plain_materials.is_plain(material):
+        values.update(plain_materials.read(material)[0])
+    return MaterialValues(material.name_full, tuple(values.items()))
 
 
 def read_scene(depsgraph, cache):
     """SceneValues of an evaluated dependency graph; `cache` spares reading meshes twice."""
     reader = _Reader(depsgraph.scene.mesograin.millimetres_per_unit, cache)
-    for instance in depsgraph.object_instances:
-        if instance.show_self:
-            reader.read(instance)
+    reader.read_all(depsgraph)
     return reader.scene_values(depsgraph.scene)
 
 
@@ -208,25 +215,6 @@ def _default_parameters(millimetres_per_unit):
                        millimetres_per_unit)
 
 
-def _shines(world):
-    """Whether a world lights the scene in Cycles, as far as its nodes tell without evaluating them."""
-    if world is None:
-        return False
-    if not world.use_nodes:
-        return any(world.color)
-    output = world.node_tree.get_output_node("CYCLES")
-    links = output.inputs["Surface"].links if output else ()
-    if not links:
-        return False
-    node = links[0].from_node
-    if node.type != "BACKGROUND":
-        return True
-    colour, strength = node.inputs["Color"], node.inputs["Strength"]
-    dark = not colour.is_linked and not any(colour.default_value[:3])
-    off = not strength.is_linked and strength.default_value == 0.0
-    return not (dark or off)
-
-
 class _Reader:
     """Collects what one pass over the instances finds; complaints come once, however often an object is instanced."""
 
@@ -235,31 +223,98 @@ class _Reader:
         self._cache = cache
         self._materials = {}
         self._instances = []
+        self._groups = {}  # {address of a shape: heaps.Group, or None for what is read one by one}
         self._lights = []
         self._warnings = {}
 
-    def read(self, instance):
-        kind = instance.object.type
-        if meshes.is_shape(instance.object):
-            self._read_drawable(instance.object, instance.matrix_world)
-        elif kind == "LIGHT":
-            self._read_light(instance.object, instance.matrix_world)
-        elif kind in ("CURVES", "POINTCLOUD", "VOLUME"):
-            self._warn(f"Object '{instance.object.name}' is {named(kind)} object, which Mesograin does not draw: "
+    def read_all(self, depsgraph):
+        """Of instancers' placings there may be a million: what the shape alone tells is found once, and slices are the
+        fastest way out of a Blender matrix."""
+        groups = self._groups
+        for instance in depsgraph.object_instances:
+            if not instance.show_self:
+                continue
+            shape = instance.object
+            if not instance.is_instance:
+                self._read(shape, instance.matrix_world)
+                continue
+            data = shape.data
+            # The object may be a passing one, in which several that differ in their data follow each other.
+            key = (shape.original.as_pointer(), data and data.as_pointer())
+            if key in groups:
+                group = groups[key]
+            else:
+                group = groups[key] = self._group(shape)
+            matrix = instance.matrix_world
+            if group is None:
+                self._read(shape, matrix)
+                continue
+            extend = group.extend
+            extend(matrix[0][:])
+            extend(matrix[1][:])
+            extend(matrix[2][:])
+            extend(matrix[3][:])
+
+    def _group(self, shape):
+        """heaps.Group of a shape that can be drawn, else None."""
+        if not meshes.is_shape(shape):
+            return None
+        parts = self._cache.parts(shape)
+        if not any(part.has_area for part in parts) or any(part.broken_uvs for part in parts):
+            return None
+        return heaps.Group(shape.name, [(part.mesh, self._material(shape, part.slot)) for part in parts])
+
+    def _read(self, shape, matrix_world):
+        if meshes.is_shape(shape):
+            self._read_drawable(shape, matrix_world)
+        elif shape.type == "LIGHT":
+            self._read_light(shape, matrix_world)
+        elif shape.type == "POINTCLOUD":
+            self._read_points(shape, matrix_world)
+        elif shape.type in ("CURVES", "VOLUME"):
+            self._warn(f"Object '{shape.name}' is {named(shape.type)} object, which Mesograin does not draw: "
                        "convert it to a mesh.")
 
+    def _read_points(self, cloud, matrix_world):
+        if len(cloud.data.points) == 0:
+            self._warn(f"Object '{cloud.name}' has no points, so nothing of it is drawn.")
+            return
+        group = heaps.Group(cloud.name, [(heaps.sphere(), self._material(cloud, 0))])
+        group.extend(heaps.point_placings(cloud.data, matrix_world))
+        self._groups[len(self._groups), cloud.name] = group
+
+    def _gather(self):
+        """Few placings become instances, which can be chosen one by one; many become heaps."""
+        found = []
+        for group in self._groups.values():
+            if group is None:
+                continue
+            values, left_out = group.values()
+            if left_out:
+                self._warn(f"{left_out} instances of '{group.name}' are scaled to nothing or have a place that is no "
+                           "number, so they are not drawn.")
+            for heap in values:
+                if len(heap) >= heaps.MANY:
+                    found.append(heap)
+                    continue
+                self._instances.extend(InstanceValues(heap.name, heap.mesh, heap.material, placing)
+                                       for placing in heap.each())
+        return tuple(found)
+
     def scene_values(self, scene):
-        if not self._instances:
+        gathered = self._gather()
+        if not self._instances and not gathered:
             self._warn("There is nothing to draw: add a mesh that is visible in renders.")
-        if not self._lights:
-            self._warn("The scene has no sun light, so everything is black: add one (Add > Light > Sun).")
-        if _shines(scene.world):
-            self._warn(f"World '{scene.world.name}' shines, but only suns are rendered: light the scene with suns, and "
-                       "make the world black to see what is left without it.")
+        around, sentences = surroundings.read(scene)
+        for sentence in sentences:
+            self._warn(sentence)
+        if not self._lights and not around.shines:
+            self._warn("The scene has no light and its world is black, so everything is: add a light (Add > Light).")
         camera = scene.camera
         if camera is not None and camera.type == "CAMERA" and camera.data.type == "PANO":
             self._warn(f"Camera '{camera.name}' is panoramic, which Mesograin draws as perspective.")
-        return SceneValues(tuple(self._instances), tuple(self._lights), tuple(self._warnings))
+        return SceneValues(tuple(self._instances), tuple(self._lights), tuple(self._warnings), around,
+                           gathered)
 
     def _read_drawable(self, evaluated_object, matrix_world):
         parts = self._cache.parts(evaluated_object)
@@ -272,7 +327,6 @@ class _Reader:
             self._warn(f"Object '{evaluated_object.name}' has faces without any area, so nothing of it is drawn: "
                        "spread its vertices.")
             return
-        # Heaps have instances by the ten thousands, and slices are the fastest way out of a Blender matrix.
         to_world = matrix_world[0][:] + matrix_world[1][:] + matrix_world[2][:] + matrix_world[3][:]
         if not math.isfinite(sum(to_world)):
             self._warn(f"Object '{evaluated_object.name}' has a place, rotation or scale that is no number, so it is "
@@ -293,21 +347,21 @@ class _Reader:
         key = material and material.name_full
         if key not in self._materials:
             self._materials[key] = material_values(material, self._millimetres_per_unit)
+            if material is not None and plain_materials.is_plain(material):
+                for sentence in plain_materials.read(material)[1]:
+                    self._warn(sentence)
         return self._materials[key]
 
     def _read_light(self, evaluated_object, matrix_world):
-        light = evaluated_object.data
-        if not is_sun(evaluated_object):
-            self._warn(f"Light '{evaluated_object.name}' is {named(light.type)} light; only suns are rendered.")
+        if not math.isfinite(sum(sum(row) for row in matrix_world)):
+            self._warn(f"Light '{evaluated_object.name}' has a place, rotation or scale that is no number, so it is "
+                       "left out.")
             return
-        if light.use_nodes:
-            self._warn(f"Light '{evaluated_object.name}' has nodes, which are left out: its own colour and strength "
-                       "are rendered.")
-        # A sun shines along its -z axis, and its strength is irradiance already.
-        direction = matrix_world.to_3x3().col[2].normalized()
-        self._lights.append(LightValues(evaluated_object.name, tuple(direction),
-                                        tuple(channel * light.energy for channel in light.color),
-                                        min(light.angle, math.pi)))
+        values, sentences = lights.read(evaluated_object, matrix_world)
+        for sentence in sentences:
+            self._warn(sentence)
+        if values is not None:
+            self._lights.append(values)
 
     def _warn(self, sentence):
         self._warnings.setdefault(sentence)

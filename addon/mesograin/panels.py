@@ -3,12 +3,18 @@ import textwrap
 
 import bpy
 
-from . import engine, export, native_module, presets, status
+from . import engine, export, native_module, plain_materials, presets, status
+from .schema import models, parameters
 
 ENGINES = {engine.MesograinRenderEngine.bl_idname}
 # At a UI scale of 1, in pixels: the average width of a character, and what margins and an icon take of a panel's width.
 CHARACTER_WIDTH = 6.5
 MARGINS = 95
+MEDIUM = ("sigma_s", "sigma_a", "scale", "g", "profile")
+REFRACTING = ("dielectric", "lambert_refracted")
+SURFACE = {"boundary": (), "eta": REFRACTING, "roughness": REFRACTING, "masking": REFRACTING,
+           "specular": ("dielectric",)}
+"""A grain's parameters as they are grouped; of the surface's, the boundaries for which they count."""
 
 
 def draw_sentence(layout, context, sentence, icon="ERROR"):
@@ -59,12 +65,16 @@ class MESOGRAIN_PT_material(MesograinPanel, bpy.types.Panel):
         if not draw_native_problem(layout, context):
             self._draw_material_problem(context)
         layout.prop(grain, "model")
-        if grain.model in presets.OPAQUE_MODELS:
-            layout.prop(grain, "reflectance")
-        else:
+        if plain_materials.is_plain(context.material):
+            draw_sentence(layout, context, "No grain yet: it is drawn as its nodes say. Choose a model to make it one.",
+                          icon="INFO")
+        takes = models.MODELS[grain.model].parameters
+        if "sigma_s" in takes:
             self._draw_medium(context, grain)
-        if grain.model != "lambert":
-            self._draw_surface(grain)
+        for name in takes:
+            if name not in (*MEDIUM, *SURFACE):
+                layout.prop(grain, name)
+        self._draw_surface(grain, takes)
 
     def _draw_material_problem(self, context):
         native = native_module.get()
@@ -75,36 +85,44 @@ class MESOGRAIN_PT_material(MesograinPanel, bpy.types.Panel):
 
     def _draw_medium(self, context, grain):
         layout = self.layout
-        layout.prop(grain, "sigma_s", text="sigma_s (1/mm)")
-        layout.prop(grain, "sigma_a", text="sigma_a (1/mm)")
+        layout.prop(grain, "sigma_s", text="sigma_s")
+        layout.prop(grain, "sigma_a", text="sigma_a")
         layout.prop(grain, "scale")
         layout.prop(grain, "g")
-        layout.prop(grain, "profile")
+        row = layout.row(heading="Profile")
+        row.menu(MESOGRAIN_MT_profiles.bl_idname, text=_profile_label(grain))
         column = layout.column()
         column.active = False
         sigma_t = [(sigma_s + sigma_a) * grain.scale for sigma_s, sigma_a in zip(grain.sigma_s, grain.sigma_a)]
         paths = ", ".join(f"{1.0 / value:.3g}" if value > 0.0 else "endless" for value in sigma_t)
-        draw_sentence(column, context, f"Mean free path of R, G, B: {paths} mm", icon="NONE")
+        draw_sentence(column, context, f"sigma per mm; mean free path {paths} mm", icon="NONE")
 
-    def _draw_surface(self, grain):
-        layout = self.layout
-        if grain.model not in presets.OPAQUE_MODELS:
-            layout.prop(grain, "boundary")
-            row = layout.row()
-            row.active = grain.boundary in ("dielectric", "lambert_refracted")
-            row.prop(grain, "eta")
-        column = layout.column()
-        column.active = grain.model == "conductor" or grain.boundary in ("dielectric", "lambert_refracted")
-        column.prop(grain, "roughness")
-        column.prop(grain, "masking")
-        if grain.model not in presets.OPAQUE_MODELS:
-            row = layout.row()
-            row.active = grain.boundary == "dielectric"
-            row.prop(grain, "specular")
+    def _draw_surface(self, grain, takes):
+        for name, boundaries in SURFACE.items():
+            if name in takes:
+                row = self.layout.row()
+                row.active = name == "boundary" or "boundary" not in takes or grain.boundary in boundaries
+                row.prop(grain, name)
+
+
+class MESOGRAIN_MT_profiles(bpy.types.Menu):
+    bl_idname = "MESOGRAIN_MT_profiles"
+    bl_label = "Profile"
+    bl_description = "The theory that answers for multiple scattering, of those that the model knows"
+
+    def draw(self, context):
+        grain = context.material.mesograin
+        for profile in parameters.profiles_of(grain.model):
+            self.layout.prop_enum(grain, "profile", profile)
+
+
+def _profile_label(grain):
+    choices = parameters.PARAMETERS["profile"].choices
+    return next(choice.label for choice in choices if choice.name == grain.profile)
 
 
 class MESOGRAIN_PT_light(MesograinPanel, bpy.types.Panel):
-    bl_label = "Sun"
+    bl_label = "Light"
     bl_context = "data"
 
     @classmethod
@@ -116,12 +134,22 @@ class MESOGRAIN_PT_light(MesograinPanel, bpy.types.Panel):
         layout.use_property_split = True
         layout.use_property_decorate = False
         layout.prop(light, "type")
-        if light.type != "SUN":
-            draw_sentence(layout, context, "Mesograin renders sun lights only; this light is left out.")
-            return
         layout.prop(light, "color")
-        layout.prop(light, "energy", text="Irradiance")
-        layout.prop(light, "angle")
+        layout.prop(light, "energy", text="Irradiance" if light.type == "SUN" else "Power")
+        for name in LIGHT_PROPERTIES[light.type]:
+            if hasattr(light, name):
+                layout.prop(light, name)
+        if light.type == "AREA" and light.shape in ("RECTANGLE", "ELLIPSE"):
+            layout.prop(light, "size_y")
+
+
+LIGHT_PROPERTIES = {
+    "SUN": ("angle",),
+    "POINT": ("shadow_soft_size", "use_soft_falloff"),
+    "SPOT": ("shadow_soft_size", "use_soft_falloff", "spot_size", "spot_blend"),
+    "AREA": ("shape", "size", "spread"),
+}
+"""What a light has beside its colour and strength, where this Blender has it."""
 
 
 class MESOGRAIN_PT_sampling(MesograinPanel, bpy.types.Panel):
@@ -135,9 +163,10 @@ class MESOGRAIN_PT_sampling(MesograinPanel, bpy.types.Panel):
         if not draw_native_problem(layout, context):
             for sentence in status.complaints():
                 draw_sentence(layout, context, sentence)
-        layout.prop(settings, "samples")
-        layout.prop(settings, "viewport_samples")
-        layout.prop(settings, "millimetres_per_unit")
+        column = layout.column(align=True)
+        column.prop(settings, "samples", text="Render")
+        column.prop(settings, "viewport_samples", text="Viewport")
+        layout.prop(settings, "millimetres_per_unit", text="mm per Unit")
         layout.prop(context.scene.render, "film_transparent", text="Transparent Film")
 
 
@@ -173,4 +202,4 @@ class MESOGRAIN_PT_statistics(MesograinPanel, bpy.types.Panel):
 
 
 register, unregister = bpy.utils.register_classes_factory(
-    (MESOGRAIN_PT_material, MESOGRAIN_PT_light, MESOGRAIN_PT_sampling, MESOGRAIN_PT_statistics))
+    (MESOGRAIN_MT_profiles, MESOGRAIN_PT_material, MESOGRAIN_PT_light, MESOGRAIN_PT_sampling, MESOGRAIN_PT_statistics))

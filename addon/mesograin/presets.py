@@ -4,6 +4,8 @@ import typing
 import bpy
 from bpy.props import EnumProperty
 
+from .schema import models
+
 
 class Measured(typing.NamedTuple):
     """One row: reduced scattering and absorption for R, G and B in 1/mm, and the relative index of refraction."""
@@ -31,7 +33,6 @@ TABLE = (
     Measured("Whole milk", (2.55, 3.21, 3.77), (0.0011, 0.0024, 0.014)),
 )
 BY_IDENTIFIER = {row.name.lower().replace(" ", "_"): row for row in TABLE}
-OPAQUE_MODELS = ("lambert", "conductor")
 
 
 class MESOGRAIN_OT_apply_preset(bpy.types.Operator):
@@ -63,7 +64,7 @@ def apply(row, grain):
     grain.g = 0.0
     grain.eta = row.eta
     grain.scale = 1.0
-    if grain.model in OPAQUE_MODELS:
+    if grain.model in models.OPAQUE:
         grain.model = "model_1"
 
 

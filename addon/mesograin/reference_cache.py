@@ -33,16 +33,16 @@ def look_again():
 
 def draw(layout):
     """One row: what the references take, and the button."""
-    row = layout.row(align=True)
     try:
         chosen = cache()
     except ValueError as error:
-        row.label(text=str(error), icon="ERROR")
+        layout.label(text=str(error), icon="ERROR")
         return
     if time.monotonic() - _seen["at"] > LOOK_SECONDS:
         _seen.update(at=time.monotonic(), bytes=chosen.size())
-    row.label(text=f"References: {_readable(_seen['bytes'])} of {_readable(chosen.limit)}", icon="DISK_DRIVE")
-    row.operator(MESOGRAIN_OT_clear_references.bl_idname, text="Clear", icon="TRASH")
+    row = layout.row(align=True)
+    row.label(text=f"{_readable(_seen['bytes'])} of {_readable(chosen.limit)} cached", icon="DISK_DRIVE")
+    row.operator(MESOGRAIN_OT_clear_references.bl_idname, text="", icon="TRASH")
 
 
 def _readable(size):

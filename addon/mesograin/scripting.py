@@ -2,16 +2,15 @@
 """See `compare`."""
 
 import dataclasses
-import math
 from pathlib import Path
 
 import bpy
 
 from . import native_module
-from .command_line import values
 from .comparison import arguments, mask_names, progress, report_page, results, run, verdict
 from .cycles import kinds, stage
 from .cycles.cache import Cache
+from .schema.parameters import PARAMETERS, SETTABLE
 
 PICTURES = ("model", "reference", "error")
 
@@ -102,7 +101,7 @@ def compare(models=arguments.DEFAULT_MODELS, references=None, out="//comparison"
             command=None):
     """Renders the current scene with every model and with the Cycles materials that mean the same, and measures.
 
-    models: of 'lambert', 'conductor', 'model_1', 'model_2', 'model_3'; every material is rendered with each.
+    models: of schema.models.NAMES; every material is rendered with each.
     references: of 'diffuse', 'glossy', 'volume_index_matched', 'subsurface', 'subsurface_burley', 'volume_dielectric',
     'photon'; None for each model's usual one.
     out: folder for all files, made if needed; '//' is the folder of the .blend file.
@@ -237,18 +236,14 @@ def _settings(settings):
 
 
 def _setting(name, value):
-    if name not in values.SETTABLE:
-        raise ComparisonError(f"settings takes {', '.join(values.SETTABLE)}; {name!r} came.")
-    count = values.SETTABLE[name]
-    if count == 0:
-        return str(value)
-    try:
-        numbers = (float(value),) * count if not hasattr(value, "__len__") else tuple(float(part) for part in value)
-    except (TypeError, ValueError):
-        numbers = ()
-    if len(numbers) != count or not all(map(math.isfinite, numbers)):
-        raise ComparisonError(f"{name} takes {'one number or three' if count == 3 else 'one number'}; {value!r} came.")
-    return numbers if count == 3 else numbers[0]
+    if name not in SETTABLE:
+        raise ComparisonError(f"settings takes {', '.join(SETTABLE)}; {name!r} came.")
+    parameter = PARAMETERS[name]
+    # An array of numpy's, or a number of it, is as good as Python's own.
+    checked = parameter.check(value.tolist() if hasattr(value, "tolist") else value)
+    if checked is None:
+        raise ComparisonError(f"{name} takes {parameter.allowed}; {value!r} came.")
+    return checked
 
 
 def call(**given):

@@ -20,7 +20,7 @@ Buffer::Buffer(const void* data, std::size_t bytes) : bytes_(bytes) {
     glNamedBufferStorage(handle_.name(), sizeof(nothing), nothing, 0);
   else
     glNamedBufferStorage(handle_.name(), static_cast<GLsizeiptr>(bytes), data, 0);
-  require_memory("a buffer", bytes);
+  require_memory("a mesh", bytes, "draw fewer triangles");
 }
 
 void Buffer::bind_storage(GLuint binding) const { glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, handle_.name()); }

@@ -5,7 +5,7 @@
 
 #include <memory>
 
-#include "scene/error.h"
+#include "base/error.h"
 
 namespace mesograin::gl {
 namespace {

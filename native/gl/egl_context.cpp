@@ -10,7 +10,7 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "scene/error.h"
+#include "base/error.h"
 
 namespace mesograin::gl {
 namespace {

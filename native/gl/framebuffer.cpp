@@ -62,8 +62,12 @@ void Framebuffer::bind() const {
 }
 
 void Framebuffer::clear(const float (&colour)[4]) const {
-  for (int i = 0; i < colours_; ++i) glClearNamedFramebufferfv(handle_.name(), GL_COLOR, i, colour);
+  clear_colour(colour);
   clear_depth();
+}
+
+void Framebuffer::clear_colour(const float (&colour)[4]) const {
+  for (int i = 0; i < colours_; ++i) glClearNamedFramebufferfv(handle_.name(), GL_COLOR, i, colour);
 }
 
 void Framebuffer::clear_depth() const {
@@ -74,9 +78,9 @@ void Framebuffer::clear_depth() const {
     glClearNamedFramebufferfv(handle_.name(), GL_DEPTH, 0, &far_plane);
 }
 
-void Framebuffer::read(float* pixels) const {
+void Framebuffer::read(float* pixels, int colour) const {
   glBindFramebuffer(GL_READ_FRAMEBUFFER, handle_.name());
-  glReadBuffer(GL_COLOR_ATTACHMENT0);
+  glReadBuffer(GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(colour));
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
   glReadPixels(0, 0, width_, height_, GL_RGBA, GL_FLOAT, pixels);
 }

@@ -23,11 +23,12 @@ class Framebuffer {
 
   /// Clears every colour, to zero unless said otherwise, the depth to the far plane and the stencil to 0.
   void clear(const float (&colour)[4] = {0.0F, 0.0F, 0.0F, 0.0F}) const;
+  void clear_colour(const float (&colour)[4] = {0.0F, 0.0F, 0.0F, 0.0F}) const;
   void clear_depth() const;
 
-  /// Waits for the drawing and copies the first colour as float RGBA into `pixels`, (height, width, 4), first row y =
-  /// 0.
-  void read(float* pixels) const;
+  /// Waits for the drawing and copies a colour, by default the first, as float RGBA into `pixels`, (height, width, 4),
+  /// first row y = 0.
+  void read(float* pixels, int colour = 0) const;
 
  private:
   struct Traits {

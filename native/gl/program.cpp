@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "scene/error.h"
+#include "base/error.h"
 
 namespace mesograin::gl {
 namespace {
@@ -112,7 +112,7 @@ void Program::reflect() {
     const GLint location = glGetUniformLocation(handle_.name(), uniform.c_str());
     if (location < 0) continue;  // a member of a block
     GLuint unit = 0;
-    if (type == GL_SAMPLER_2D || type == GL_SAMPLER_2D_ARRAY) {
+    if (type == GL_SAMPLER_2D || type == GL_SAMPLER_2D_ARRAY || type == GL_SAMPLER_3D) {
       unit = next_unit++;
       glProgramUniform1i(handle_.name(), location, static_cast<GLint>(unit));
     }
@@ -172,6 +172,10 @@ void Program::set(std::string_view sampler, const Texture& texture) const {
 
 void Program::set(std::string_view sampler, const TextureArray& textures) const {
   if (const Uniform* found = find(sampler, GL_SAMPLER_2D_ARRAY)) textures.bind(found->unit);
+}
+
+void Program::set(std::string_view sampler, const Volume& volume) const {
+  if (const Uniform* found = find(sampler, GL_SAMPLER_3D)) volume.bind(found->unit);
 }
 
 }  // namespace mesograin::gl

@@ -15,6 +15,7 @@
 #include "gl/shader_source.h"
 #include "gl/texture.h"
 #include "gl/texture_array.h"
+#include "gl/volume.h"
 
 namespace mesograin::gl {
 
@@ -50,6 +51,7 @@ class Program {
   /// Binds the texture to the texture unit that belongs to the sampler of that name.
   void set(std::string_view sampler, const Texture& texture) const;
   void set(std::string_view sampler, const TextureArray& textures) const;
+  void set(std::string_view sampler, const Volume& volume) const;
 
  private:
   struct Traits {

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <regex>
 
+#include "base/error.h"
 #include "gl/shader_library.h"
-#include "scene/error.h"
 
 namespace mesograin::gl {
 

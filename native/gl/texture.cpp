@@ -1,8 +1,8 @@
 // Fixed 2-D texture storage and upload.
 #include "gl/texture.h"
 
+#include "base/error.h"
 #include "gl/check.h"
-#include "scene/error.h"
 
 namespace mesograin::gl {
 
@@ -13,7 +13,8 @@ Texture::Texture(GLenum format, int width, int height) : TextureStorage(width, h
     throw Error("An image must be between 1 and {} pixels wide and high on this device; got {} x {}.", largest, width,
                 height);
   glTextureStorage2D(name(), 1, format, width, height);
-  require_memory("a texture", static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 16);
+  require_memory("a texture", static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 16,
+                 "render a smaller picture, or bake a smaller texture");
 }
 
 void Texture::upload(GLenum components, GLenum type, const void* texels) {

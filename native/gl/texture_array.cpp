@@ -1,8 +1,8 @@
 // Fixed storage of a texture array.
 #include "gl/texture_array.h"
 
+#include "base/error.h"
 #include "gl/check.h"
-#include "scene/error.h"
 
 namespace mesograin::gl {
 
@@ -12,8 +12,11 @@ TextureArray::TextureArray(GLenum format, int width, int height, int layers)
   glGetIntegerv(GL_MAX_ARRAY_TEXTURE_LAYERS, &most_layers);
   if (layers > most_layers) throw Error("This device draws at most {} lights; got {}.", most_layers, layers);
   glTextureStorage3D(name(), 1, format, width, height, layers);
-  require_memory("light maps", static_cast<std::size_t>(width) * static_cast<std::size_t>(height) *
-                                   static_cast<std::size_t>(layers) * 16);
+  // One for each grain and light, whatever the size of the picture.
+  require_memory(
+      "light maps",
+      static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * static_cast<std::size_t>(layers) * 16,
+      "draw fewer grains or lights, or choose model_1, which needs none");
 }
 
 void TextureArray::read(int layer, float* texels) const {

@@ -42,6 +42,11 @@ void VertexArray::draw() const {
   glDrawElements(GL_TRIANGLES, index_count_, GL_UNSIGNED_INT, nullptr);
 }
 
+void VertexArray::draw_instances(std::uint32_t count) const {
+  glBindVertexArray(handle_.name());
+  glDrawElementsInstanced(GL_TRIANGLES, index_count_, GL_UNSIGNED_INT, nullptr, static_cast<GLsizei>(count));
+}
+
 void VertexArray::draw_patches() const {
   glBindVertexArray(handle_.name());
   glPatchParameteri(GL_PATCH_VERTICES, 3);

@@ -1,6 +1,7 @@
 // A mesh on the device, ready to draw: position, normal and UV at locations 0, 1 and 2.
 #pragma once
 
+#include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <vector>
@@ -17,6 +18,9 @@ class VertexArray {
               const std::vector<glm::vec2>& uvs, const std::vector<glm::uvec3>& triangles);
 
   void draw() const;
+
+  /// Draws it `count` times, which shaders tell apart by gl_InstanceID.
+  void draw_instances(std::uint32_t count) const;
 
   /// Draws each triangle as a patch, for programs with a tessellation stage.
   void draw_patches() const;

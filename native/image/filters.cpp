@@ -7,7 +7,7 @@
 #include <limits>
 #include <utility>
 
-#include "scene/error.h"
+#include "base/error.h"
 
 namespace mesograin::image {
 namespace {

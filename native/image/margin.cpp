@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "scene/error.h"
+#include "base/error.h"
 
 namespace mesograin::image {
 namespace {

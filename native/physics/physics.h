@@ -8,12 +8,14 @@
 #include <glm/trigonometric.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
 
 namespace mesograin::physics {
 
 using real = double;
 using real2 = glm::dvec2;
 using real3 = glm::dvec3;
+using real4 = glm::dvec4;
 
 inline constexpr real PI = 3.14159265358979323846;
 
@@ -30,9 +32,8 @@ using glm::sqrt;
 #define pure [[nodiscard]] inline
 #define OUT(type) type&
 
-// Includes the elementary functions, which it calls.
 #include "physics/dielectric.glsl"
-#include "physics/diffusion.glsl"
+#include "physics/elementary.glsl"
 #include "physics/fresnel.glsl"
 #include "physics/ggx.glsl"
 #include "physics/half_space.glsl"

@@ -13,13 +13,14 @@
 #include <utility>
 #include <vector>
 
-#include "image/exr.h"
+#include "base/error.h"
+#include "base/readable.h"
 #include "image/filters.h"
 #include "image/margin.h"
 #include "image/metrics.h"
 #include "image/significance.h"
+#include "io/exr.h"
 #include "python/bindings.h"
-#include "scene/error.h"
 
 namespace py = pybind11;
 
@@ -66,12 +67,18 @@ py::object to_number(double value) {
 py::object to_place(const image::Place& place) { return py::list(py::make_tuple(place.x, place.y, place.channel)); }
 
 py::tuple read_exr(const std::filesystem::path& path) {
-  image::ExrFile file;
+  io::ExrFile file;
   {
     const py::gil_scoped_release release;
-    file = image::read_exr(path);
+    file = io::read_exr(path);
   }
-  return py::make_tuple(to_array(std::move(file.image)), std::move(file.channels), std::move(file.attributes));
+  // What a file names is text in Python, whatever its bytes.
+  std::vector<std::string> channels;
+  channels.reserve(file.channels.size());
+  for (const std::string& name : file.channels) channels.push_back(base::readable(name));
+  std::map<std::string, std::string> attributes;
+  for (const auto& [name, value] : file.attributes) attributes.emplace(base::readable(name), base::readable(value));
+  return py::make_tuple(to_array(std::move(file.image)), std::move(channels), std::move(attributes));
 }
 
 void write_exr(const std::filesystem::path& path, const Pixels& pixels,
@@ -79,8 +86,8 @@ void write_exr(const std::filesystem::path& path, const Pixels& pixels,
                const std::map<std::string, std::string>& attributes, bool half) {
   const image::ImageView view = to_view(pixels, "pixels");
   const py::gil_scoped_release release;
-  image::write_exr(path, view, channels.value_or(std::vector<std::string>{}), attributes,
-                   half ? image::SampleFormat::half : image::SampleFormat::float32);
+  io::write_exr(path, view, channels.value_or(std::vector<std::string>{}), attributes,
+                half ? io::SampleFormat::half : io::SampleFormat::float32);
 }
 
 py::array_t<bool> to_selection(const image::Mask& mask) {

@@ -4,10 +4,10 @@
 
 #include <array>
 
+#include "base/error.h"
 #include "physics/fresnel_moments.h"
-#include "physics/half_space_albedo.h"
+#include "physics/half_space/half_space_albedo.h"
 #include "python/bindings.h"
-#include "scene/error.h"
 
 namespace py = pybind11;
 

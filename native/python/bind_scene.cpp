@@ -2,28 +2,20 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
-#include <array>
-#include <glm/gtc/type_ptr.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "base/error.h"
 #include "python/bindings.h"
+#include "python/vectors.h"
 #include "scene/camera.h"
-#include "scene/error.h"
 #include "scene/scene.h"
 
 namespace py = pybind11;
 
 namespace mesograin::python {
 namespace {
-
-using Triple = std::array<double, 3>;
-template <typename Number>
-using Array = py::array_t<Number, py::array::c_style | py::array::forcecast>;
-
-glm::dvec3 to_vector(const Triple& triple) { return {triple[0], triple[1], triple[2]}; }
-Triple to_triple(const glm::dvec3& vector) { return {vector.x, vector.y, vector.z}; }
 
 template <typename Vector, typename Number>
 std::vector<Vector> to_vectors(const Array<Number>& array, const char* name) {
@@ -36,11 +28,6 @@ std::vector<Vector> to_vectors(const Array<Number>& array, const char* name) {
   }
   const auto* first = reinterpret_cast<const Vector*>(array.data());
   return {first, first + array.shape(0)};
-}
-
-glm::dmat4 to_matrix(const Array<double>& array, const char* name) {
-  if (array.ndim() != 2 || array.shape(0) != 4 || array.shape(1) != 4) throw Error("{} must be a 4 x 4 matrix.", name);
-  return glm::transpose(glm::make_mat4(array.data()));  // numpy's rows are GLM's columns
 }
 
 Array<double> to_array(const glm::dmat4& matrix) {
@@ -56,61 +43,6 @@ scene::Mesh make_mesh(const Array<float>& positions, const std::optional<Array<f
           normals ? to_vectors<glm::vec3>(*normals, "normals") : std::vector<glm::vec3>{},
           to_vectors<glm::uvec3>(indices, "indices"),
           uvs ? to_vectors<glm::vec2>(*uvs, "uvs") : std::vector<glm::vec2>{}};
-}
-
-scene::Material make_material(const std::string& model, const Triple& reflectance, const Triple& sigma_a,
-                              const Triple& sigma_s, double g, double eta, double roughness, double scale,
-                              bool specular, const std::string& boundary, const std::string& masking,
-                              const std::string& profile) {
-  scene::Material material;
-  material.model = scene::parse_model(model);
-  material.reflectance = to_vector(reflectance);
-  material.sigma_a = to_vector(sigma_a);
-  material.sigma_s = to_vector(sigma_s);
-  material.g = g;
-  material.eta = eta;
-  material.roughness = roughness;
-  material.scale = scale;
-  material.specular = specular;
-  material.boundary = scene::parse_boundary(boundary);
-  material.masking = scene::parse_masking(masking);
-  material.profile = scene::parse_profile(profile);
-  validate(material);
-  return material;
-}
-
-void bind_material(py::module_& module) {
-  const scene::Material standard;
-  py::class_<scene::Material>(
-      module, "Material",
-      "A grain's material, read-only. sigma_a and sigma_s are per scene unit, linear RGB; scale "
-      "multiplies both; roughness is the GGX alpha; specular shows what a dielectric boundary reflects.")
-      .def(py::init(&make_material), py::kw_only(), py::arg("model") = "lambert",
-           py::arg("reflectance") = to_triple(standard.reflectance), py::arg("sigma_a") = to_triple(standard.sigma_a),
-           py::arg("sigma_s") = to_triple(standard.sigma_s), py::arg("g") = standard.g, py::arg("eta") = standard.eta,
-           py::arg("roughness") = standard.roughness, py::arg("scale") = standard.scale,
-           py::arg("specular") = standard.specular, py::arg("boundary") = "dielectric",
-           py::arg("masking") = "correlated", py::arg("profile") = "half_space",
-           "Raises Error naming the parameter, what came and what is allowed.")
-      .def_property_readonly(
-          "model", [](const scene::Material& m) { return scene::model_names[static_cast<std::size_t>(m.model)]; })
-      .def_property_readonly("reflectance", [](const scene::Material& m) { return to_triple(m.reflectance); })
-      .def_property_readonly("sigma_a", [](const scene::Material& m) { return to_triple(m.sigma_a); })
-      .def_property_readonly("sigma_s", [](const scene::Material& m) { return to_triple(m.sigma_s); })
-      .def_readonly("g", &scene::Material::g)
-      .def_readonly("eta", &scene::Material::eta)
-      .def_readonly("roughness", &scene::Material::roughness)
-      .def_readonly("scale", &scene::Material::scale)
-      .def_readonly("specular", &scene::Material::specular)
-      .def_property_readonly(
-          "boundary",
-          [](const scene::Material& m) { return scene::boundary_names[static_cast<std::size_t>(m.boundary)]; })
-      .def_property_readonly(
-          "masking", [](const scene::Material& m) { return scene::masking_names[static_cast<std::size_t>(m.masking)]; })
-      .def_property_readonly(
-          "profile", [](const scene::Material& m) { return scene::profile_names[static_cast<std::size_t>(m.profile)]; })
-      .def(
-          "__eq__", [](const scene::Material& a, const scene::Material& b) { return a == b; }, py::is_operator());
 }
 
 void bind_mesh_and_instance(py::module_& module) {
@@ -137,22 +69,30 @@ void bind_mesh_and_instance(py::module_& module) {
       .def_property_readonly("transform", [](const scene::Instance& i) { return to_array(i.object_to_world); });
 }
 
-void bind_light_and_camera(py::module_& module) {
-  py::class_<scene::DirectionalLight>(module, "DirectionalLight", "A sun.")
-      .def(
-          py::init([](const Triple& direction_to_light, const Triple& irradiance, double angle) {
-            scene::DirectionalLight light{to_vector(direction_to_light), to_vector(irradiance), angle};
-            validate(light);
-            return light;
-          }),
-          py::arg("direction_to_light"), py::arg("irradiance"), py::arg("angle") = 0.0,
-          "direction_to_light: world space, any length; irradiance: linear RGB on a plane that faces the light; angle: "
-          "of the sun's disc, edge to edge, radians.")
-      .def_property_readonly("direction_to_light",
-                             [](const scene::DirectionalLight& l) { return to_triple(l.direction_to_light); })
-      .def_property_readonly("irradiance", [](const scene::DirectionalLight& l) { return to_triple(l.irradiance); })
-      .def_readonly("angle", &scene::DirectionalLight::angle);
+std::vector<glm::dmat4> to_matrices(const Array<double>& array) {
+  if (array.ndim() != 3 || array.shape(1) != 4 || array.shape(2) != 4)
+    throw Error("transforms must have shape (n, 4, 4); got {} dimensions, the last of {}.", array.ndim(),
+                array.ndim() > 0 ? array.shape(array.ndim() - 1) : 0);
+  std::vector<glm::dmat4> matrices(static_cast<std::size_t>(array.shape(0)));
+  for (std::size_t i = 0; i < matrices.size(); ++i)
+    matrices[i] = glm::transpose(glm::make_mat4(array.data() + 16 * i));  // numpy's rows are GLM's columns
+  return matrices;
+}
 
+void bind_instance_array(py::module_& module) {
+  py::class_<scene::InstanceArray>(module, "InstanceArray",
+                                   "Many instances of one mesh with one material: grains of a heap, a transform each.")
+      .def(py::init(
+               [](std::shared_ptr<scene::Mesh> mesh, const scene::Material& material, const Array<double>& transforms) {
+                 return scene::InstanceArray(std::move(mesh), material, to_matrices(transforms));
+               }),
+           py::arg("mesh").none(false), py::arg("material"), py::arg("transforms"),
+           "transforms: (n, 4, 4) float64, object to world. Raises Error for another shape.")
+      .def_readonly("material", &scene::InstanceArray::material)
+      .def("__len__", [](const scene::InstanceArray& array) { return array.object_to_world().size(); });
+}
+
+void bind_camera(py::module_& module) {
   py::class_<scene::Camera>(module, "Camera", "Two matrices: perspective, orthographic, shifted, all the same.")
       .def(py::init([](const Array<double>& world_to_camera, const Array<double>& camera_to_clip) {
              scene::Camera camera{to_matrix(world_to_camera, "world_to_camera"),
@@ -182,20 +122,25 @@ void bind_light_and_camera(py::module_& module) {
 }  // namespace
 
 void bind_scene(py::module_& module) {
-  bind_material(module);
   bind_mesh_and_instance(module);
-  bind_light_and_camera(module);
-  py::class_<scene::Scene>(module, "Scene", "Instances and lights.")
-      .def(py::init([](std::vector<scene::Instance> instances, std::vector<scene::DirectionalLight> lights) {
-             scene::Scene scene{std::move(instances), std::move(lights)};
+  bind_instance_array(module);
+  bind_camera(module);
+  bind_lights(module);
+  py::class_<scene::Scene>(module, "Scene", "Instances, lights and the world around them.")
+      .def(py::init([](std::vector<scene::Instance> instances, std::vector<scene::Light> lights,
+                       const std::optional<scene::World>& world, std::vector<scene::InstanceArray> arrays) {
+             scene::Scene scene{std::move(instances), std::move(lights), world.value_or(scene::World{}),
+                                std::move(arrays)};
              validate(scene);
              return scene;
            }),
            py::kw_only(), py::arg("instances") = std::vector<scene::Instance>{},
-           py::arg("lights") = std::vector<scene::DirectionalLight>{},
-           "Raises Error for a transform that cannot be inverted.")
+           py::arg("lights") = std::vector<scene::Light>{}, py::arg("world") = py::none(),
+           py::arg("arrays") = std::vector<scene::InstanceArray>{},
+           "arrays: InstanceArrays, drawn beside the instances. Raises Error for a transform that cannot be inverted.")
       .def_readonly("instances", &scene::Scene::instances)
-      .def_readonly("lights", &scene::Scene::lights);
+      .def_readonly("lights", &scene::Scene::lights)
+      .def_readonly("world", &scene::Scene::world);
 }
 
 }  // namespace mesograin::python

@@ -8,16 +8,16 @@
 #include <string>
 #include <utility>
 
+#include "base/error.h"
+#include "io/scene_json.h"
 #include "python/bindings.h"
-#include "scene/error.h"
-#include "scene/scene_json.h"
 
 namespace py = pybind11;
 
 namespace mesograin::python {
 namespace {
 
-scene::SceneFile read(const py::object& source, const scene::SceneChoices& choices) {
+io::SceneFile read(const py::object& source, const io::SceneChoices& choices) {
   std::string text;
   if (py::isinstance<py::dict>(source))
     text = py::module_::import("json").attr("dumps")(source).cast<std::string>();
@@ -29,11 +29,11 @@ scene::SceneFile read(const py::object& source, const scene::SceneChoices& choic
   if (!is_json) {
     const auto path = source.cast<std::filesystem::path>();
     const py::gil_scoped_release release;
-    return scene::read_scene(path, choices);
+    return io::read_scene(path, choices);
   }
   const py::gil_scoped_release release;
   try {
-    return scene::parse_scene(text, {}, choices);
+    return io::parse_scene(text, {}, choices);
   } catch (const Error& error) {
     throw Error("Can't use the scene: {}", error.what());
   }
@@ -41,14 +41,14 @@ scene::SceneFile read(const py::object& source, const scene::SceneChoices& choic
 
 py::tuple load_scene(const py::object& source, const std::optional<std::string>& model,
                      const std::optional<std::pair<int, int>>& size) {
-  scene::SceneChoices choices;
+  io::SceneChoices choices;
   if (model) choices.model = scene::parse_model(*model);
   if (size) {
     choices.width = size->first;
     choices.height = size->second;
     require_size(choices);
   }
-  scene::SceneFile file = read(source, choices);
+  io::SceneFile file = read(source, choices);
   return py::make_tuple(std::move(file.scene), file.camera, py::make_tuple(file.width, file.height));
 }
 

@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
+#include "base/error.h"
 #include "gl/context_thread.h"
 #include "python/bindings.h"
 #include "render/view.h"
-#include "scene/error.h"
 
 namespace py = pybind11;
 

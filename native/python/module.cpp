@@ -1,9 +1,9 @@
 // The Python module mesograin_native: errors, version, and what the other files of this room bind.
 #include <pybind11/pybind11.h>
 
+#include "base/error.h"
 #include "gl/context_thread.h"
 #include "python/bindings.h"
-#include "scene/error.h"
 
 namespace py = pybind11;
 
@@ -14,6 +14,7 @@ PYBIND11_MODULE(mesograin_native, module) {
       "What a user can cause: one sentence with what was needed, what came and what to do.";
 
   mesograin::python::bind_image(module);
+  mesograin::python::bind_material(module);
   mesograin::python::bind_scene(module);
   mesograin::python::bind_physics(module);
   mesograin::python::bind_scene_file(module);

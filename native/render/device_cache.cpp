@@ -5,11 +5,28 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <utility>
 
-namespace mesograin::render {
+#include "models/prototype_inputs.h"
+#include "scene/convexity.h"
 
-DeviceMaterial::DeviceMaterial(scene::Model model, physics::MaterialInputs inputs)
+namespace mesograin::render {
+namespace {
+
+// But for what rounding makes of turned instances.
+bool is_same(const glm::dmat3& a, const glm::dmat3& b) {
+  double difference = 0.0, size = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    difference += glm::dot(a[i] - b[i], a[i] - b[i]);
+    size += glm::dot(a[i], a[i]);
+  }
+  return difference <= 1e-12 * size;
+}
+
+}  // namespace
+
+DeviceMaterial::DeviceMaterial(scene::Model model, models::MaterialInputs inputs)
     : model_(model),
       defines_(std::move(inputs.defines)),
       uniforms_(std::move(inputs.uniforms)),
@@ -20,6 +37,11 @@ DeviceMaterial::DeviceMaterial(scene::Model model, physics::MaterialInputs input
     texture.sample_linearly(true);
     tables_.emplace(name, std::move(texture));
   }
+  for (const auto& [name, volume] : inputs.volumes) {
+    gl::Volume texture(volume.channels == 1 ? GL_R16F : GL_RGBA16F, volume.width, volume.height, volume.depth);
+    texture.upload(volume.channels == 1 ? GL_RED : GL_RGBA, volume.texels.data());
+    volumes_.emplace(name, std::move(texture));
+  }
 }
 
 void DeviceMaterial::bind(const gl::Program& program) const {
@@ -27,42 +49,82 @@ void DeviceMaterial::bind(const gl::Program& program) const {
   for (const auto& [name, value] : uniforms_)
     std::visit([&, &uniform = name](const auto& number) { program.set(uniform, number); }, value);
   for (const auto& [name, table] : tables_) program.set(name, table);
+  for (const auto& [name, volume] : volumes_) program.set(name, volume);
+}
+
+DeviceCache::MeshEntry& DeviceCache::mesh_entry(const scene::MeshPointer& mesh) {
+  MeshEntry& entry = meshes_[mesh.get()];
+  // A new mesh may have been given the address of one that is gone.
+  if (entry.source.expired()) entry = {mesh, nullptr, nullptr, std::nullopt};
+  return entry;
 }
 
 std::shared_ptr<gl::VertexArray> DeviceCache::mesh(const scene::MeshPointer& mesh) {
-  const auto found = meshes_.find(mesh.get());
-  // A new mesh may have been given the address of one that is gone.
-  if (found != meshes_.end() && !found->second.source.expired()) return found->second.device;
-  auto device = std::make_shared<gl::VertexArray>(mesh->positions(), mesh->normals(), mesh->uvs(), mesh->triangles());
-  ++sent_.meshes;
-  sent_.bytes += device->bytes();
-  meshes_[mesh.get()] = {mesh, device};
-  return device;
+  MeshEntry& entry = mesh_entry(mesh);
+  if (!entry.device) {
+    entry.device =
+        std::make_shared<gl::VertexArray>(mesh->positions(), mesh->normals(), mesh->uvs(), mesh->triangles());
+    ++sent_.meshes;
+    sent_.bytes += entry.device->bytes();
+  }
+  return entry.device;
+}
+
+std::shared_ptr<Details> DeviceCache::details(const scene::MeshPointer& mesh) {
+  MeshEntry& entry = mesh_entry(mesh);
+  if (!entry.details) entry.details = std::make_shared<Details>(*mesh, this->mesh(mesh));
+  return entry.details;
+}
+
+bool DeviceCache::convex(const scene::MeshPointer& mesh) {
+  MeshEntry& entry = mesh_entry(mesh);
+  if (!entry.convex) entry.convex = scene::is_convex(*mesh);
+  return *entry.convex;
 }
 
 std::shared_ptr<DeviceMaterial> DeviceCache::material(const scene::Material& material, double grain_radius) {
   constexpr double radii_an_octave = 64.0;
-  const double radius = physics::depends_on_grain_radius(material.model)
+  const double radius = scene::traits_of(material.model).grain_radius
                             ? std::exp2(std::round(std::log2(grain_radius) * radii_an_octave) / radii_an_octave)
                             : 1.0;
   for (const MaterialEntry& entry : materials_)
     if (entry.source == material && entry.grain_radius == radius) return entry.device;
-  physics::MaterialInputs inputs = physics::material_inputs(material, radius);
+  materials_.push_back({material, radius, send(material.model, models::material_inputs(material, radius))});
+  return materials_.back().device;
+}
+
+std::shared_ptr<DeviceMaterial> DeviceCache::material(const scene::Material& material, const scene::MeshPointer& mesh,
+                                                      const glm::dmat3& stretch) {
+  for (const PrototypeEntry& entry : prototypes_)
+    if (entry.source == material && entry.mesh.lock() == mesh && is_same(entry.stretch, stretch)) return entry.device;
+  models::Prototype prototype = models::prototype_inputs(material, *mesh, stretch);
+  prototypes_.push_back({material, mesh, stretch, send(prototype.model, std::move(prototype.inputs))});
+  return prototypes_.back().device;
+}
+
+std::shared_ptr<DeviceMaterial> DeviceCache::send(scene::Model model, models::MaterialInputs inputs) {
   ++sent_.materials;
   for (const auto& [name, table] : inputs.tables) sent_.bytes += table.texels.size() * sizeof(glm::vec4);
-  auto device = std::make_shared<DeviceMaterial>(material.model, std::move(inputs));
-  materials_.push_back({material, radius, device});
-  return device;
+  for (const auto& [name, volume] : inputs.volumes) sent_.bytes += volume.texels.size() * 2;
+  return std::make_shared<DeviceMaterial>(model, std::move(inputs));
 }
 
 void DeviceCache::prune() {
   std::erase_if(meshes_, [](const auto& entry) { return entry.second.source.expired(); });
   std::erase_if(materials_, [](const MaterialEntry& entry) { return entry.device.use_count() == 1; });
+  std::erase_if(prototypes_, [](const PrototypeEntry& entry) { return entry.device.use_count() == 1; });
 }
 
-const gl::Program& DeviceCache::surface_program() {
-  return program("surface", gl::ShaderSource({"passes/surface.vert"}, {}),
+const gl::Program& DeviceCache::surface_program(bool instanced) {
+  const std::string vertex = instanced ? "instanced_surface" : "surface";
+  return program(vertex, gl::ShaderSource({"passes/" + vertex + ".vert"}, {}),
                  gl::ShaderSource({"passes/surface.frag"}, {}));
+}
+
+const gl::Program& DeviceCache::shadow_program(bool instanced) {
+  const std::string vertex = instanced ? "instanced_shadow" : "shadow";
+  return program(vertex, gl::ShaderSource({"passes/" + vertex + ".vert"}, {}),
+                 gl::ShaderSource({"passes/shadow.frag"}, {}));
 }
 
 const gl::Program& DeviceCache::light_map_program(bool tessellated) {
@@ -79,13 +141,18 @@ const gl::Program& DeviceCache::count_program() {
   return program("count", gl::ShaderSource({"passes/bake.vert"}, {}), gl::ShaderSource({"passes/count.frag"}, {}));
 }
 
-const gl::Program& DeviceCache::shading(const DeviceMaterial& material, Shading shading) {
+const gl::Program& DeviceCache::shading(const DeviceMaterial& material, const Shading& shading) {
   const std::string model(scene::model_names[static_cast<std::size_t>(material.model())]);
-  const std::string pass = shading == Shading::unwrapped ? "bake" : "shade";
-  const std::string vertex = shading == Shading::unwrapped ? "passes/bake.vert" : "passes/full_screen.vert";
-  return program(fmt::format("{} {} {}", pass, model, fmt::join(material.defines(), " ")),
-                 gl::ShaderSource({vertex}, {}),
-                 gl::ShaderSource({"passes/" + pass + ".frag", "models/" + model + ".glsl"}, material.defines()));
+  const std::string pass = shading.unwrapped ? "bake" : "shade";
+  const std::string vertex = shading.unwrapped ? "passes/bake.vert" : "passes/full_screen.vert";
+  std::vector<std::string> defines = material.defines();
+  if (material.light_maps()) defines.emplace_back("LIGHT_MAPS");
+  if (scene::traits_of(material.model()).mesh) defines.emplace_back("WHOLE_GRAIN");
+  if (shading.instanced) defines.emplace_back("INSTANCED");
+  if (shading.shadows) defines.emplace_back("SHADOWS");
+  if (shading.lights_at_place) defines.emplace_back("LIGHTS_AT_PLACE");
+  return program(fmt::format("{} {} {}", pass, model, fmt::join(defines, " ")), gl::ShaderSource({vertex}, {}),
+                 gl::ShaderSource({"passes/" + pass + ".frag", "models/" + model + ".glsl"}, defines));
 }
 
 const gl::Program& DeviceCache::program(const std::string& name, const gl::ShaderSource& vertex,

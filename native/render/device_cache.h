@@ -2,26 +2,35 @@
 #pragma once
 
 #include <cstddef>
+#include <glm/mat3x3.hpp>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "gl/program.h"
 #include "gl/texture.h"
 #include "gl/vertex_array.h"
-#include "physics/material_inputs.h"
+#include "gl/volume.h"
+#include "models/material_inputs.h"
+#include "render/details.h"
 #include "scene/scene.h"
 
 namespace mesograin::render {
 
-/// How a surface gets onto its target: as the camera sees it, or unwrapped at its UVs.
-enum class Shading { seen, unwrapped };
+/// What a shading program is compiled for beside its material.
+struct Shading {
+  bool unwrapped = false;        ///< at its UVs; else as the camera sees it
+  bool instanced = false;        ///< one of an array of instances
+  bool shadows = false;          ///< something may stand in the light
+  bool lights_at_place = false;  ///< the place that is shaded draws its own directions of lights that have a place
+};
 
 /// A material ready to draw with: what its programs are made of, and the uniforms and tables that they read.
 class DeviceMaterial {
  public:
-  DeviceMaterial(scene::Model model, physics::MaterialInputs inputs);
+  DeviceMaterial(scene::Model model, models::MaterialInputs inputs);
 
   scene::Model model() const { return model_; }
   const std::vector<std::string>& defines() const { return defines_; }
@@ -35,8 +44,9 @@ class DeviceMaterial {
  private:
   scene::Model model_;
   std::vector<std::string> defines_;
-  std::map<std::string, physics::UniformValue> uniforms_;
+  std::map<std::string, models::UniformValue> uniforms_;
   std::map<std::string, gl::Texture> tables_;
+  std::map<std::string, gl::Volume> volumes_;
   bool light_maps_;
 };
 
@@ -53,14 +63,27 @@ class DeviceCache {
  public:
   std::shared_ptr<gl::VertexArray> mesh(const scene::MeshPointer& mesh);
 
-  /// `grain_radius` as in physics::material_inputs; materials are shared by grains within half a percent.
+  /// Its levels of detail, the mesh itself among them.
+  std::shared_ptr<Details> details(const scene::MeshPointer& mesh);
+
+  /// As scene::is_convex, found once.
+  bool convex(const scene::MeshPointer& mesh);
+
+  /// `grain_radius` as in models::material_inputs; materials are shared by grains within half a percent.
   std::shared_ptr<DeviceMaterial> material(const scene::Material& material, double grain_radius);
 
-  /// The program that shades with a material; compiled on first use.
-  const gl::Program& shading(const DeviceMaterial& material, Shading shading);
+  /// For a model that depends on the mesh, which `stretch` stretches; see models::prototype_inputs.
+  std::shared_ptr<DeviceMaterial> material(const scene::Material& material, const scene::MeshPointer& mesh,
+                                           const glm::dmat3& stretch);
 
-  /// The program that finds what the camera sees of a mesh, for `shading` to shade.
-  const gl::Program& surface_program();
+  /// The program that shades with a material; compiled on first use.
+  const gl::Program& shading(const DeviceMaterial& material, const Shading& shading);
+
+  /// The program that finds what the camera sees of a mesh, or of instances, for `shading` to shade.
+  const gl::Program& surface_program(bool instanced);
+
+  /// The program that draws a shadow map.
+  const gl::Program& shadow_program(bool instanced);
 
   /// The program that draws a light map, of triangles or of patches; compiled when the first material needs one.
   const gl::Program& light_map_program(bool tessellated);
@@ -77,18 +100,32 @@ class DeviceCache {
   struct MeshEntry {
     std::weak_ptr<const scene::Mesh> source;
     std::shared_ptr<gl::VertexArray> device;
+    std::shared_ptr<Details> details;
+    std::optional<bool> convex;
   };
+  MeshEntry& mesh_entry(const scene::MeshPointer& mesh);
+
   struct MaterialEntry {
     scene::Material source;
     double grain_radius;
     std::shared_ptr<DeviceMaterial> device;
   };
 
+  struct PrototypeEntry {
+    scene::Material source;
+    std::weak_ptr<const scene::Mesh> mesh;
+    glm::dmat3 stretch;
+    std::shared_ptr<DeviceMaterial> device;
+  };
+
+  std::shared_ptr<DeviceMaterial> send(scene::Model model, models::MaterialInputs inputs);
+
   const gl::Program& program(const std::string& name, const std::vector<gl::Stage>& stages);
   const gl::Program& program(const std::string& name, const gl::ShaderSource& vertex, const gl::ShaderSource& fragment);
 
   std::map<const scene::Mesh*, MeshEntry> meshes_;
   std::vector<MaterialEntry> materials_;
+  std::vector<PrototypeEntry> prototypes_;
   std::map<std::string, std::unique_ptr<gl::Program>> programs_;
   Sent sent_;
 };

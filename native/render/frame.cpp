@@ -2,6 +2,7 @@
 #include "render/frame.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -11,33 +12,23 @@
 #include <glm/vector_relational.hpp>
 #include <utility>
 
+#include "base/error.h"
 #include "render/sequence.h"
-#include "scene/error.h"
 
 namespace mesograin::render {
 namespace {
 
-// How many draws the stencil's bits tell apart, beside no draw.
-constexpr GLuint stencil_bits = 0xFF;
-constexpr std::size_t most_in_stencil = stencil_bits;
+// Texels on a side of a shadow map.
+constexpr int least_shadow_resolution = 256;
+constexpr int most_shadow_resolution = 2048;
 
-struct DeviceLight {
-  glm::vec4 to_light;
+struct DeviceDirection {
+  glm::vec4 to_light;  // w: angle
   glm::vec4 irradiance;
 };
 
-// A direction uniformly distributed over the cone of full angle `angle` around `axis`.
-glm::dvec3 sample_cone(const glm::dvec3& axis, double angle, const glm::dvec2& point) {
-  constexpr double two_pi = 6.28318530717958647692;
-  const double half_sine = std::sin(angle / 4.0);
-  const double one_minus_cosine = point.x * 2.0 * half_sine * half_sine;
-  const double sine = std::sqrt(one_minus_cosine * (2.0 - one_minus_cosine));
-  const glm::dvec3 helper = std::abs(axis.x) < 0.5 ? glm::dvec3(1.0, 0.0, 0.0) : glm::dvec3(0.0, 1.0, 0.0);
-  const glm::dvec3 tangent = glm::normalize(glm::cross(axis, helper));
-  const glm::dvec3 bitangent = glm::cross(axis, tangent);
-  const double azimuth = two_pi * point.y;
-  return (1.0 - one_minus_cosine) * axis + sine * (std::cos(azimuth) * tangent + std::sin(azimuth) * bitangent);
-}
+// How many directions of the world light one sample; where each costs a grain its own light map, one.
+constexpr int most_world_directions = 4;
 
 }  // namespace
 
@@ -60,97 +51,58 @@ Frame::Frame(DeviceCache& cache, int width, int height, std::uint32_t seed)
       accumulate_program_("accumulate", gl::ShaderSource({"passes/full_screen.vert"}, {}),
                           gl::ShaderSource({"passes/accumulate.frag"}, {})),
       resolve_program_("resolve", gl::ShaderSource({"passes/full_screen.vert"}, {}),
-                       gl::ShaderSource({"passes/resolve.frag"}, {})) {}
+                       gl::ShaderSource({"passes/resolve.frag"}, {})),
+      background_program_("background", gl::ShaderSource({"passes/full_screen.vert"}, {}),
+                          gl::ShaderSource({"passes/background.frag"}, {})) {}
 
 void Frame::resize(int width, int height) {
   if (width == width_ && height == height_) return;
   targets_ = std::make_unique<Targets>(width, height);
   width_ = width;
   height_ = height;
+  selection_.reset();
+  if (!bake_) receivers_.clear();
   samples_ = 0;
 }
 
-glm::dmat4 Frame::Draw::object_to_grain() const {
-  glm::dmat4 matrix = object_to_world;
-  matrix[3] -= glm::dvec4(centre, 0.0);
-  return matrix;
-}
-
-Frame::Draw Frame::make_draw(const scene::Instance& instance, std::size_t index) {
-  const glm::dvec3 lower(instance.mesh->lower());
-  const glm::dvec3 upper(instance.mesh->upper());
-  const glm::dmat3 linear(instance.object_to_world);
-  const glm::dvec3 half = 0.5 * (upper - lower);
-  Draw draw;
-  draw.instance = index;
-  draw.source = instance.mesh;
-  draw.mesh = cache_.mesh(instance.mesh);
-  draw.object_to_world = instance.object_to_world;
-  draw.centre = glm::dvec3(instance.object_to_world * glm::dvec4(0.5 * (lower + upper), 1.0));
-  draw.radius = glm::length(
-      glm::dvec3(glm::length(linear[0] * half.x), glm::length(linear[1] * half.y), glm::length(linear[2] * half.z)));
-  const glm::dmat3 squared = glm::transpose(linear) * linear;
-  double stretch_squared = 0.0;  // a bound, exact for rotations, scales and mirrors
-  for (int row = 0; row < 3; ++row)
-    stretch_squared =
-        std::max(stretch_squared, std::abs(squared[0][row]) + std::abs(squared[1][row]) + std::abs(squared[2][row]));
-  draw.reach = instance.mesh->reach() * std::sqrt(stretch_squared);
-  const scene::Material& material = instance.material;
-  // The cube root takes a mirrored or stretched grain for the one of the same volume.
-  draw.material = cache_.material(
-      material, std::max(instance.mesh->equivalent_radius() * std::cbrt(std::abs(glm::determinant(linear))), 1e-30));
-  draw.program = &cache_.shading(*draw.material, Shading::seen);
-  const glm::dvec3 reduced = material.scale * (material.sigma_a + (1.0 - material.g) * material.sigma_s);
-  draw.mean_free_paths_across = 2.0 * draw.radius * std::max({reduced.r, reduced.g, reduced.b});
-  if (draw.material->light_maps()) draw.light_maps = take_light_maps(draw);
-  return draw;
-}
-
-glm::dmat4 Frame::object_to_clip(const Draw& draw) const {
-  return camera_.camera_to_clip * (camera_.world_to_camera * draw.object_to_world);
-}
-
-std::unique_ptr<LightMaps> Frame::take_light_maps(const Draw& wanted) {
-  // Maps as fine as another material needed them would show this one as it was never drawn by itself.
-  const auto least = [](const Draw& draw) { return light_map_resolution(0.0, draw.mean_free_paths_across); };
-  const glm::dmat4 object_to_grain = wanted.object_to_grain();
-  for (Draw& draw : draws_)
-    if (draw.light_maps && draw.light_maps->are_of(wanted.source, object_to_grain) && least(draw) == least(wanted))
-      return std::move(draw.light_maps);
-  return std::make_unique<LightMaps>(wanted.source, object_to_grain);
-}
-
 void Frame::set_scene(scene::Scene scene) {
-  std::vector<Draw> draws;
-  for (const scene::Instance& instance : scene.instances) draws.push_back(make_draw(instance, draws.size()));
-  // Neighbours that share a material need it bound once.
-  std::stable_sort(draws.begin(), draws.end(),
-                   [](const Draw& a, const Draw& b) { return a.material.get() < b.material.get(); });
-  draws_ = std::move(draws);
-  lights_ = std::move(scene.lights);
+  content_ = std::make_unique<Content>(cache_, scene, std::move(*content_));
+  lighting_.set(scene);
+  scene_ = std::move(scene);
+  baked_.clear();
   bake_.reset();
+  selection_.reset();
+  receivers_.clear();
   samples_ = 0;
   cache_.prune();
 }
 
 void Frame::set_camera(const scene::Camera& camera) {
   camera_ = camera;
+  selection_.reset();
+  if (!bake_) receivers_.clear();
   samples_ = 0;
 }
 
 void Frame::set_bake(const Bake& bake) {
   if (bake.instances.empty()) throw Error("A bake needs at least one instance; got none.");
-  std::vector<const gl::Program*> programs(draws_.size(), nullptr);
   for (const std::size_t instance : bake.instances) {
-    const auto draw =
-        std::find_if(draws_.begin(), draws_.end(), [&](const Draw& each) { return each.instance == instance; });
-    if (draw == draws_.end())
-      throw Error("A bake's instances must be among the scene's {}, counted from 0; got {}.", draws_.size(), instance);
-    if (draw->source->uvs().empty())
+    if (instance >= scene_.instances.size())
+      throw Error("A bake's instances must be among the scene's {}, counted from 0; got {}.", scene_.instances.size(),
+                  instance);
+    if (scene_.instances[instance].mesh->uvs().empty())
       throw Error("Baking needs UVs, and the mesh of instance {} has none: unwrap it first.", instance);
-    programs[static_cast<std::size_t>(draw - draws_.begin())] = &cache_.shading(*draw->material, Shading::unwrapped);
   }
-  for (std::size_t i = 0; i < draws_.size(); ++i) draws_[i].program = programs[i];
+  content_ = std::make_unique<Content>(cache_, scene_, std::move(*content_), bake.instances);
+  baked_.clear();
+  receivers_.clear();
+  selection_.reset();
+  for (const std::size_t instance : bake.instances) {
+    const std::size_t index = content_->draw_of(instance);
+    const Draw& draw = content_->draws()[index];
+    baked_.push_back({index, &cache_.shading(*draw.material, shading(*draw.material, true, false))});
+    receivers_.grains.push_back(content_->receiver(content_->number(index)).ball);
+  }
   bake_ = bake.view_from;
   samples_ = 0;
 }
@@ -168,8 +120,8 @@ UvUse Frame::uv_use() {
   program.set("jitter", glm::vec2(0.0F));
   UvUse use;
   const auto outside = [](const glm::vec2& uv) { return glm::any(glm::notEqual(uv, glm::clamp(uv, 0.0F, 1.0F))); };
-  for (const Draw& draw : draws_) {
-    if (draw.program == nullptr) continue;
+  for (const Baked& baked : baked_) {
+    const Draw& draw = content_->draws()[baked.draw];
     draw.mesh->draw();
     const std::vector<glm::vec2>& uvs = draw.source->uvs();
     for (const glm::uvec3& triangle : draw.source->triangles())
@@ -189,106 +141,145 @@ void Frame::set_taps(int taps) {
   samples_ = 0;
 }
 
-void Frame::add_sample() {
-  const std::vector<glm::dvec3> to_light = sample_light_directions();
+bool Frame::add_sample(const GoOn& go_on) {
+  if (content_->instances() != nullptr && !selection_)
+    selection_ = std::make_unique<DeviceSelection>(
+        content_->instances()->select(anchor_to_clip(*content_, camera_), width_, height_));
+  const std::vector<Draw>& draws = content_->draws();
+  const bool own_maps =
+      std::any_of(draws.begin(), draws.end(), [](const Draw& draw) { return draw.light_maps != nullptr; });
+  sampled_lights_ = lighting_.sample(static_cast<std::uint32_t>(samples_), seed_, own_maps ? 1 : most_world_directions);
   light_map_timer_.start();
-  update_light_maps(to_light);
+  if (!update_light_maps(go_on)) return false;
   light_map_timer_.stop();
   shade_timer_.start();
-  shade(to_light);
+  if (!shade(go_on)) return false;
   shade_timer_.stop();
   accumulate_timer_.start();
   accumulate();
   accumulate_timer_.stop();
   timed_ = true;
   ++samples_;
-}
-
-std::vector<glm::dvec3> Frame::sample_light_directions() const {
-  std::vector<glm::dvec3> directions;
-  for (std::size_t i = 0; i < lights_.size(); ++i) {
-    const scene::DirectionalLight& light = lights_[i];
-    glm::dvec3 to_light = glm::normalize(light.direction_to_light);
-    if (light.angle > 0.0) {
-      const glm::dvec2 offset = seeded_offset(seed_ + 0x10000U + static_cast<std::uint32_t>(i));
-      to_light = sample_cone(to_light, light.angle, r4_point(static_cast<std::uint32_t>(samples_), offset));
-    }
-    directions.push_back(to_light);
-  }
-  return directions;
+  return true;
 }
 
 double Frame::pixels_across(const Draw& draw) const {
-  const double largest = std::max(width_, height_);
-  if (bake_) return largest;
-  const glm::dvec4 centre = camera_.world_to_camera * glm::dvec4(draw.centre, 1.0);
-  // w of a point at the centre's depth; a grain that the camera is inside of counts as filling the picture.
-  const double w = camera_.camera_to_clip[2][3] * centre.z + camera_.camera_to_clip[3][3];
-  if (w <= 0.0) return largest;
-  const double half_image = draw.radius / w;
-  return std::min(largest, std::max(half_image * std::abs(camera_.camera_to_clip[0][0]) * width_,
-                                    half_image * std::abs(camera_.camera_to_clip[1][1]) * height_));
+  return bake_ ? std::max(width_, height_) : draw.pixels_across(camera_, width_, height_);
 }
 
-void Frame::update_light_maps(const std::vector<glm::dvec3>& to_light) {
+bool Frame::update_light_maps(const GoOn& go_on) {
   light_maps_drawn_ = 0;
   const auto program = [this](bool tessellated) -> const gl::Program& { return cache_.light_map_program(tessellated); };
-  for (const Draw& draw : draws_) {
-    if (!draw.light_maps || draw.program == nullptr) continue;
+  // So that what was asked for is drawn before it is asked whether to go on.
+  const auto drawn = [&](int maps) {
+    light_maps_drawn_ += maps;
+    if (maps > 0) glFinish();
+    return go_on();
+  };
+  const auto update = [&](Draw& draw) {
+    if (!draw.light_maps) return true;
     const int resolution = light_map_resolution(pixels_across(draw), draw.mean_free_paths_across);
-    light_maps_drawn_ += draw.light_maps->update(*draw.mesh, program, to_light, resolution);
+    std::vector<glm::dvec3> to_light;
+    for (const LightDirection& light : lighting_.at(sampled_lights_, draw.centre)) to_light.push_back(light.to_light);
+    return drawn(draw.light_maps->update(*draw.mesh, program, to_light, resolution));
+  };
+  if (bake_)
+    return std::all_of(baked_.begin(), baked_.end(),
+                       [&](const Baked& baked) { return update(content_->draws()[baked.draw]); });
+  for (Draw& draw : content_->draws())
+    if (!update(draw)) return false;
+
+  Instances* instances = content_->instances();
+  if (instances == nullptr) return true;
+  std::vector<glm::dvec3> to_light;
+  for (const LightDirection& light : sampled_lights_.distant) to_light.push_back(light.to_light);
+  for (std::size_t i = 0; i < instances->prototypes().size(); ++i) {
+    Prototype& prototype = instances->prototypes()[i];
+    if (!prototype.light_maps) continue;
+    double mean_free_paths = 0.0;
+    for (const InstanceGroup& group : instances->groups())
+      if (group.prototype == i) mean_free_paths = std::max(mean_free_paths, group.mean_free_paths_across);
+    const int resolution = light_map_resolution(selection_->selection.largest_pixels_across, mean_free_paths);
+    LightMapDirections directions = instances->light_directions(i, to_light);
+    // A light amid the heap meets its grains from everywhere.
+    if (lighting_.any_local()) directions.ask_for_all();
+    prototype.light_maps->update(prototype.details->mesh(0), program, directions, resolution, [&] { return drawn(1); });
+    if (!go_on()) return false;
   }
+  return true;
 }
 
-void Frame::shade(const std::vector<glm::dvec3>& to_light) {
-  targets_->shade.bind();
-  targets_->shade.clear();
-  glDisable(GL_BLEND);
+bool Frame::update_shadow_maps(const GoOn& go_on) {
+  const std::vector<ShadowEye> eyes = lighting_.eyes(sampled_lights_, content_->anchor());
+  shadows_drawn_ = content_->shadows() && !eyes.empty();
+  if (!shadows_drawn_) return true;
+  shadow_timer_.start();
+  if (receivers_.empty())
+    receivers_ = receivers(targets_->surfaces, width_, height_,
+                           [this](std::size_t number) { return content_->receiver(number); });
+  // About a texel a pixel: the jitter makes them finer with every sample.
+  const int resolution = std::clamp(static_cast<int>(std::bit_ceil(static_cast<unsigned>(std::max(width_, height_)))),
+                                    least_shadow_resolution, most_shadow_resolution);
+  const glm::dvec2 jitter = r2_point(static_cast<std::uint32_t>(samples_), seeded_offset(seed_ + 0x20000U));
+  const auto draw = [&](const glm::dmat4& to_clip, const ShadowEye& eye) {
+    std::unique_ptr<DeviceSelection> casters;
+    if (const Instances* instances = content_->instances())
+      casters = std::make_unique<DeviceSelection>(instances->select(to_clip, resolution, resolution));
+    return draw_casters(cache_, *content_, casters.get(), to_clip, eye, go_on);
+  };
+  const bool whole =
+      shadow_maps_.update(eyes, receivers_, content_->bounds(), content_->over_ground(), resolution, jitter, draw);
+  shadow_timer_.stop();
+  return whole;
+}
 
+bool Frame::shade(const GoOn& go_on) {
   // Uniform over the pixel: the box filter, one pixel wide.
   const glm::dvec2 point = r2_point(static_cast<std::uint32_t>(samples_), seeded_offset(seed_));
   const glm::vec2 jitter((2.0 * point - 1.0) / glm::dvec2(width_, height_));
-  std::vector<DeviceLight> device_lights;
-  for (std::size_t i = 0; i < lights_.size(); ++i)
-    device_lights.push_back({glm::vec4(to_light[i], lights_[i].angle), glm::vec4(lights_[i].irradiance, 0.0)});
-  const gl::Buffer lights(device_lights);
-  lights.bind_storage(0);
-
   if (bake_) {
+    if (!update_shadow_maps(go_on)) return false;
+    targets_->shade.bind();
+    targets_->shade.clear();
+    glDisable(GL_BLEND);
     shade_unwrapped(jitter);
-    return;
+    return true;
   }
-  for (std::size_t first = 0; first < draws_.size(); first += most_in_stencil) {
-    draw_surfaces(first, jitter);
+  const Instances* instances = content_->instances();
+  const std::size_t units = (instances != nullptr ? instances->groups().size() : 0) + content_->draws().size();
+  for (std::size_t first = 0; first < units || first == 0; first += most_in_stencil) {
+    targets_->surfaces.bind();
+    glDisable(GL_BLEND);
+    if (first == 0)
+      targets_->surfaces.clear();
+    else
+      targets_->surfaces.clear_depth();
+    if (!draw_surfaces(cache_, *content_, selection_.get(), camera_, jitter, first, go_on)) return false;
+    if (first == 0) {
+      if (!update_shadow_maps(go_on)) return false;
+      targets_->shade.bind();
+      targets_->shade.clear_colour();
+      glDisable(GL_BLEND);
+      if (lighting_.world().seen) draw_background(jitter);
+    }
+    glDisable(GL_BLEND);
     shade_surfaces(first);
   }
+  return true;
 }
 
-void Frame::draw_surfaces(std::size_t first, const glm::vec2& jitter) {
-  targets_->surfaces.bind();
-  targets_->surfaces.clear_depth();
-  glEnable(GL_DEPTH_TEST);
-  glDepthFunc(GL_LESS);
-  glEnable(GL_STENCIL_TEST);
-  glStencilOp(GL_KEEP, GL_KEEP, GL_REPLACE);
-  const gl::Program& program = cache_.surface_program();
-  program.use();
-  program.set("jitter", jitter);
-  for (std::size_t i = 0; i < draws_.size(); ++i) {
-    const Draw& draw = draws_[i];
-    const bool told = i >= first && i - first < most_in_stencil;
-    glStencilFunc(GL_ALWAYS, told ? static_cast<GLint>(i - first + 1) : 0, stencil_bits);
-    const glm::dmat4 object_to_grain = draw.object_to_grain();
-    const glm::dmat3 linear(object_to_grain);
-    program.set("object_to_clip", glm::mat4(object_to_clip(draw)));
-    program.set("object_to_grain", glm::mat4(object_to_grain));
-    program.set("normal_to_grain", glm::mat3(glm::transpose(glm::inverse(linear))));
-    const glm::dmat3 to_camera = glm::dmat3(camera_.world_to_camera) * linear;
-    glFrontFace(glm::determinant(to_camera) < 0.0 ? GL_CW : GL_CCW);
-    draw.mesh->draw();
-  }
-  glDisable(GL_STENCIL_TEST);
+void Frame::draw_background(const glm::vec2& jitter) {
   glDisable(GL_DEPTH_TEST);
+  background_program_.use();
+  const glm::dmat4 world_to_clip = camera_.camera_to_clip * glm::dmat4(glm::dmat3(camera_.world_to_camera));
+  background_program_.set("clip_to_world", glm::mat4(glm::inverse(world_to_clip)));
+  background_program_.set("jitter", jitter);
+  background_program_.set("size", glm::vec2(width_, height_));
+  background_program_.set("world_radiance", glm::vec3(lighting_.world().radiance));
+  background_program_.set("has_image", static_cast<int>(lighting_.world_image() != nullptr));
+  background_program_.set("world_to_image", glm::mat3(lighting_.world().world_to_image));
+  if (lighting_.world_image() != nullptr) background_program_.set("world_image", *lighting_.world_image());
+  full_screen_.draw();
 }
 
 void Frame::shade_surfaces(std::size_t first) {
@@ -297,13 +288,27 @@ void Frame::shade_surfaces(std::size_t first) {
   glStencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
   glEnable(GL_SCISSOR_TEST);
   glFrontFace(GL_CCW);
-  for (std::size_t i = first; i < std::min(first + most_in_stencil, draws_.size()); ++i) {
-    const Draw& draw = draws_[i];
-    set_shading(draw);
-    draw.program->set("surface_position", targets_->position);
-    draw.program->set("surface_normal", targets_->normal);
-    glStencilFunc(GL_EQUAL, static_cast<GLint>(i - first + 1), stencil_bits);
-    confine_to(draw);
+  const Instances* instances = content_->instances();
+  const std::size_t groups = instances != nullptr ? instances->groups().size() : 0;
+  const std::size_t units = groups + content_->draws().size();
+  for (std::size_t i = first; i < std::min(first + most_in_stencil, units); ++i) {
+    const bool instanced = i < groups;
+    const DeviceMaterial& material =
+        instanced ? *instances->groups()[i].material : *content_->draws()[i - groups].material;
+    const gl::Program& program = cache_.shading(material, shading(material, false, instanced));
+    material.bind(program);
+    set_common(program);
+    if (instanced) {
+      set_group(program, instances->groups()[i]);
+      glScissor(0, 0, width_, height_);
+    } else {
+      const Draw& draw = content_->draws()[i - groups];
+      set_draw(program, draw);
+      confine_to(draw);
+    }
+    program.set("surface_position", targets_->position);
+    program.set("surface_normal", targets_->normal);
+    glStencilFunc(GL_EQUAL, static_cast<GLint>(i - first + 1), most_in_stencil);
     full_screen_.draw();
   }
   glDisable(GL_SCISSOR_TEST);
@@ -313,36 +318,91 @@ void Frame::shade_surfaces(std::size_t first) {
 void Frame::shade_unwrapped(const glm::vec2& jitter) {
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_LESS);
-  for (const Draw& draw : draws_) {
-    if (draw.program == nullptr) continue;
-    set_shading(draw);
+  for (const Baked& baked : baked_) {
+    const Draw& draw = content_->draws()[baked.draw];
+    const gl::Program& program = *baked.program;
+    draw.material->bind(program);
+    set_common(program);
+    set_draw(program, draw);
     const glm::dmat4 object_to_grain = draw.object_to_grain();
-    draw.program->set("jitter", jitter);
-    draw.program->set("from_camera", static_cast<int>(bake_ == ViewFrom::active_camera));
-    draw.program->set("object_to_grain", glm::mat4(object_to_grain));
-    draw.program->set("normal_to_grain", glm::mat3(glm::transpose(glm::inverse(glm::dmat3(object_to_grain)))));
+    program.set("jitter", jitter);
+    program.set("from_camera", static_cast<int>(bake_ == ViewFrom::active_camera));
+    program.set("instance", static_cast<int>(content_->number(baked.draw)));
+    program.set("object_to_grain", glm::mat4(object_to_grain));
+    program.set("normal_to_grain", glm::mat3(glm::transpose(glm::inverse(glm::dmat3(object_to_grain)))));
     draw.mesh->draw();
   }
   glDisable(GL_DEPTH_TEST);
 }
 
-void Frame::set_shading(const Draw& draw) const {
-  const gl::Program& program = *draw.program;
-  draw.material->bind(program);
-  if (draw.light_maps) draw.light_maps->bind(program);
-  program.set("light_count", static_cast<int>(lights_.size()));
+Shading Frame::shading(const DeviceMaterial& material, bool unwrapped, bool instanced) const {
+  return {unwrapped, instanced, content_->shadows(), lights_at_place(material, instanced)};
+}
+
+bool Frame::lights_at_place(const DeviceMaterial& material, bool instanced) const {
+  return lighting_.any_local() && (instanced || !material.light_maps());
+}
+
+void Frame::set_lights(const gl::Program& program, const std::vector<LightDirection>& directions,
+                       const glm::dvec3& origin) {
+  std::vector<DeviceDirection> device;
+  device.reserve(directions.size());
+  for (const LightDirection& light : directions)
+    device.push_back({glm::vec4(light.to_light, light.angle), glm::vec4(light.irradiance, 0.0)});
+  device_directions_.emplace(device);
+  device_directions_->bind_storage(0);
+  program.set("light_count", static_cast<int>(device.size()));
+  if (!lighting_.any_local()) return;
+  device_lights_.emplace(lighting_.device_local(origin));
+  device_lights_->bind_storage(6);
+  const std::vector<glm::vec2> randoms(sampled_lights_.randoms.begin(), sampled_lights_.randoms.end());
+  device_randoms_.emplace(randoms);
+  device_randoms_->bind_storage(7);
+  program.set("local_light_count", static_cast<int>(randoms.size()));
+  program.set("distant_light_count", static_cast<int>(sampled_lights_.distant.size()));
+}
+
+void Frame::set_common(const gl::Program& program) const {
   program.set("sample_index", samples_);
   program.set("taps", taps_);
-  program.set("grain_reach", static_cast<float>(draw.reach));
+  if (shadows_drawn_) shadow_maps_.bind(program);
+}
+
+void Frame::set_viewer(const gl::Program& program, const glm::dvec3& origin) const {
   const glm::dmat4 camera_to_world = glm::inverse(camera_.world_to_camera);
   // A perspective projection takes its w from depth; an orthographic one is affine and sees along one direction.
   const bool orthographic = camera_.camera_to_clip[2][3] == 0.0;
   program.set("viewer", orthographic ? glm::vec4(glm::normalize(glm::dvec3(camera_to_world[2])), 0.0)
-                                     : glm::vec4(glm::dvec3(camera_to_world[3]) - draw.centre, 1.0));
+                                     : glm::vec4(glm::dvec3(camera_to_world[3]) - origin, 1.0));
+}
+
+void Frame::set_draw(const gl::Program& program, const Draw& draw) {
+  const bool at_place = lights_at_place(*draw.material, false);
+  set_lights(program, at_place ? sampled_lights_.distant : lighting_.at(sampled_lights_, draw.centre), draw.centre);
+  if (draw.light_maps) draw.light_maps->bind(program);
+  program.set("grain_reach", static_cast<float>(draw.reach));
+  program.set("grain_to_prototype", glm::mat3(draw.grain_to_prototype));
+  program.set("place_of_grain", glm::vec3(draw.centre - content_->anchor()));
+  program.set("object_number",
+              static_cast<int>(content_->object_number(static_cast<std::size_t>(&draw - content_->draws().data()))));
+  program.set("shades_itself", static_cast<int>(content_->shades_itself(draw)));
+  set_viewer(program, draw.centre);
+}
+
+void Frame::set_group(const gl::Program& program, const InstanceGroup& group) {
+  set_lights(program, sampled_lights_.distant, content_->anchor());
+  const Instances& instances = *content_->instances();
+  const Prototype& prototype = instances.prototypes()[group.prototype];
+  instances.bind();
+  if (group.material->light_maps()) prototype.light_maps->bind(program);
+  program.set("typical_scale", static_cast<float>(group.typical_scale));
+  program.set("grain_reach", static_cast<float>(prototype.mesh->reach() * group.typical_scale));
+  program.set("shades_itself", static_cast<int>(!group.material->light_maps() && !cache_.convex(prototype.mesh)));
+  set_viewer(program, content_->anchor());
 }
 
 void Frame::confine_to(const Draw& draw) const {
-  const glm::dmat4 to_clip = object_to_clip(draw);
+  const glm::dmat4 to_clip = camera_.camera_to_clip * (camera_.world_to_camera * draw.object_to_world);
   const glm::dvec2 size(width_, height_);
   glm::dvec2 lower = size;
   glm::dvec2 upper(0.0);
@@ -397,7 +457,10 @@ std::vector<PassTiming> Frame::timings() const {
   if (!timed_) return {};
   std::vector<PassTiming> passes;
   if (light_maps_drawn_ > 0) passes.push_back({"light_maps", light_map_timer_.milliseconds()});
-  passes.push_back({"shade", shade_timer_.milliseconds()});
+  // The shadows are drawn once it is known what is seen, and so amid the rest.
+  const double shadows = shadows_drawn_ ? shadow_timer_.milliseconds() : 0.0;
+  if (shadows_drawn_) passes.push_back({"shadow_maps", shadows});
+  passes.push_back({"shade", shade_timer_.milliseconds() - shadows});
   passes.push_back({"accumulate", accumulate_timer_.milliseconds()});
   return passes;
 }

@@ -1,5 +1,6 @@
-// One view's graph of passes on the device: light maps where a material needs them, shade one jittered sample, as the
-// camera sees it or unwrapped, add it to the sum, resolve the mean on demand.
+// One view's graph of passes on the device: light maps where a material needs them, what the camera sees, shadow maps
+// where something may stand in the light, shade one jittered sample, as the camera sees it or unwrapped, add it to the
+// sum, resolve the mean on demand.
 #pragma once
 
 #include <cstdint>
@@ -14,8 +15,12 @@
 #include "gl/timer.h"
 #include "gl/vertex_array.h"
 #include "render/bake.h"
+#include "render/content.h"
 #include "render/device_cache.h"
-#include "render/light_maps.h"
+#include "render/lighting.h"
+#include "render/receivers.h"
+#include "render/shadow_maps.h"
+#include "render/surfaces.h"
 #include "scene/camera.h"
 #include "scene/scene.h"
 
@@ -47,8 +52,9 @@ class Frame {
   /// Light map samples that model 3 takes for one pixel and sample, over all lights.
   void set_taps(int taps);
 
-  /// Adds one sample to the sum.
-  void add_sample();
+  /// Adds one sample to the sum. `go_on` is asked between its parts; where it says no, nothing is added, and the answer
+  /// is false.
+  bool add_sample(const GoOn& go_on);
 
   /// Waits until the device has drawn what was asked for.
   void finish() const;
@@ -73,46 +79,44 @@ class Frame {
     gl::Framebuffer shade;
     gl::Framebuffer accumulate;
   };
-  struct Draw {
-    std::size_t instance;  // which of the scene's
-    scene::MeshPointer source;
-    std::shared_ptr<gl::VertexArray> mesh;
-    std::shared_ptr<DeviceMaterial> material;
-    const gl::Program* program;  // null: not drawn
-    glm::dmat4 object_to_world;
-    glm::dvec3 centre;                      // middle of its bounds, world space
-    double radius;                          // of the sphere around its bounds
-    double reach;                           // no point is farther from the centre
-    double mean_free_paths_across;          // of the bounds' diameter, reduced, in the densest channel
-    std::unique_ptr<LightMaps> light_maps;  // only if its material reads them
-    glm::dmat4 object_to_grain() const;
+  /// What is drawn of an instance that is baked.
+  struct Baked {
+    std::size_t draw;
+    const gl::Program* program;
   };
 
-  Draw make_draw(const scene::Instance& instance, std::size_t index);
+  bool update_light_maps(const GoOn& go_on);
+  bool update_shadow_maps(const GoOn& go_on);
+  bool shade(const GoOn& go_on);
 
-  /// Those of the scene before, if they serve, so that a change elsewhere costs no light map.
-  std::unique_ptr<LightMaps> take_light_maps(const Draw& wanted);
-  void update_light_maps(const std::vector<glm::dvec3>& to_light);
-  void shade(const std::vector<glm::dvec3>& to_light);
+  /// The world, everywhere.
+  void draw_background(const glm::vec2& jitter);
 
-  /// Finds what the camera sees. The stencil tells which draw: 1 for `first`, and so on up to the last it can hold.
-  void draw_surfaces(std::size_t first, const glm::vec2& jitter);
-
-  /// Shades those of the draws that the stencil tells apart.
+  /// Shades those groups and draws that the stencil tells apart.
   void shade_surfaces(std::size_t first);
 
   /// Shades the instances that are baked, where their UVs lie.
   void shade_unwrapped(const glm::vec2& jitter);
 
   /// Makes everything ready but for the geometry.
-  void set_shading(const Draw& draw) const;
+  void set_common(const gl::Program& program) const;
+  void set_viewer(const gl::Program& program, const glm::dvec3& origin) const;
+  void set_draw(const gl::Program& program, const Draw& draw);
+  void set_group(const gl::Program& program, const InstanceGroup& group);
+
+  /// What a program is compiled for that shades this material in this scene.
+  Shading shading(const DeviceMaterial& material, bool unwrapped, bool instanced) const;
+
+  /// Whether the place that is shaded draws its own directions of the lights that have a place.
+  bool lights_at_place(const DeviceMaterial& material, bool instanced) const;
+
+  /// Sends the directions of light; places of lights are from `origin`.
+  void set_lights(const gl::Program& program, const std::vector<LightDirection>& directions, const glm::dvec3& origin);
 
   /// Draws on no pixel that the instance's bounds do not cover; everywhere if they reach behind the camera.
   void confine_to(const Draw& draw) const;
   void accumulate();
-  std::vector<glm::dvec3> sample_light_directions() const;
   double pixels_across(const Draw& draw) const;
-  glm::dmat4 object_to_clip(const Draw& draw) const;
 
   DeviceCache& cache_;
   int width_;
@@ -121,18 +125,30 @@ class Frame {
   int samples_ = 0;
   scene::Camera camera_;
   std::optional<ViewFrom> bake_;
-  std::vector<scene::DirectionalLight> lights_;
-  std::vector<Draw> draws_;
+  Lighting lighting_;
+  SampledLights sampled_lights_;  // of the sample under way
+  std::optional<gl::Buffer> device_directions_;
+  std::optional<gl::Buffer> device_lights_;
+  std::optional<gl::Buffer> device_randoms_;
+  scene::Scene scene_;
+  std::unique_ptr<Content> content_ = std::make_unique<Content>();
+  std::vector<Baked> baked_;
+  std::unique_ptr<DeviceSelection> selection_;  // for the camera; null if not known yet or without instances
+  Receivers receivers_;                         // empty if not known yet
+  ShadowMaps shadow_maps_;
   std::unique_ptr<Targets> targets_;
   gl::FullScreenTriangle full_screen_;
   gl::Program accumulate_program_;
   gl::Program resolve_program_;
+  gl::Program background_program_;
   gl::Timer light_map_timer_;
+  gl::Timer shadow_timer_;
   gl::Timer shade_timer_;
   gl::Timer accumulate_timer_;
   bool timed_ = false;
   int taps_ = default_taps;
-  int light_maps_drawn_ = 0;  // in the last sample
+  int light_maps_drawn_ = 0;    // in the last sample
+  bool shadows_drawn_ = false;  // in the last sample
 };
 
 }  // namespace mesograin::render

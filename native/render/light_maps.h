@@ -1,7 +1,6 @@
 // What each light sees of one grain, kept until the grain or the lights change.
 #pragma once
 
-#include <functional>
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
@@ -12,6 +11,7 @@
 #include "gl/program.h"
 #include "gl/texture_array.h"
 #include "gl/vertex_array.h"
+#include "render/light_map_drawing.h"
 #include "scene/mesh.h"
 
 namespace mesograin::render {
@@ -24,13 +24,10 @@ class LightMaps {
   /// Whether they were made for this mesh, turned and scaled like this; where it stands in the world plays no part.
   bool are_of(const scene::MeshPointer& mesh, const glm::dmat4& object_to_grain) const;
 
-  /// The program that draws a map, of triangles or tessellated.
-  using ProgramSource = std::function<const gl::Program&(bool tessellated)>;
-
   /// Draws the maps of all lights (unit vectors towards them) unless those at hand serve: same directions, and a
   /// resolution of at least `resolution`. Returns how many maps were drawn.
-  int update(const gl::VertexArray& device_mesh, const ProgramSource& program, const std::vector<glm::dvec3>& to_light,
-             int resolution);
+  int update(const gl::VertexArray& device_mesh, const LightMapProgram& program,
+             const std::vector<glm::dvec3>& to_light, int resolution);
 
   /// Makes them what shaders/models/light_map.glsl reads.
   void bind(const gl::Program& program) const;
@@ -41,15 +38,7 @@ class LightMaps {
   std::vector<float> read(int light) const;
 
  private:
-  struct LightSpace;
-
-  LightSpace fit(const glm::dvec3& to_light, int resolution) const;
-  void draw(const gl::VertexArray& device_mesh, const ProgramSource& program_source, const LightSpace& space, int layer,
-            const gl::Texture& depth) const;
-
-  scene::MeshPointer mesh_;
-  glm::dmat4 object_to_grain_;
-  double rise_;  // the most that the curved surface rises above the middle of an edge, in scene units
+  LightMapDrawing drawing_;
   std::vector<glm::dvec3> to_light_;
   int resolution_ = 0;
   std::optional<gl::TextureArray> maps_;

@@ -4,8 +4,8 @@
 #include <map>
 #include <utility>
 
+#include "base/error.h"
 #include "gl/context_thread.h"
-#include "scene/error.h"
 
 namespace mesograin::render {
 namespace {
@@ -89,8 +89,9 @@ std::future<void> View::start(int samples) {
   *cancelled_ = false;
   return gl::ContextThread::instance().post([id = id_, samples, done = samples_, cancelled = cancelled_] {
     Frame& target = frame(id);
-    for (int i = 0; i < samples && !*cancelled; ++i) {
-      target.add_sample();
+    const auto go_on = [&] { return !*cancelled; };
+    for (int i = 0; i < samples && go_on(); ++i) {
+      if (!target.add_sample(go_on)) break;
       // Without this the driver would queue samples faster than it draws them, and cancelling would come too late.
       target.finish();
       ++*done;

@@ -8,7 +8,7 @@
 #include <glm/matrix.hpp>
 #include <glm/trigonometric.hpp>
 
-#include "scene/error.h"
+#include "base/error.h"
 
 namespace mesograin::scene {
 namespace {

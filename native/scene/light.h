@@ -1,19 +1,20 @@
-// A sun: parallel light, or a disc of it seen under a small angle.
+// A light of any kind.
 #pragma once
 
-#include <glm/vec3.hpp>
+#include <variant>
+
+#include "scene/lights/area_light.h"
+#include "scene/lights/directional_light.h"
+#include "scene/lights/point_light.h"
+#include "scene/lights/spot_light.h"
 
 namespace mesograin::scene {
 
-struct DirectionalLight {
-  glm::dvec3 direction_to_light{0.0, 0.0, 1.0};  ///< from the scene towards the light, world space
-  glm::dvec3 irradiance{1.0};                    ///< linear RGB, on a plane that faces each point of the disc
-  double angle = 0.0;                            ///< of the sun's disc, edge to edge, radians; 0 is parallel light
+using Light = std::variant<DirectionalLight, PointLight, SpotLight, AreaLight>;
 
-  bool operator==(const DirectionalLight&) const = default;
-};
-
-/// Throws Error if the direction has no length, the irradiance is negative, or a number is not finite.
-void validate(const DirectionalLight& light);
+/// As its kind has it.
+inline void validate(const Light& light) {
+  std::visit([](const auto& kind) { validate(kind); }, light);
+}
 
 }  // namespace mesograin::scene

@@ -7,7 +7,7 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
-#include "scene/error.h"
+#include "base/error.h"
 
 namespace mesograin::scene {
 namespace {

@@ -4,19 +4,37 @@
 #include <cmath>
 #include <glm/matrix.hpp>
 
-#include "scene/error.h"
+#include "base/error.h"
 
 namespace mesograin::scene {
 
+namespace {
+
+void require_mesh(const MeshPointer& mesh) {
+  if (!mesh) throw Error("Every instance needs a mesh; one came without.");
+}
+
+void require_invertible(const glm::dmat4& object_to_world) {
+  const double volume = glm::determinant(object_to_world);
+  if (!std::isfinite(volume) || volume == 0.0)
+    throw Error("An instance's transform must be finite and invertible; its determinant is {}.", volume);
+}
+
+}  // namespace
+
 void validate(const Scene& scene) {
   for (const Instance& instance : scene.instances) {
-    if (!instance.mesh) throw Error("Every instance needs a mesh; one came without.");
+    require_mesh(instance.mesh);
     validate(instance.material);
-    const double volume = glm::determinant(instance.object_to_world);
-    if (!std::isfinite(volume) || volume == 0.0)
-      throw Error("An instance's transform must be finite and invertible; its determinant is {}.", volume);
+    require_invertible(instance.object_to_world);
   }
-  for (const DirectionalLight& light : scene.lights) validate(light);
+  for (const InstanceArray& array : scene.arrays) {
+    require_mesh(array.mesh);
+    validate(array.material);
+    for (const glm::dmat4& object_to_world : array.object_to_world()) require_invertible(object_to_world);
+  }
+  for (const Light& light : scene.lights) validate(light);
+  validate(scene.world);
 }
 
 }  // namespace mesograin::scene

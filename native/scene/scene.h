@@ -1,12 +1,15 @@
-// What is drawn: instances of meshes with a material each, and the lights on them.
+// What is drawn: instances of meshes with a material each, the lights on them and the world around them.
 #pragma once
 
 #include <glm/mat4x4.hpp>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "scene/light.h"
 #include "scene/material.h"
 #include "scene/mesh.h"
+#include "scene/world.h"
 
 namespace mesograin::scene {
 
@@ -16,12 +19,30 @@ struct Instance {
   glm::dmat4 object_to_world{1.0};
 };
 
-struct Scene {
-  std::vector<Instance> instances;
-  std::vector<DirectionalLight> lights;
+/// Many instances of one mesh and material: each is a transform and nothing else.
+class InstanceArray {
+ public:
+  InstanceArray(MeshPointer of, const Material& with, std::vector<glm::dmat4> object_to_world)
+      : mesh(std::move(of)),
+        material(with),
+        object_to_world_(std::make_shared<const std::vector<glm::dmat4>>(std::move(object_to_world))) {}
+
+  MeshPointer mesh;
+  Material material;
+  const std::vector<glm::dmat4>& object_to_world() const { return *object_to_world_; }
+
+ private:
+  std::shared_ptr<const std::vector<glm::dmat4>> object_to_world_;  // copies of a scene share them
 };
 
-/// Throws Error for the first material, light or transform that cannot be drawn.
+struct Scene {
+  std::vector<Instance> instances;
+  std::vector<Light> lights;
+  World world{};
+  std::vector<InstanceArray> arrays{};
+};
+
+/// Throws Error for the first material, light, world or transform that cannot be drawn.
 void validate(const Scene& scene);
 
 }  // namespace mesograin::scene

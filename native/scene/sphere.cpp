@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "scene/error.h"
+#include "base/error.h"
 
 namespace mesograin::scene {
 

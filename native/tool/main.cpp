@@ -9,20 +9,23 @@
 #include <exception>
 #include <filesystem>
 #include <future>
+#include <iostream>
 #include <map>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "file/file.h"
+#include "base/error.h"
+#include "base/file.h"
+#include "base/readable.h"
 #include "gl/context_thread.h"
-#include "image/exr.h"
 #include "image/margin.h"
+#include "io/exr.h"
+#include "io/scene_json.h"
 #include "render/bake.h"
 #include "render/view.h"
-#include "scene/error.h"
-#include "scene/scene_json.h"
 #include "tool/interruption.h"
 #include "tool/progress.h"
 #include "tool/provenance.h"
@@ -52,8 +55,8 @@ struct Options {
 };
 
 /// The two numbers of "400x300", or twice that of "512".
-scene::SceneChoices parse_choices(const Options& options) {
-  scene::SceneChoices choices;
+io::SceneChoices parse_choices(const Options& options) {
+  io::SceneChoices choices;
   if (!options.model.empty()) choices.model = scene::parse_model(options.model);
   if (options.size.empty()) return choices;
   const char* const end = options.size.data() + options.size.size();
@@ -84,10 +87,10 @@ void run(const Options& options) {
   const std::filesystem::path output = options.output;
   if (output.extension() != ".exr")
     throw Error("The output is OpenEXR and must end in .exr; got '{}'.", options.output);
-  const scene::SceneFile file = scene::read_scene(options.scene, parse_choices(options));
+  const io::SceneFile file = io::read_scene(options.scene, parse_choices(options));
   {
     const tool::Uninterrupted uninterrupted;
-    file::require_writable(output);
+    base::require_writable(output);
   }
 
   render::View view(file.width, file.height, options.seed);
@@ -110,7 +113,7 @@ void run(const Options& options) {
     const tool::Uninterrupted uninterrupted;
     std::map<std::string, std::string> attributes = tool::provenance(file, options.samples, options.seed, device);
     if (options.bake) attributes.merge(tool::bake_provenance(options.view_from, options.margin));
-    image::write_exr(output, picture.view(), {}, attributes);
+    io::write_exr(output, picture.view(), {}, attributes);
   }
   if (options.quiet) return;
   progress.finish();
@@ -155,7 +158,10 @@ int command(int argument_count, char** arguments) {
   try {
     app.parse(argument_count, arguments);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : exit_usage;
+    std::ostringstream complaint;
+    const int code = app.exit(error, std::cout, complaint);
+    fmt::print(stderr, "{}", base::readable(complaint.str()));
+    return code == 0 ? 0 : exit_usage;
   }
 
   tool::handle_interruptions();
@@ -163,7 +169,7 @@ int command(int argument_count, char** arguments) {
   try {
     run(options);
   } catch (const std::exception& error) {
-    fmt::print(stderr, "mesograin-render: {}\n", error.what());
+    fmt::print(stderr, "mesograin-render: {}\n", base::readable(error.what()));
     code = exit_failure;
   }
   gl::ContextThread::shut_down();

@@ -5,12 +5,12 @@
 
 namespace mesograin::tool {
 
-std::map<std::string, std::string> provenance(const scene::SceneFile& file, int samples, std::uint32_t seed,
+std::map<std::string, std::string> provenance(const io::SceneFile& file, int samples, std::uint32_t seed,
                                               const gl::DeviceInfo& device) {
   const scene::Material& material = file.scene.instances.front().material;
   return {{"mesograin:version", MESOGRAIN_VERSION},
           {"mesograin:model", std::string(scene::model_names[static_cast<std::size_t>(material.model)])},
-          {"mesograin:material", scene::to_json(material)},
+          {"mesograin:material", io::to_json(material)},
           {"mesograin:scene", file.source},
           {"mesograin:samples", std::to_string(samples)},
           {"mesograin:seed", std::to_string(seed)},

@@ -6,11 +6,11 @@
 #include <string>
 
 #include "gl/egl_context.h"
-#include "scene/scene_json.h"
+#include "io/scene_json.h"
 
 namespace mesograin::tool {
 
-std::map<std::string, std::string> provenance(const scene::SceneFile& file, int samples, std::uint32_t seed,
+std::map<std::string, std::string> provenance(const io::SceneFile& file, int samples, std::uint32_t seed,
                                               const gl::DeviceInfo& device);
 
 /// What a baked texture's header says besides.

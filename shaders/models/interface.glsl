@@ -3,15 +3,17 @@
 
 struct SurfacePoint {
   vec3 position;
-  vec3 normal;     // unit length
-  vec3 to_viewer;  // unit length; dot(normal, to_viewer) > 0
+  vec3 normal;       // unit length
+  vec3 to_viewer;    // unit length; dot(normal, to_viewer) > 0
+  vec3 on_triangle;  // the position before the surface was curved
 };
 
 struct LightSample {
   vec3 to_light;    // unit length
   vec3 irradiance;  // linear RGB, on a plane that faces the light
-  int index;        // which light this is, for its light map
+  int index;        // which light this is
   float angle;      // of the disc that to_light is drawn from, edge to edge, in radians
+  int map;          // its light map
 };
 
 // What the point and its viewer make of it, before any light.

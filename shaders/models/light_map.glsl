@@ -3,7 +3,13 @@
 // Each light has a light space: grain space turned so that z points towards the light. Its map is an orthographic
 // picture of the grain from there, so equal texels are equal projected areas: a sum over texels already holds the
 // cosine on the light's side.
+//
+// Instances of one prototype share maps, drawn in the prototype's own axes from directions all around it; of the four nearest to the light's
+// each sample takes one, so that their mean is as from between them (render::LightMapAtlas).
 #include "models/interface.glsl"
+#include "scene/grain.glsl"
+#include "scene/shadows.glsl"
+#include "models/pixel_random.glsl"
 
 struct LightFrame {
   vec3 x_axis;  // of light space, in grain space
@@ -12,12 +18,15 @@ struct LightFrame {
   vec2 centre;  // of the map
   float texel_width;
   float resolution;  // texels on a side
+  float scale;       // what the map's lengths are multiplied by
+  int light;
 };
 
 // Software renderers read a storage buffer number by number: only what cannot be told from the rest is here.
 struct StoredLightFrame {
   vec4 x_axis;  // w: texel width
   vec4 map;     // xy: centre; z: resolution
+  vec4 z_axis;  // that the map was drawn for
 };
 layout(std430, binding = 1) readonly buffer LightFrames { StoredLightFrame light_frames[]; };
 
@@ -31,11 +40,41 @@ struct LightMapTexel {
   float exit_depth;  // z of the first back face behind it
 };
 
+#ifdef INSTANCED
+// By node of the grid of directions: the layer of its map, or -1.
+layout(std430, binding = 4) readonly buffer LightMapLayers { int light_map_layers[]; };
+
+const int DIRECTIONS_SIDE = 16;  // as render::LightMapDirections::side
+
+// To [-1, 1]^2; the lower half is folded over the edges (Meyer et al., "On Floating-Point Normal Vectors", 2010).
+vec2 octahedral(vec3 direction) {
+  direction /= abs(direction.x) + abs(direction.y) + abs(direction.z);
+  vec2 signs = vec2(direction.x < 0.0 ? -1.0 : 1.0, direction.y < 0.0 ? -1.0 : 1.0);
+  return direction.z < 0.0 ? (1.0 - abs(direction.yx)) * signs : direction.xy;
+}
+
+void turn_to_light_map(inout LightSample light) {
+  vec2 place = (0.5 * octahedral(normalize(light.to_light * grain_axes)) + 0.5) * float(DIRECTIONS_SIDE - 1);
+  vec2 low = clamp(floor(place), 0.0, float(DIRECTIONS_SIDE - 2));
+  vec2 random = vec2(pcg4d(uvec4(uint(grain_instance), uint(sample_index), uint(light.index), 2u)).xy >> 8u) * (1.0 / 16777216.0);
+  ivec2 node = ivec2(low + vec2(lessThan(random, place - low)));
+  int layer = light_map_layers[node.y * DIRECTIONS_SIDE + node.x];
+  light.map = max(layer, 0);
+  light.to_light = normalize(grain_axes * light_frames[light.map].z_axis.xyz);
+}
+#endif
+
 // A light's frame, to be read once: the functions below take it from there.
 LightFrame light_frame(LightSample light) {
-  vec4 x_axis = light_frames[light.index].x_axis;
-  vec3 map = light_frames[light.index].map.xyz;
-  return LightFrame(x_axis.xyz, cross(light.to_light, x_axis.xyz), light.to_light, map.xy, x_axis.w, map.z);
+  vec4 x_axis = light_frames[light.map].x_axis;
+  vec3 map = light_frames[light.map].map.xyz;
+#ifdef INSTANCED
+  vec3 x_in_grain = normalize(grain_axes * x_axis.xyz);
+  return LightFrame(x_in_grain, cross(light.to_light, x_in_grain), light.to_light, typical_scale * map.xy, typical_scale * x_axis.w, map.z,
+                    typical_scale, light.index);
+#else
+  return LightFrame(x_axis.xyz, cross(light.to_light, x_axis.xyz), light.to_light, map.xy, x_axis.w, map.z, 1.0, light.index);
+#endif
 }
 
 vec3 to_light_space(LightFrame frame, vec3 vector) {
@@ -50,13 +89,16 @@ float light_map_tolerance(LightFrame frame, float cosine) {
   return light_map_texel_width(frame) * (1.0 + 2.0 * sqrt(max(1.0 - cosine * cosine, 0.0)) / max(cosine, 0.05));
 }
 
-LightMapTexel light_map_at(LightFrame frame, int light, vec2 xy) {
+LightMapTexel light_map_at(LightFrame frame, int map, vec2 xy) {
   vec2 in_texels = (xy - frame.centre) / frame.texel_width + 0.5 * frame.resolution;
   vec2 texel = clamp(floor(in_texels), 0.0, frame.resolution - 1.0);
-  vec4 stored = texelFetch(light_maps, ivec3(ivec2(texel), light), 0);
+  vec4 stored = texelFetch(light_maps, ivec3(ivec2(texel), map), 0);
 
   LightMapTexel result;
   result.lit = stored.x > -1e30;
+#ifdef INSTANCED
+  stored.xw *= frame.scale;
+#endif
   float height = sqrt(max(1.0 - dot(stored.yz, stored.yz), 1e-4));
   result.normal = vec3(stored.yz, height);
   // Within half a texel the surface is its tangent plane; near the silhouette that plane runs away and is cut short.
@@ -74,4 +116,14 @@ float light_map_visibility(LightFrame frame, LightMapTexel first, vec3 position,
   float above = first.lit ? max(first.position.z - position.z, 0.0) : 0.0;
   float own = light_map_tolerance(frame, first.normal.z);
   return cosine > 0.0 ? 1.0 - smoothstep(own, 2.0 * own + clear, above) : 0.0;
+}
+
+// What other objects leave of the light at `position` (light space), where it enters.
+float light_reaches_entry(LightFrame frame, vec3 position) {
+#ifdef SHADOWS
+  // Where it shades itself, it is of several materials: light enters one of them, on a surface that may be steep.
+  return light_reaches(frame.light, mat3(frame.x_axis, frame.y_axis, frame.z_axis) * position, shades_itself != 0 ? 8.0 : -1.0);
+#else
+  return 1.0;
+#endif
 }

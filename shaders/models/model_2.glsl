@@ -16,18 +16,17 @@ vec3 evaluate_model(SurfacePoint point, Outwards outwards, LightSample light) {
   BodyFit fit = fit_body(point, outwards, light, light_frame(light));
   HalfSpaceLight half_space = half_space_light(point, outwards, light);
   vec4 difference = look_up_body(body_table, fit);
-  float flow = flow_along_surface(fit, point, light, difference.a);
-  vec3 lobe = light.irradiance * diffused_lobe(fit);
-  vec3 radiance = corrected(fit.visible * half_space.multiple, difference.rgb, lobe * flow);
+  vec3 lobe = light.irradiance * flowing_lobe(fit, point, light, flow_at(fit, difference));
+  vec3 radiance = corrected(fit.visible * half_space.multiple, difference.rgb, lobe);
 #ifdef SEPARATE_SINGLE
   vec3 out_of = refract(-point.to_viewer, point.normal, sqrt(material.inverse_eta_squared));
   vec3 sum = out_of - material.sign_g * light.to_light;
   float versine = 0.5 * dot(sum, sum);
   float phase = 4.0 * PI * henyey_greenstein(versine, material.absolute_g, material.one_minus_absolute_g);
-  radiance += corrected(fit.visible * half_space.single, look_up_body(single_difference, fit).rgb, phase * lobe);
+  radiance += corrected(fit.visible * half_space.single, look_up_body(single_difference, fit).rgb, phase * diffused_lobe(fit) * light.irradiance);
 #endif
 #ifdef SPECULAR
   radiance += fit.visible * specular_reflection(point, outwards, light);
 #endif
-  return radiance;
+  return fit.reached * radiance;
 }

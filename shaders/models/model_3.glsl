@@ -6,7 +6,6 @@
 //
 // What is chosen at compile time (physics::model_3_inputs), besides what body_light.glsl names:
 //   FORWARD_PEAK         light that was scattered within the phase function's forward peak counts as unscattered
-//   GREY                 red, green and blue are the same medium, and only one is computed
 //   CROSSED              the sphere's light is also what crosses it unscattered
 //   SINGLE_MARCHED       `refracted_light`: first-order scattering is not in the kernel
 #include "models/body_light.glsl"
@@ -17,14 +16,6 @@
 #include "physics/elementary.glsl"
 #include "physics/fresnel.glsl"
 #include "physics/henyey_greenstein.glsl"
-
-#ifdef GREY
-#define Spectrum float
-#define SPECTRUM(value) (value).r
-#else
-#define Spectrum vec3
-#define SPECTRUM(value) (value).rgb
-#endif
 
 #ifdef SINGLE_MARCHED
 struct Single {
@@ -107,7 +98,7 @@ struct Gathered {
   Spectrum sphere;  // the same of the sphere that fits
 };
 
-Gathered gather(LightFrame frame, int light, BodyFit fit, vec3 position, vec3 normal, int count, uint first, uvec2 offset) {
+Gathered gather(LightFrame frame, int map, BodyFit fit, vec3 position, vec3 normal, int count, uint first, uvec2 offset) {
   // Distances are drawn as for a plane that faces the light, half as high above as the lit surface: no lit point of a sphere is nearer than
   // that plane's, so no sample weighs more than it should.
   float height = 0.5 * fit.above / body.radius;
@@ -147,7 +138,7 @@ Gathered gather(LightFrame frame, int light, BodyFit fit, vec3 position, vec3 no
 
     vec2 from_axis = place - centre.xy;
     float height_squared = radius * radius - dot(from_axis, from_axis);
-    LightMapTexel entry = light_map_at(frame, light, place * body.radius);
+    LightMapTexel entry = light_map_at(frame, map, place * body.radius);
     float entry_height = entry.position.z / body.radius;
     float cosine = entry.normal.z;
     float lit = entry.lit ? 1.0 : 0.0;
@@ -165,6 +156,7 @@ Gathered gather(LightFrame frame, int light, BodyFit fit, vec3 position, vec3 no
     }
     if (lit > 0.0) {
       float apart = max(distance(vec3(place, entry_height), position), nearest);
+      lit *= light_reaches_entry(frame, body.radius * vec3(place, entry_height));
       sum.grain += lit * min(weight * SPECTRUM(kernel_at(apart, cosine)), Spectrum(MOST_A_SAMPLE_COUNTS));
     }
   } while (++i < count);
@@ -219,7 +211,7 @@ Entry entry_above(LightMapTexel mapped, LightFrame frame, vec3 point, vec3 centr
 }
 
 // Radiance inside, just below the surface, per irradiance: light that was scattered once on the view ray's way through the grain.
-vec3 single_scattering(LightFrame frame, int light, BodyFit fit, vec3 position, vec3 normal, vec3 fit_normal, vec3 to_viewer, int count, uint first, uvec2 offset) {
+vec3 single_scattering(LightFrame frame, int map, BodyFit fit, vec3 position, vec3 normal, vec3 fit_normal, vec3 to_viewer, int count, uint first, uvec2 offset) {
   float mu_o_refracted = fit.mu_o_refracted;
   vec3 inwards = (fit.mu_o * normal - to_viewer) / body.eta - mu_o_refracted * normal;
 
@@ -269,9 +261,10 @@ vec3 single_scattering(LightFrame frame, int light, BodyFit fit, vec3 position, 
     Spectrum drawn = on_plane / density;
     plane += drawn;
     vec3 point = position + t * inwards;
-    Entry entry = entry_above(light_map_at(frame, light, point.xy * body.radius), frame, point, centre, fit.radius);
+    Entry entry = entry_above(light_map_at(frame, map, point.xy * body.radius), frame, point, centre, fit.radius);
     if (entry.lit == 0.0) continue;
     float above = entry.above;
+    float lit = entry.lit * light_reaches_entry(frame, body.radius * (point + vec3(0.0, 0.0, above)));
 
     // The place in the unit sphere that has this normal above it, at this depth.
     float tilt = length(entry.normal.xy);
@@ -291,7 +284,7 @@ vec3 single_scattering(LightFrame frame, int light, BodyFit fit, vec3 position, 
     float scattered = phase;
 #endif
     // Where the light's way in hardly grows, far samples are too rare for what they find; each may count as many, but not as any number.
-    sum += entry.lit * lighting.x * scattered * drawn * min(exp(rate * t - sigma_t * (t + way_in)), Spectrum(MOST_A_SAMPLE_COUNTS));
+    sum += lit * lighting.x * scattered * drawn * min(exp(rate * t - sigma_t * (t + way_in)), Spectrum(MOST_A_SAMPLE_COUNTS));
   } while (++i < count);
   // What the lit plane's own integral says the samples should have found.
   return single.sigma_s * sum * mean_way / max(plane, Spectrum(1e-30));
@@ -319,22 +312,23 @@ vec3 evaluate_model(SurfacePoint point, Outwards outwards, LightSample light) {
   float lobe = fit.transmittance * body.even_factor;
   vec3 sphere = table.rgb * lobe;
 #else
-  float lobe = diffused_lobe(fit) * flow_along_surface(fit, point, light, table.a);
-  LightSample unit_light = LightSample(light.to_light, vec3(1.0), light.index, light.angle);
-  vec3 sphere = corrected(fit.visible * half_space_light(point, outwards, unit_light).multiple, table.rgb, vec3(lobe));
+  float lobe = diffused_lobe(fit);
+  Spectrum flowing = flowing_lobe(fit, point, light, flow_at(fit, table));
+  LightSample unit_light = LightSample(light.to_light, vec3(1.0), light.index, light.angle, light.map);
+  vec3 sphere = corrected(fit.visible * half_space_light(point, outwards, unit_light).multiple, table.rgb, vec3(flowing));
 #endif
   float tilt = sqrt(max((1.0 - fit.cosine) * (1.0 + fit.cosine), 0.0));
   vec3 fit_normal = vec3(normal.xy * (tilt * inversesqrt(max(dot(normal.xy, normal.xy), 1e-12))), fit.cosine);
-  Gathered gathered = gather(frame, light.index, fit, position, fit_normal, multiple_share, uint(sample_index * multiple_share), offset.xy);
+  Gathered gathered = gather(frame, light.map, fit, position, fit_normal, multiple_share, uint(sample_index * multiple_share), offset.xy);
   vec3 radiance = on_the_grain(gathered, sphere, lobe, fit.radius);
 #ifdef SINGLE_MARCHED
   vec3 to_viewer = to_light_space(frame, point.to_viewer);
-  vec3 inside = single_scattering(frame, light.index, fit, position, normal, fit_normal, to_viewer, single_share, uint(sample_index * single_share), offset.zw);
+  vec3 inside = single_scattering(frame, light.map, fit, position, normal, fit_normal, to_viewer, single_share, uint(sample_index * single_share), offset.zw);
   radiance += fit.transmittance / (body.eta * body.eta) * inside;
 #endif
   radiance *= light.irradiance;
 #ifdef SPECULAR
-  radiance += fit.visible * specular_reflection(point, outwards, light);
+  radiance += fit.visible * fit.reached * specular_reflection(point, outwards, light);
 #endif
   return radiance;
 }

@@ -28,3 +28,10 @@ vec2 low_discrepancy(uint index, uvec2 offset) {
   uvec2 bits = uvec2(3242174889u, 2447445414u) * index + offset;
   return vec2(bits >> 8u) * (1.0 / 16777216.0);
 }
+
+// The same of dimensions 3 and 4 of the sequence in four dimensions, which go together with r2_point, the place within the pixel
+// (native/render/sequence.h), without correlation.
+vec2 low_discrepancy_beside_pixel(uint index, uvec2 offset) {
+  uvec2 bits = uvec2(2700274806u, 2313257605u) * index + offset;
+  return vec2(bits >> 8u) * (1.0 / 16777216.0);
+}

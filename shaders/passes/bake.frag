@@ -8,6 +8,7 @@ in vec3 grain_normal;
 in float grain_plane_offset;
 
 uniform int from_camera;
+uniform int instance;
 
 out vec4 radiance;
 
@@ -24,8 +25,10 @@ vec3 bent_to_viewer(vec3 position, vec3 normal) {
 }
 
 void main() {
+  take_grain(instance);
   SurfacePoint point;
   point.position = on_curved_surface(grain_position, grain_normal, grain_plane_offset);
+  point.on_triangle = grain_position;
   point.normal = normalize(grain_normal);
   point.to_viewer = from_camera != 0 ? bent_to_viewer(point.position, point.normal) : point.normal;
   radiance = vec4(lit_point(point), 1.0);

@@ -1,8 +1,19 @@
 // Radiance of one surface point towards the viewer, summed over the lights. The renderer appends the model's file and
 // defines its choices.
+//
+// What else is chosen at compile time:
+//   LIGHTS_AT_PLACE      the place that is shaded draws its own directions of the lights that have a place themselves: an opaque surface at
+//                        each point, a translucent instance for all of it
+//   WHOLE_GRAIN          the model knows what light does in all of the grain, but not where it enters
 
+#include "physics/prelude.glsl"
+#include "lights/light.glsl"
 #include "models/interface.glsl"
+#include "scene/grain.glsl"
+#include "scene/shadows.glsl"
+#include "models/pixel_random.glsl"
 
+// One direction of a light, drawn for the whole grain.
 struct DirectionalLight {
   vec4 to_light;    // xyz; w: angle of the disc it is drawn from
   vec4 irradiance;  // rgb
@@ -10,19 +21,101 @@ struct DirectionalLight {
 
 layout(std430, binding = 0) readonly buffer Lights { DirectionalLight lights[]; };
 
-uniform vec4 viewer;  // xyz: the pinhole in grain space if w is 1, the direction towards the viewer if w is 0
+#ifdef LIGHTS_AT_PLACE
+layout(std430, binding = 6) readonly buffer LocalLights { DeviceLight local_lights[]; };
+layout(std430, binding = 7) readonly buffer LocalRandoms { vec2 local_randoms[]; };  // where on each light this sample looks
+uniform int local_light_count;
+uniform int distant_light_count;  // those have their shadows first
+#endif
 
-vec3 direction_to_viewer(vec3 position) { return normalize(viewer.xyz - viewer.w * position); }
+// xyz: the direction towards the viewer if w is 0; if w is 1 the pinhole, in grain space, or for instances from the place amid the scene.
+uniform vec4 viewer;
+
+vec3 direction_to_viewer(vec3 position) {
+#ifdef INSTANCED
+  position += grain_place;
+#endif
+  return normalize(viewer.xyz - viewer.w * position);
+}
+
+#if defined(INSTANCED) && defined(LIGHT_MAPS)
+// To one of the directions for which the prototype has a map.
+void turn_to_light_map(inout LightSample light);
+#endif
+
+#if defined(SHADOWS) && defined(WHOLE_GRAIN)
+uniform float grain_reach;  // no point of the grain is farther than this from the origin, in scene units
+#endif
+
+#ifndef LIGHT_MAPS
+// What reaches a surface that shows light only where it enters.
+float light_reaches_surface(LightSample light, SurfacePoint point) {
+#if defined(SHADOWS) && defined(WHOLE_GRAIN)
+  // Light enters about the point, as far as half the grain reaches: where, is another place with every sample.
+  vec3 random = 2.0 * vec3(pcg4d(uvec4(uvec2(gl_FragCoord.xy), uint(sample_index), uint(light.index))).xyz >> 8u) * (1.0 / 16777216.0) - 1.0;
+  return light_reaches(light.index, point.on_triangle + 0.5 * grain_reach * random, -1.0);
+#elif defined(SHADOWS)
+  float cosine = dot(point.normal, light.to_light);
+  if (cosine <= 0.0) return 0.0;
+  // Within a texel a surface that is steep to the light lies deeper than the texel is wide.
+  float rise = 1.0 + 2.0 * sqrt(max((1.0 - cosine) * (1.0 + cosine), 0.0)) / max(cosine, 0.05);
+  return light_reaches(light.index, point.on_triangle, shades_itself != 0 ? rise : -1.0);
+#else
+  return 1.0;
+#endif
+}
+#endif
+
+vec3 lit_by(SurfacePoint point, Outwards outwards, LightSample light) {
+#ifdef LIGHT_MAPS
+#ifdef INSTANCED
+  turn_to_light_map(light);
+#endif
+#else
+  light.irradiance *= light_reaches_surface(light, point);
+#endif
+  return evaluate_model(point, outwards, light);
+}
+
+#ifdef LIGHTS_AT_PLACE
+vec3 locally_lit(SurfacePoint point, Outwards outwards) {
+#ifdef INSTANCED
+  vec3 origin = grain_place;
+#else
+  vec3 origin = vec3(0.0);
+#endif
+#ifdef LIGHT_MAPS
+  vec3 place = origin;
+#else
+  vec3 place = origin + point.on_triangle;
+#endif
+  vec3 sum = vec3(0.0);
+  for (int i = 0; i < local_light_count; ++i) {
+#ifdef SHADOWS
+    // The shadow map shows one point of the light.
+    vec2 random = local_randoms[i];
+#else
+    vec2 random = low_discrepancy_beside_pixel(uint(sample_index), pcg4d(uvec4(uvec2(gl_FragCoord.xy), 2u, uint(i))).xy);
+#endif
+    LightDraw drawn = draw_light(local_lights[i], place, random);
+    sum += lit_by(point, outwards, LightSample(drawn.to_light, drawn.irradiance, distant_light_count + i,
+                                               light_angle(local_lights[i], drawn.reach), i));
+  }
+  return sum;
+}
+#endif
 
 vec3 lit_point(SurfacePoint point) {
   vec3 sum = vec3(0.0);
-  if (light_count == 0) return sum;
   Outwards outwards = look_outwards(point);
+#ifdef LIGHTS_AT_PLACE
+  sum += locally_lit(point, outwards);
+#endif
+  if (light_count == 0) return sum;
   // Software renderers run a loop's body once more, masked, to find that a condition at its head has failed: it is at the foot.
   int i = 0;
   do {
-    LightSample light = LightSample(lights[i].to_light.xyz, lights[i].irradiance.rgb, i, lights[i].to_light.w);
-    sum += evaluate_model(point, outwards, light);
+    sum += lit_by(point, outwards, LightSample(lights[i].to_light.xyz, lights[i].irradiance.rgb, i, lights[i].to_light.w, i));
   } while (++i < light_count);
   return sum;
 }

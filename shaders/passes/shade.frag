@@ -3,15 +3,17 @@
 #include "passes/lit_point.glsl"
 
 uniform sampler2D surface_position;  // xyz: on the triangle; w: how far the curved surface rises above it, along the normal
-uniform sampler2D surface_normal;    // xyz: of unit length; w: 1 on front faces, -1 on back faces
+uniform sampler2D surface_normal;    // xyz: of unit length; w: number of the instance, from 1; negative on back faces
 
 out vec4 radiance;
 
 void main() {
   vec4 on_triangle = texelFetch(surface_position, ivec2(gl_FragCoord.xy), 0);
   vec4 facing = texelFetch(surface_normal, ivec2(gl_FragCoord.xy), 0);
+  take_grain(int(abs(facing.w)) - 1);
   SurfacePoint point;
-  point.position = on_triangle.xyz + on_triangle.w * facing.xyz;
+  point.position = (on_triangle.xyz + on_triangle.w * facing.xyz) / grain_unit;
+  point.on_triangle = on_triangle.xyz / grain_unit;
   point.to_viewer = direction_to_viewer(on_triangle.xyz);
   point.normal = facing.xyz;
 

@@ -6,6 +6,7 @@
 in vec3 grain_position;
 in vec3 grain_normal;
 in float grain_plane_offset;
+flat in float mark;  // number of the instance, from 1; negative if it is mirrored
 
 layout(location = 0) out vec4 surface_position;
 layout(location = 1) out vec4 surface_normal;
@@ -14,5 +15,5 @@ void main() {
   vec3 normal = normalize(grain_normal);
   float rise = dot(on_curved_surface(grain_position, grain_normal, grain_plane_offset) - grain_position, normal);
   surface_position = vec4(grain_position, rise);
-  surface_normal = vec4(normal, gl_FrontFacing ? 1.0 : -1.0);
+  surface_normal = vec4(normal, gl_FrontFacing ? mark : -mark);
 }

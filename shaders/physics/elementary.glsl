@@ -1,28 +1,6 @@
-// Elementary functions that hold where the drivers' do not: log and exp near their zeros, arc cosine near +-1, arc tangent near 0.
-// Mesa's log errs by 1e-3 near 1, its acos by 2.7e-4 and its atan by 2e-5 (relative). Every series below is long enough for double.
+// Elementary functions that hold where the drivers' do not: exp near its zero, means of it without a difference.
+// Every series below is long enough for double.
 #pragma once
-
-// 1 + t/3 + t^2/5 + ...: atanh(z)/z at t = z^2 (Abramowitz & Stegun 4.6.33), atan(y)/y at t = -y^2 (4.4.42); |t| <= 0.04.
-pure real odd_series(real t) {
-  real sum = 1.0 / 21.0;
-  sum = sum * t + 1.0 / 19.0;
-  sum = sum * t + 1.0 / 17.0;
-  sum = sum * t + 1.0 / 15.0;
-  sum = sum * t + 1.0 / 13.0;
-  sum = sum * t + 1.0 / 11.0;
-  sum = sum * t + 1.0 / 9.0;
-  sum = sum * t + 1.0 / 7.0;
-  sum = sum * t + 1.0 / 5.0;
-  sum = sum * t + 1.0 / 3.0;
-  return 1.0 + t * sum;
-}
-
-// log(1 + x), by log((1+z)/(1-z)) = 2 atanh(z), z = x/(2+x) (Abramowitz & Stegun 4.1.27); |z| <= 0.2 where the series is used.
-pure real log1p(real x) {
-  if (x < -0.333333 || x > 0.5) return log(1.0 + x);
-  real z = x / (2.0 + x);
-  return 2.0 * z * odd_series(z * z);
-}
 
 // exp(x) - 1, by its Taylor series where the difference would cancel (Abramowitz & Stegun 4.2.1).
 pure real expm1(real x) {
@@ -64,25 +42,6 @@ pure real attenuated_distance(real random, real rate, real longest, real mean_wa
   real kept = rate * mean_way;
   if (kept < 1e-2) return random * longest;
   return -log(1.0 - min(random * kept, LARGEST_BELOW_ONE)) / rate;
-}
-
-// Arc tangent: reflected to |x| <= 1, halved twice to |x| <= tan(pi/16), then its series (Abramowitz & Stegun 4.4.42).
-pure real arc_tangent(real x) {
-  real y = abs(x);
-  bool beyond_one = y > 1.0;
-  if (beyond_one) y = 1.0 / y;
-  y = y / (1.0 + sqrt(1.0 + y * y));
-  y = y / (1.0 + sqrt(1.0 + y * y));
-  real angle = 4.0 * y * odd_series(-y * y);
-  if (beyond_one) angle = 0.5 * PI - angle;
-  return x < 0.0 ? -angle : angle;
-}
-
-// Arc cosine of a value clamped to [-1, 1], by the half-angle formula (Abramowitz & Stegun 4.4.33 with the tangent of the half angle).
-pure real arc_cosine(real x) {
-  real c = clamp(x, -1.0, 1.0);
-  if (c <= -1.0) return PI;
-  return 2.0 * arc_tangent(sqrt((1.0 - c) / (1.0 + c)));
 }
 
 // sqrt(1 - c^2): rounding takes a cosine past 1, where the plain form is not a number.

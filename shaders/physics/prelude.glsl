@@ -2,6 +2,7 @@
 #define real float
 #define real2 vec2
 #define real3 vec3
+#define real4 vec4
 #define pure
 #define OUT(type) out type
 

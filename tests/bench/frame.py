@@ -18,7 +18,6 @@ RADIUS = 2.4
 SEGMENTS, RINGS = 128, 64
 FIELD_OF_VIEW = 45.0  # degrees
 WIDTH_FILLED = 0.7
-MODELS = ("lambert", "conductor", "model_1", "model_2", "model_3")
 PARAMETERS = {"sigma_a": (0.1,) * 3, "sigma_s": (0.9,) * 3, "eta": 1.3, "roughness": 0.3, "reflectance": (0.5,) * 3}
 
 
@@ -45,7 +44,7 @@ def make_views(native):
     lights = [native.DirectionalLight((1.0, 1.0, 1.0), (20.0,) * 3),
               native.DirectionalLight((-1.0, -1.0, -1.6), (10.0,) * 3)]
     views = {}
-    for model in MODELS:
+    for model in (entry["name"] for entry in native.schema()["models"]):
         view = native.View(SIZE, SIZE)
         try:
             material = native.Material(model=model, **PARAMETERS)

@@ -62,7 +62,7 @@ def until(condition, timeout=60.0):
 def test_an_unsaved_file_is_compared_and_stays_untouched(sphere, start, tmp_path):
     bpy.ops.ed.undo_push(message="sphere")
     bpy.data.objects["Sphere"].location.x = 0.5  # since the last undo step, and never saved
-    bpy.context.scene.collection.objects.link(bpy.data.objects.new("Lamp", bpy.data.lights.new("Lamp", "POINT")))
+    bpy.context.scene.collection.objects.link(bpy.data.objects.new("Smoke", bpy.data.volumes.new("Smoke")))
     shown = bpy.context.scene
     bpy.data.scenes.new("A scene that is not shown")
     before = (bpy.data.filepath, bpy.data.is_dirty, bpy.data.is_saved, shown)
@@ -72,7 +72,7 @@ def test_an_unsaved_file_is_compared_and_stays_untouched(sphere, start, tmp_path
     results = json.loads((tmp_path / "out" / "results.json").read_text())
     assert results["complete"] and results["scene"] == "unsaved.blend" and results["cases"][0]["status"] == "done"
     assert started.step.number == started.step.count == 2
-    assert any("'Lamp'" in sentence for sentence in started.sentences)
+    assert any("'Smoke'" in sentence for sentence in started.sentences)
     coverage = model_picture(tmp_path)[..., 3]
     middle = (coverage * np.arange(24)).sum() / coverage.sum()
     assert abs(middle - 11.5) > 1.0, f"the sphere is not where it was moved to, but at column {middle:.2f}"

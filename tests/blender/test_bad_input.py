@@ -9,7 +9,7 @@ import bpy
 import numpy as np
 import pytest
 from mathutils import Matrix
-from mesograin import status
+from mesograin import compat, status
 from mesograin.baking import surface
 from test_export import add_camera, add_cube, add_mesh_object, add_object, add_sun
 
@@ -90,6 +90,7 @@ def test_sun_as_wide_as_half_the_sky(scene, render):
 
 
 def test_more_lights_than_anyone_needs(scene, render):
+    bpy.data.materials["Sand"].mesograin.model = "lambert"
     before = render()
     bpy.data.lights["Sun"].energy /= 40
     for _ in range(39):
@@ -127,10 +128,18 @@ def between_planes_that_are_one(camera):
     camera.data.clip_start = camera.data.clip_end = 1.0
 
 
+def sees_something(camera):
+    """Whether this Blender makes a lens of what it is told."""
+    lens = np.array(camera.calc_matrix_camera(bpy.context.evaluated_depsgraph_get(), x=8, y=8))
+    return np.isfinite(lens).all() and np.linalg.det(lens) != 0.0
+
+
 @pytest.mark.parametrize("spoil, words", [(nowhere, "place it anew"), (scaled_to_nothing, "clear its scale"),
                                           (without_a_lens, "focal length"), (between_planes_that_are_one, "clip")])
 def test_camera_that_cannot_look(scene, render, spoil, words):
     spoil(scene.camera)
+    if spoil is between_planes_that_are_one and sees_something(scene.camera):
+        return  # Blender 5 puts them apart itself
     assert_one_sentence(error_of_render(), "Camera 'Camera'", words)
     bpy.data.objects.remove(scene.camera)
     add_camera((0.0, 0.0, 6.0))
@@ -149,50 +158,63 @@ def test_no_light(scene, render):
     picture, warnings = warnings_of_render(render)
     assert picture[..., :3].max() == 0.0
     [sentence] = warnings
-    assert_one_sentence(sentence, "no sun light", "add one")
+    assert_one_sentence(sentence, "no light", "add a light")
 
 
 def test_other_lights(scene, render):
+    dark = render()[8, 8, 0]
     for kind in ("POINT", "SPOT", "AREA"):
-        add_object(kind.title(), bpy.data.lights.new(kind.title(), kind))
-    _, warnings = warnings_of_render(render)
-    assert len(warnings) == 3
-    for kind in ("Point", "Spot", "Area"):
-        assert any(f"Light '{kind}'" in sentence and "only suns" in sentence for sentence in warnings)
+        made = add_object(kind.title(), bpy.data.lights.new(kind.title(), kind))
+        made.location, made.data.energy = (0.0, 0.0, 4.0), 100.0
+        picture, warnings = warnings_of_render(render)
+        assert warnings == ()
+        assert picture[8, 8, 0] > 1.05 * dark, kind
+        dark = picture[8, 8, 0]
 
 
-@pytest.mark.parametrize("colour, strength, shines", [
-    ((0.05, 0.05, 0.05), 1.0, True), ((0.0, 0.0, 0.0), 1.0, False), ((0.05, 0.05, 0.05), 0.0, False)])
-def test_world_that_shines(scene, render, colour, strength, shines):
-    scene.world = bpy.data.worlds.new("Sky")
-    scene.world.use_nodes = True
-    background = scene.world.node_tree.nodes["Background"]
-    background.inputs["Color"].default_value[:3] = colour
-    background.inputs["Strength"].default_value = strength
-    _, warnings = warnings_of_render(render)
-    assert len(warnings) == shines
-    for sentence in warnings:
-        assert_one_sentence(sentence, "World 'Sky' shines", "only suns")
+def test_lights_that_cannot_be(scene, render):
+    made = add_object("Lamp", bpy.data.lights.new("Lamp", "POINT"))
+    made.data.energy = -1.0
+    sentence = error_of_render()
+    assert_one_sentence(sentence, "Light 'Lamp'", "radiant_intensity")
 
 
 def test_world_without_background(scene, render):
     scene.world = bpy.data.worlds.new("Sky")
-    scene.world.use_nodes = True
+    compat.use_nodes(scene.world)
     tree = scene.world.node_tree
     background = tree.nodes["Background"]
     background.inputs["Color"].default_value[:3] = (0.0, 0.0, 0.0)
-    tree.links.new(background.inputs["Color"], tree.nodes.new("ShaderNodeTexSky").outputs[0])
-    assert len(warnings_of_render(render)[1]) == 1
+    assert warnings_of_render(render)[1] == ()
+    sky = tree.nodes.new("ShaderNodeTexSky")
+    tree.links.new(background.inputs["Color"], sky.outputs[0])
+    [sentence] = warnings_of_render(render)[1]
+    assert_one_sentence(sentence, "World 'Sky'", sky.name, "environment image")
+    texture = tree.nodes.new("ShaderNodeTexEnvironment")
+    tree.links.new(background.inputs["Color"], texture.outputs["Color"])
+    [sentence] = warnings_of_render(render)[1]
+    assert_one_sentence(sentence, "World 'Sky'", "without an image")
+    texture.image = bpy.data.images.new("Lost", 8, 8)
+    texture.image.source, texture.image.filepath = "FILE", "//lost.hdr"
+    [sentence] = warnings_of_render(render)[1]
+    assert_one_sentence(sentence, "World 'Sky'", "Lost", "cannot be loaded")
     tree.nodes.remove(background)
     assert warnings_of_render(render)[1] == ()
-    scene.world.use_nodes, scene.world.color = False, (0.1, 0.0, 0.0)
-    assert len(warnings_of_render(render)[1]) == 1
 
 
 def test_sun_with_nodes(scene, render):
-    bpy.data.lights["Sun"].use_nodes = True
+    sun = bpy.data.lights["Sun"]
+    compat.use_nodes(sun)
+    assert warnings_of_render(render)[1] == (), "nodes that change nothing are no cause for a warning"
+    emission = next(node for node in sun.node_tree.nodes if node.type == "EMISSION")
+    single = render()[8, 8, 0]
+    emission.inputs["Strength"].default_value = 2.0
+    picture, warnings = warnings_of_render(render)
+    assert warnings == () and picture[8, 8, 0] == pytest.approx(2.0 * single)
+    falloff = sun.node_tree.nodes.new("ShaderNodeLightFalloff")
+    sun.node_tree.links.new(falloff.outputs[0], emission.inputs["Strength"])
     [sentence] = warnings_of_render(render)[1]
-    assert_one_sentence(sentence, "Light 'Sun'", "nodes")
+    assert_one_sentence(sentence, "Light 'Sun'", "strength", "left out")
 
 
 def test_empty_mesh(scene, render):

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from cycles_scenes import depsgraph, make_sphere
 
+from mesograin import compat
 from mesograin.baking import surface
 
 COMMAND = pathlib.Path(__file__).resolve().parents[2] / "addon/mesograin/baking/command.py"
@@ -182,7 +183,7 @@ def test_a_texture_back_on_its_object_looks_like_the_object(tmp_path, native, re
     expected = render()
     chosen, texture = bake(size=(256, 128), samples=8, margin=4)
     surface.write(tmp_path / "a.exr", texture, chosen.provenance(4))
-    material.use_nodes = True
+    compat.use_nodes(material)
     nodes, links = material.node_tree.nodes, material.node_tree.links
     nodes.clear()
     image = nodes.new("ShaderNodeTexImage")

@@ -10,9 +10,9 @@ import pytest
 from cycles_scenes import depsgraph, make_sphere
 
 from mesograin.baking import arguments, command, comparison
-from mesograin.baking.surface import PROVENANCE, BakeError
+from mesograin.baking.surface import PROVENANCE, BakeError, Surface
 from mesograin.comparison.progress import Progress
-from mesograin.cycles import nodes, reference
+from mesograin.cycles import nodes, reference, unwrapping
 from mesograin.cycles.cache import Cache
 from mesograin.cycles.unwrapping import Unwrapping
 
@@ -20,8 +20,13 @@ SUNS = [((1.0, 1.0, 1.0), 20.0), ((-1.0, -1.0, -1.6), 10.0)]
 
 
 def compare(size=(128, 64), samples=16, view_from="above_surface", model=None, kind=None, theirs=4, cache=None, **more):
-    return comparison.compare(depsgraph(), "Sphere", size, samples, view_from, more, model, kind, theirs, cache,
-                              Progress(io.StringIO()))
+    return bake(comparison.Pair(depsgraph(), "Sphere", size, samples, view_from, more, model, kind, theirs, cache))
+
+
+def bake(pair):
+    progress = Progress(io.StringIO())
+    progress.plan(pair.steps)
+    return pair.bake(progress)
 
 
 def counts():
@@ -37,7 +42,8 @@ def test_lambert_agrees_and_nothing_is_left_behind(tmp_path, native):
     assert results["metrics"]["relative_l1"] < 5e-3 and abs(results["metrics"]["bias"] - 1.0) < 2e-3
     assert results["mask"]["pixels"] > 0.95 * 256 * 128 and results["notes"] == []
     comparison.write(tmp_path / "a.exr", *found)
-    names = ["a.cycles.exr", "a.cycles.png", "a.error.exr", "a.error.png", "a.exr", "a.json", "a.png"]
+    names = [f"a.{name}" for name in ("cycles.exr", "cycles.png", "error.exr", "error.png", "json", "mesograin.exr",
+                                      "mesograin.png")]
     assert sorted(path.name for path in tmp_path.iterdir()) == names
     assert json.loads((tmp_path / "a.json").read_text()) == results
     pixels, _, attributes = native.read_exr(tmp_path / "a.cycles.exr")
@@ -52,7 +58,8 @@ def test_the_command_tells_the_numbers_and_the_verdict(tmp_path, capsys, monkeyp
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "grain.blend"))
     words = "--compare --size 64x32 --samples 64 --reference-samples 128 -o".split()
     chosen = arguments.parse([str(tmp_path / "grain.blend"), *words, str(tmp_path / "a.exr")])
-    command._compare(chosen, depsgraph(), "Sphere", {}, Progress(io.StringIO()))
+    own = Surface(depsgraph(), "Sphere", chosen.size)
+    command._compare(chosen, depsgraph(), own, {}, Progress(io.StringIO()))
     said = capsys.readouterr().out
     results = json.loads((tmp_path / "a.json").read_text())
     share = results["significance"]["share"]
@@ -68,6 +75,37 @@ def test_the_view_from_the_camera_is_bent_as_cycles_bends_it():
     above = compare(size=(256, 128))[-1]
     assert camera["metrics"]["relative_l1"] < 0.02 and above["metrics"]["relative_l1"] < 0.02
     assert camera["reference"] == "glossy"
+
+
+def test_the_texture_that_was_asked_for_is_not_that_of_the_comparison(tmp_path, native):
+    make_sphere(SUNS, segments=64, rings=32, model="model_1", sigma_s=(8.0,) * 3, sigma_a=(2.0,) * 3)
+    own = Surface(depsgraph(), "Sphere", (64, 32))
+    pair = comparison.Pair(depsgraph(), "Sphere", (64, 32), 16, "above_surface", {}, None, "volume_index_matched", 1,
+                           None)
+    names, results = comparison.bake(tmp_path / "a.exr", own, pair, 16, 2, True, Progress(io.StringIO()))
+    assert sorted(names) == sorted(path.name for path in tmp_path.iterdir())
+    texture, _, attributes = native.read_exr(tmp_path / "a.exr")
+    origin = json.loads(attributes[PROVENANCE])
+    assert (origin["materials"]["Sand"]["boundary"], origin["margin"]) == ("dielectric", 2)
+    alone = Surface(depsgraph(), "Sphere", (64, 32))
+    alone.render(16)
+    np.testing.assert_allclose(texture, alone.texture(2), rtol=1e-3, atol=1e-3)
+    compared, _, attributes = native.read_exr(tmp_path / "a.mesograin.exr")
+    assert json.loads(attributes[PROVENANCE])["materials"]["Sand"]["boundary"] == "index_matched"
+    assert compared[..., :3].mean() > 1.1 * texture[..., :3].mean(), "no light is reflected inside"
+
+
+def test_a_bake_by_cycles_tells_how_far_it_is_and_is_the_same_for_it(monkeypatch):
+    make_sphere(SUNS, model="lambert", segments=64, rings=32)
+    told = []
+    sampling = reference.Sampling(depsgraph(), "diffuse", (64, 32), 37,
+                                  unwrapping=Unwrapping("Sphere", "above_surface"))
+    sampling.add((1,), told.append)
+    assert len(told) >= 10 and told == sorted(told) and told[0] <= 0.1 and told[-1] == pytest.approx(1.0)
+    monkeypatch.setattr(unwrapping, "PARTS", 1)
+    whole = reference.Sampling(depsgraph(), "diffuse", (64, 32), 37, unwrapping=Unwrapping("Sphere", "above_surface"))
+    whole.add((1,))
+    np.testing.assert_allclose(sampling.result().mean, whole.result().mean, rtol=1e-4, atol=1e-5)
 
 
 def test_no_thread_of_python_disturbs_a_bake():
@@ -133,8 +171,7 @@ def test_sentences():
         compare(kind="glossy")
     material.mesograin.model = "lambert"
     with pytest.raises(BakeError, match="There is no object 'Foo'"):
-        comparison.compare(depsgraph(), "Foo", (8, 8), 1, "above_surface", {}, None, None, 1, None,
-                           Progress(io.StringIO()))
+        comparison.Pair(depsgraph(), "Foo", (8, 8), 1, "above_surface", {}, None, None, 1, None)
     with pytest.raises(reference.ReferenceError, match="no object 'Foo' to bake with Cycles"):
         reference.Sampling(depsgraph(), "diffuse", (8, 8), 1, unwrapping=Unwrapping("Foo", "above_surface")).add((1,))
     coarse = compare(size=(8, 4), theirs=1)[-1]

@@ -359,7 +359,7 @@ def test_what_cannot_be_rendered_is_said():
 
 def test_no_light_and_no_mesh_are_said():
     make_sphere([], segments=16, rings=8)
-    with pytest.raises(StageError, match="no visible sun"):
+    with pytest.raises(StageError, match="no visible light"):
         reference.render(depsgraph(), "diffuse", (8, 8), samples=1)
     bpy.data.objects["Sphere"].hide_viewport = True
     with pytest.raises(StageError, match="no visible mesh"):

@@ -16,6 +16,24 @@ def render_directly(native, width, height):
     return view.read()
 
 
+def compositor_tree(scene):
+    """The scene's empty compositing graph, in use."""
+    if hasattr(scene, "compositing_node_group"):  # from 5.0 a node group of its own
+        scene.compositing_node_group = bpy.data.node_groups.new("Compositing", "CompositorNodeTree")
+        return scene.compositing_node_group
+    scene.use_nodes = True
+    scene.node_tree.nodes.clear()
+    return scene.node_tree
+
+
+def compositor_output(tree):
+    """The socket for the graph's picture."""
+    if hasattr(bpy.types, "CompositorNodeComposite"):
+        return tree.nodes.new("CompositorNodeComposite").inputs["Image"]
+    tree.interface.new_socket("Image", in_out="OUTPUT", socket_type="NodeSocketColor")
+    return tree.nodes.new("NodeGroupOutput").inputs["Image"]
+
+
 @pytest.mark.parametrize("name", ["sphere", "grain"])
 @pytest.mark.parametrize("model", ["lambert", "conductor"])
 def test_blend_files_render_as_the_native_module_does(native, render, blend_files, name, model):
@@ -33,6 +51,33 @@ def test_blend_files_render_as_the_native_module_does(native, render, blend_file
     latest = status.get(status.RENDER)
     assert (latest.samples, latest.width, latest.height, latest.warnings) == (4, 400, 400, ())
     assert latest.passes
+
+
+def test_transport_is_drawn(native, render, blend_files):
+    bpy.ops.wm.open_mainfile(filepath=str(blend_files / "grain.blend"))
+    scene = bpy.context.scene
+    scene.mesograin.samples, scene.render.resolution_percentage = 4, 16
+    for material in bpy.data.materials:
+        material.mesograin.model = "transport"
+    picture = render()
+    np.testing.assert_allclose(picture, render_directly(native, 64, 64), rtol=1e-2, atol=1e-3)
+    assert picture[..., 3].mean() > 0.2 and picture[..., :3].max() > 0.05
+
+
+def test_a_compositing_graph_gets_the_picture(render, blend_files):
+    bpy.ops.wm.open_mainfile(filepath=str(blend_files / "sphere.blend"))
+    scene = bpy.context.scene
+    scene.mesograin.samples, scene.render.resolution_percentage = 2, 25
+    plain = render()
+    tree = compositor_tree(scene)
+    layers, half = tree.nodes.new("CompositorNodeRLayers"), tree.nodes.new("CompositorNodeExposure")
+    half.inputs["Exposure"].default_value = -1.0
+    tree.links.new(layers.outputs["Image"], half.inputs["Image"])
+    tree.links.new(half.outputs["Image"], compositor_output(tree))
+    composed = render()
+    assert plain[..., 3].max() == 1.0
+    np.testing.assert_allclose(composed[..., :3], 0.5 * plain[..., :3], rtol=1e-3, atol=1e-5)
+    np.testing.assert_allclose(composed[..., 3], plain[..., 3], atol=1e-5)
 
 
 def test_opaque_film_is_the_picture_over_black(native, render, blend_files):

@@ -10,6 +10,7 @@ from cycles_scenes import REFEREE, make_sphere
 from mathutils import Matrix
 from test_export import add_mesh_object, add_object
 
+from mesograin import compat
 from mesograin.comparison import progress, run
 from mesograin.cycles.cache import Cache
 
@@ -41,11 +42,6 @@ def scene():
     return bpy.context.scene
 
 
-def add_other_lights():
-    for kind in ("POINT", "SPOT", "AREA"):
-        add_object(kind.title(), bpy.data.lights.new(kind.title(), kind))
-
-
 def add_things_that_are_no_grain():
     add_object("Empty", None)
     add_object("Lattice", bpy.data.lattices.new("Lattice"))
@@ -73,8 +69,8 @@ def name_slots_that_are_gone():
     mesh.polygons.foreach_set("material_index", [number % 7 for number in range(len(mesh.polygons))])
 
 
-@pytest.mark.parametrize("change", [add_other_lights, add_things_that_are_no_grain, add_objects_without_extent,
-                                    turn_inside_out, empty_the_slot, name_slots_that_are_gone])
+@pytest.mark.parametrize("change", [add_things_that_are_no_grain, add_objects_without_extent, turn_inside_out,
+                                    empty_the_slot, name_slots_that_are_gone])
 def test_what_is_not_rendered_changes_nothing(scene, compare, change):
     before = compare()
     change()
@@ -84,6 +80,29 @@ def test_what_is_not_rendered_changes_nothing(scene, compare, change):
         # Where the mirrored sphere is the same one, its paths are not: the bound is what so few samples leave.
         bound = 0.25 if change is turn_inside_out and plain["reference"] == "volume_dielectric" else 1e-3
         assert odd["metrics"]["bias"] == pytest.approx(plain["metrics"]["bias"], rel=bound)
+
+
+def test_photons_know_suns_alone(scene, compare):
+    if "photon" not in KINDS:
+        pytest.skip("the referee is not built")
+    add_object("Lamp", bpy.data.lights.new("Lamp", "POINT"), Matrix.Translation((0.0, 0.0, 6.0)))
+    [case] = compare(("photon",))
+    assert case["status"] == "failed" and "'Lamp'" in case["error"] and "suns" in case["error"]
+
+
+def test_lights_and_a_world_are_on_both_sides(scene, compare):
+    bpy.data.objects.remove(bpy.data.objects["Sun"])
+    area = add_object("Area", bpy.data.lights.new("Area", "AREA"), Matrix.Translation((0.0, 0.0, 5.0)))
+    area.data.energy, area.data.size = 200.0, 2.0
+    dark = compare(("diffuse",))[0]
+    scene.world = bpy.data.worlds.new("Sky")
+    compat.use_nodes(scene.world)
+    background = next(node for node in scene.world.node_tree.nodes if node.type == "BACKGROUND")
+    background.inputs["Color"].default_value[:3], background.inputs["Strength"].default_value = (1.0, 0.5, 0.2), 0.5
+    lit = compare(("diffuse",))[0]
+    for case in (dark, lit):
+        assert case["status"] == "done", case.get("error")
+        assert case["metrics"]["bias"] == pytest.approx(1.0, abs=0.05)
 
 
 def take_the_camera(scene):
@@ -108,7 +127,7 @@ def give_the_sun_no_number(scene):
 
 @pytest.mark.parametrize("change, traced, photons", [
     (take_the_camera, "'Eye' is an empty", "perspective camera"),
-    (remove_sun, "no visible sun", "no visible sun"),
+    (remove_sun, "no visible", "no visible sun"),
     (remove_faces, "no visible mesh", "single sphere"),
     (flatten, "no visible mesh", "single sphere"),
     (give_the_sun_no_number, "Light 'Sun'", "Light 'Sun'"),

@@ -52,15 +52,18 @@ def test_one_version_everywhere(native):
     assert re.search(r"project\(mesograin VERSION ([\d.]+)", project).group(1) == mesograin.__version__
 
 
-def test_enums_are_numbered_as_the_native_module_has_them(native):
-    from mesograin import properties
+def test_properties_are_the_schema_s():
+    from mesograin.schema.parameters import PARAMETERS
 
-    for parameter, items in (("model", properties.MODELS), ("boundary", properties.BOUNDARIES),
-                             ("masking", properties.MASKINGS), ("profile", properties.PROFILES)):
-        assert [item[3] for item in items] == list(range(len(items)))
-        with pytest.raises(native.Error) as complaint:
-            native.Material(**{parameter: "nothing"})
-        assert f"one of {', '.join(item[0] for item in items)};" in str(complaint.value)
+    declared = bpy.types.Material.bl_rna.properties["mesograin"].fixed_type.properties
+    for name, parameter in PARAMETERS.items():
+        assert declared[name].name == parameter.label and declared[name].description == parameter.describe("mm")
+        if parameter.kind in ("number", "rgb"):
+            limits = declared[name].hard_min, declared[name].hard_max
+            assert limits == pytest.approx((parameter.least, parameter.most))
+        if parameter.kind == "choice":
+            items = [(item.identifier, item.value) for item in declared[name].enum_items]
+            assert items == [(choice.name, number) for number, choice in enumerate(parameter.choices)]
 
 
 def test_defaults_are_the_native_module_s(native):

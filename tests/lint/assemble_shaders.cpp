@@ -11,10 +11,10 @@
 #include <string>
 #include <vector>
 
+#include "base/error.h"
 #include "gl/shader_library.h"
 #include "gl/shader_source.h"
-#include "physics/material_inputs.h"
-#include "scene/error.h"
+#include "models/material_inputs.h"
 #include "scene/material.h"
 
 namespace {
@@ -67,7 +67,7 @@ std::vector<scene::Material> every_choice() {
             material.profile = static_cast<scene::Profile>(profile);
             material.roughness = roughness;
             materials.push_back(material);
-            if (material.model != scene::Model::model_3) continue;
+            if (material.model != scene::Model::model_3 && material.model != scene::Model::transport) continue;
             material.sigma_s = {1.0, 2.0, 3.0};  // a coloured one is another program than a grey one
             materials.push_back(material);
             if (roughness > 0.0) continue;
@@ -78,12 +78,18 @@ std::vector<scene::Material> every_choice() {
 }
 
 void write_shading(Writer& writer) {
+  // As render::Shading.
+  const std::vector<std::vector<std::string>> shadings = {
+      {"INSTANCED"}, {"SHADOWS"}, {"LIGHTS_AT_PLACE"}, {"INSTANCED", "SHADOWS", "LIGHTS_AT_PLACE"}};
   std::set<std::string> written;
   for (const scene::Material& material : every_choice()) {
     const std::string model(scene::model_names[static_cast<std::size_t>(material.model)]);
     std::vector<std::string> defines;
     try {
-      defines = mesograin::physics::material_inputs(material).defines;
+      mesograin::models::MaterialInputs inputs = mesograin::models::material_inputs(material);
+      defines = std::move(inputs.defines);
+      if (inputs.light_maps) defines.emplace_back("LIGHT_MAPS");
+      if (scene::traits_of(material.model).mesh) defines.emplace_back("WHOLE_GRAIN");
     } catch (const mesograin::Error&) {
       continue;  // a choice that this model refuses
     }
@@ -91,18 +97,28 @@ void write_shading(Writer& writer) {
     if (!written.insert(name).second) continue;
     writer.write(name, ShaderSource({"passes/full_screen.vert"}, {}),
                  ShaderSource({"passes/shade.frag", "models/" + model + ".glsl"}, defines));
-    // The two passes ask the same of a model, so one of its choices stands for all of them.
-    if (written.insert(model).second)
-      writer.write("bake+" + name, ShaderSource({"passes/bake.vert"}, {}),
-                   ShaderSource({"passes/bake.frag", "models/" + model + ".glsl"}, defines));
+    // What else a program is compiled for asks the same of a model, so one of its choices stands for all of them.
+    if (!written.insert(model).second) continue;
+    for (const std::vector<std::string>& shading : shadings) {
+      std::vector<std::string> all = defines;
+      all.insert(all.end(), shading.begin(), shading.end());
+      const ShaderSource fragment({"passes/shade.frag", "models/" + model + ".glsl"}, all);
+      writer.write(fmt::format("{}+{}", name, fmt::join(shading, "+")), ShaderSource({"passes/full_screen.vert"}, {}),
+                   fragment);
+    }
+    writer.write("bake+" + name, ShaderSource({"passes/bake.vert"}, {}),
+                 ShaderSource({"passes/bake.frag", "models/" + model + ".glsl"}, defines));
   }
 }
 
 void write_passes(Writer& writer) {
-  for (const std::string pass : {"accumulate", "resolve"})
+  for (const std::string pass : {"accumulate", "background", "resolve"})
     writer.write(pass, ShaderSource({"passes/full_screen.vert"}, {}), ShaderSource({"passes/" + pass + ".frag"}, {}));
   writer.write("count", ShaderSource({"passes/bake.vert"}, {}), ShaderSource({"passes/count.frag"}, {}));
-  writer.write("surface", ShaderSource({"passes/surface.vert"}, {}), ShaderSource({"passes/surface.frag"}, {}));
+  for (const std::string pass : {"surface", "shadow"})
+    for (const std::string instanced : {"", "instanced_"})
+      writer.write(instanced + pass, ShaderSource({fmt::format("passes/{}{}.vert", instanced, pass)}, {}),
+                   ShaderSource({fmt::format("passes/{}.frag", pass)}, {}));
   for (const std::string name : {"light_map", "light_map+tessellated"})
     writer.write(name, ShaderSource({"passes/light_map.vert"}, {}), ShaderSource({"passes/light_map.frag"}, {}));
   for (const std::string suffix : {".tesc", ".tese"})

@@ -7,11 +7,12 @@
 #include <vector>
 
 #include "grain_pictures.h"
-#include "scene/scene_json.h"
+#include "io/scene_json.h"
 
 namespace mesograin::render {
 namespace {
 
+using io::to_json;
 using scene::Boundary;
 using scene::Material;
 using scene::Model;
@@ -41,7 +42,7 @@ class Continuity : public testing::TestWithParam<Model> {
  protected:
   std::vector<float> picture(const Material& material) {
     const glm::dmat4 here(1.0);
-    view_.set_scene({{{sphere(), material, here}}, {{{0.3, 1.0, 0.5}, {1, 1, 1}}}});
+    view_.set_scene({{{sphere(), material, here}}, {scene::DirectionalLight{{0.3, 1.0, 0.5}, {1, 1, 1}}}});
     view_.set_camera(camera_at(here, {0.0, 0.0, 1.0}));
     return draw(view_);
   }

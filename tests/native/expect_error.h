@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "scene/error.h"
+#include "base/error.h"
 
 namespace mesograin::test {
 

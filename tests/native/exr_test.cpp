@@ -1,5 +1,5 @@
 // EXR files survive the round trip, and no damage to one does more than throw a sentence.
-#include "image/exr.h"
+#include "io/exr.h"
 
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>
@@ -23,15 +23,16 @@
 #include <random>
 #include <string>
 
+#include "base/file.h"
 #include "expect_error.h"
-#include "file/file.h"
 #include "temporary_folder.h"
 
-namespace mesograin::image {
+namespace mesograin::io {
 namespace {
 
-using file::read_file;
-using file::write_file_atomically;
+using base::read_file;
+using base::write_file_atomically;
+using image::Image;
 using test::expect_error;
 using test::TemporaryFolder;
 
@@ -326,4 +327,4 @@ TEST(Exr, WritesThroughALink) {
 }
 
 }  // namespace
-}  // namespace mesograin::image
+}  // namespace mesograin::io

@@ -8,13 +8,14 @@
 
 #include "gl/context_thread.h"
 #include "grain_pictures.h"
-#include "physics/material_inputs.h"
+#include "io/scene_json.h"
+#include "models/material_inputs.h"
 #include "random_grains.h"
-#include "scene/scene_json.h"
 
 namespace mesograin::render {
 namespace {
 
+using io::to_json;
 using scene::Boundary;
 using scene::Material;
 using scene::Model;
@@ -81,7 +82,7 @@ TEST(Extremes, TablesAndUniformsAreFinite) {
   for (int i = 0; i < grain_count() && !::testing::Test::HasFailure(); ++i) {
     const Material material = random.material();
     const double radius = random.setting().radius;
-    const physics::MaterialInputs inputs = physics::material_inputs(material, radius);
+    const models::MaterialInputs inputs = models::material_inputs(material, radius);
     const auto expect_finite = [&](const std::string& name, double value) {
       ASSERT_TRUE(std::isfinite(value)) << value << " in " << name << " of " << to_json(material) << ", radius "
                                         << radius;
@@ -109,7 +110,7 @@ glm::dvec3 sent_back(View& view, const Material& material) {
   const double weights[] = {0.1012285362903763, 0.2223810344533745, 0.3137066458778873, 0.3626837833783620,
                             0.3626837833783620, 0.3137066458778873, 0.2223810344533745, 0.1012285362903763};
   const glm::dmat4 here(1.0);
-  view.set_scene({{{sphere(), material, here}}, {{{0, 1, 0}, {1, 1, 1}}}});
+  view.set_scene({{{sphere(), material, here}}, {scene::DirectionalLight{{0, 1, 0}, {1, 1, 1}}}});
   glm::dvec3 flux(0.0);
   for (int k = 0; k < 8; ++k) {
     view.set_camera(camera_at(here, {0.0, nodes[k], std::sqrt(1.0 - nodes[k] * nodes[k])}));
@@ -158,7 +159,7 @@ TEST(Extremes, AGrainAKilometreAwayIsAsExactAsOneAtTheOrigin) {
       const glm::dmat4 object_to_world =
           glm::scale(glm::translate(glm::dmat4(1.0), static_cast<double>(place) * away), glm::dvec3(0.5));
       View view(size, size);
-      view.set_scene({{{sphere(), material, object_to_world}}, {{{0.3, 1.0, 0.5}, {1, 1, 1}}}});
+      view.set_scene({{{sphere(), material, object_to_world}}, {scene::DirectionalLight{{0.3, 1.0, 0.5}, {1, 1, 1}}}});
       view.set_camera(camera_at(object_to_world, {0.0, 0.0, 1.0}));
       pictures[place] = draw(view);
     }

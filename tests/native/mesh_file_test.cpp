@@ -1,5 +1,5 @@
 // OBJ and PLY: what modelling programs write comes in right, and what is broken is named with its place.
-#include "scene/mesh_file.h"
+#include "io/mesh_file.h"
 
 #include <gtest/gtest.h>
 
@@ -11,14 +11,15 @@
 #include <string>
 #include <vector>
 
+#include "base/file.h"
 #include "expect_error.h"
-#include "file/file.h"
-#include "scene/triangulate.h"
+#include "io/triangulate.h"
 #include "temporary_folder.h"
 
-namespace mesograin::scene {
+namespace mesograin::io {
 namespace {
 
+using scene::Mesh;
 using test::expect_error;
 
 constexpr std::string_view cube_obj = R"(# a cube, as a modelling program writes it
@@ -225,11 +226,11 @@ TEST(MeshFiles, DamageNeverDoesMoreThanThrow) {
 
 TEST(MeshFiles, TheEndingChoosesTheReaderAndThePathIsNamed) {
   const test::TemporaryFolder folder;
-  file::write_file_atomically(folder / "cube.OBJ", cube_obj);
+  base::write_file_atomically(folder / "cube.OBJ", cube_obj);
   EXPECT_EQ(read_mesh(folder / "cube.OBJ").triangles().size(), 12U);
-  file::write_file_atomically(folder / "cube.ply", binary_cube());
+  base::write_file_atomically(folder / "cube.ply", binary_cube());
   EXPECT_EQ(read_mesh(folder / "cube.ply").triangles().size(), 12U);
-  file::write_file_atomically(folder / "bad.obj", "v 0 0\n");
+  base::write_file_atomically(folder / "bad.obj", "v 0 0\n");
   expect_error([&] { read_mesh(folder / "bad.obj"); }, "bad.obj: line 1: 'v' needs");
   expect_error([&] { read_mesh(folder / "cube.stl"); }, "must be an .obj or .ply file");
   expect_error([&] { read_mesh(folder / "none.obj"); }, "There is no file");
@@ -280,4 +281,4 @@ TEST(Triangulate, PolygonsWithoutAreaStillEnd) {
 }
 
 }  // namespace
-}  // namespace mesograin::scene
+}  // namespace mesograin::io

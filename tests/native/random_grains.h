@@ -16,7 +16,7 @@ namespace mesograin::scene {
 struct Setting {
   double radius;
   std::vector<double> away;
-  std::vector<DirectionalLight> lights;
+  std::vector<Light> lights;
   int taps;
 };
 
@@ -66,11 +66,11 @@ class RandomGrains {
   double coefficient() { return pick({0.0, 1e12, magnitude(6.0), magnitude(6.0), magnitude(1.5), magnitude(1.5)}); }
   double magnitude(double decades) { return std::pow(10.0, even(-decades, decades)); }
 
-  std::vector<DirectionalLight> lights() {
-    std::vector<DirectionalLight> lights;
+  std::vector<Light> lights() {
+    std::vector<Light> lights;
     for (int i = pick({1, 1, 2, 5}); i > 0; --i)
-      lights.push_back(
-          {{even(-1.0, 1.0), even(-1.0, 1.0), even(0.1, 1.0)}, glm::dvec3(1.0), pick({0.0, 0.0, 0.01, 3.0})});
+      lights.emplace_back(DirectionalLight{
+          {even(-1.0, 1.0), even(-1.0, 1.0), even(0.1, 1.0)}, glm::dvec3(1.0), pick({0.0, 0.0, 0.01, 3.0})});
     return lights;
   }
 

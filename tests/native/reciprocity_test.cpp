@@ -8,11 +8,12 @@
 #include <utility>
 
 #include "grain_pictures.h"
-#include "scene/scene_json.h"
+#include "io/scene_json.h"
 
 namespace mesograin::render {
 namespace {
 
+using io::to_json;
 using scene::Boundary;
 using scene::Material;
 using scene::Model;
@@ -22,8 +23,8 @@ class Reciprocity : public testing::Test {
  protected:
   // Radiant intensity per irradiance, but for a factor: an ellipsoid, for every sphere is symmetric by itself.
   double intensity(const Material& material, const glm::dvec3& to_light, const glm::dvec3& to_viewer) {
-    view_.set_scene(
-        {{{mesh_, material, glm::scale(glm::dmat4(1.0), glm::dvec3(1.0, 0.6, 0.8))}}, {{to_light, glm::dvec3(1.0)}}});
+    view_.set_scene({{{mesh_, material, glm::scale(glm::dmat4(1.0), glm::dvec3(1.0, 0.6, 0.8))}},
+                     {scene::DirectionalLight{to_light, glm::dvec3(1.0)}}});
     view_.set_camera(camera_at(glm::dmat4(1.0), to_viewer));
     const std::vector<float> pixels = draw(view_, samples_);
     double sum = 0.0;

@@ -1,5 +1,5 @@
 // Scenes in JSON: every key arrives where it belongs, and every mistake is named with its place.
-#include "scene/scene_json.h"
+#include "io/scene_json.h"
 
 #include <gtest/gtest.h>
 
@@ -7,13 +7,14 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "base/file.h"
 #include "expect_error.h"
-#include "file/file.h"
 #include "temporary_folder.h"
 
-namespace mesograin::scene {
+namespace mesograin::io {
 namespace {
 
+using namespace scene;
 using test::expect_error;
 using Json = nlohmann::json;
 
@@ -53,8 +54,9 @@ TEST(SceneJson, EveryKeyArrives) {
   EXPECT_EQ(sphere.material.scale, 20.0);
   EXPECT_EQ(sphere.material.boundary, Boundary::dielectric);
   ASSERT_EQ(file.scene.lights.size(), 1U);
-  EXPECT_EQ(file.scene.lights[0].direction_to_light, glm::dvec3(-1.0, -1.0, -1.6)) << "the exact one of the two";
-  EXPECT_EQ(file.scene.lights[0].irradiance, glm::dvec3(20.0, 10.0, 5.0));
+  const auto& sun = std::get<DirectionalLight>(file.scene.lights[0]);
+  EXPECT_EQ(sun.direction_to_light, glm::dvec3(-1.0, -1.0, -1.6)) << "the exact one of the two";
+  EXPECT_EQ(sun.irradiance, glm::dvec3(20.0, 10.0, 5.0));
   EXPECT_EQ(file.camera, Camera::look_at({0, 0, 6.5}, {0, 0, 0}, {0, 1, 0}, 45.0, 40.0 / 30.0));
   EXPECT_EQ(Json::parse(file.source), sphere_scene());
 }
@@ -100,17 +102,17 @@ TEST(SceneJson, TheCallerMayChooseTheSize) {
 
 TEST(SceneJson, MeshesAreFoundBesideTheFile) {
   const test::TemporaryFolder folder;
-  file::write_file_atomically(folder / "triangle.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  base::write_file_atomically(folder / "triangle.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   Json scene = sphere_scene();
   scene["geometry"] = {{"shape", "mesh"},
                        {"file", "triangle.obj"},
                        {"transform", {{2, 0, 0, 5}, {0, 2, 0, 6}, {0, 0, 2, 7}, {0, 0, 0, 1}}}};
-  file::write_file_atomically(folder / "scene.json", scene.dump());
+  base::write_file_atomically(folder / "scene.json", scene.dump());
   const SceneFile file = read_scene(folder / "scene.json");
   EXPECT_EQ(file.scene.instances[0].mesh->triangles().size(), 1U);
   EXPECT_EQ(file.scene.instances[0].object_to_world[3], glm::dvec4(5.0, 6.0, 7.0, 1.0));
   scene["geometry"]["file"] = "none.obj";
-  file::write_file_atomically(folder / "scene.json", scene.dump());
+  base::write_file_atomically(folder / "scene.json", scene.dump());
   expect_error([&] { read_scene(folder / "scene.json"); }, "scene.json: geometry.file: There is no file");
   expect_error([&] { read_scene(folder / "none.json"); }, "There is no file");
 }
@@ -124,7 +126,7 @@ struct Mistake {
 TEST(SceneJson, MistakesAreNamedWithTheirPlace) {
   const Mistake mistakes[] = {
       {"/colour", "1", "colour is an unknown key; those allowed in the scene are geometry, camera, resolution"},
-      {"/material/sigma_t", "1", "material.sigma_t is an unknown key; those allowed in material are kind, sigma_s"},
+      {"/material/sigma_t", "1", "material.sigma_t is an unknown key; those allowed in material are kind, sigma_a"},
       {"/camera/roll", "1", "camera.roll is an unknown key"},
       {"/lights/0/power", "1", "lights[0].power is an unknown key"},
       {"/geometry/height", "1", "geometry.height is an unknown key"},
@@ -133,7 +135,8 @@ TEST(SceneJson, MistakesAreNamedWithTheirPlace) {
       {"/lights", "[]", "lights must be a list of at least one light; got []"},
       {"/lights", "3", "lights must be a list of at least one light; got 3"},
       {"/lights/0", "[]", "lights[0] must be an object; got []"},
-      {"/lights/0/type", "\"point\"", "lights[0].type must be \"distant\"; got \"point\""},
+      {"/lights/0/type", "\"beam\"",
+       "lights[0].type must be \"distant\", \"point\", \"spot\" or \"area\"; got \"beam\""},
       {"/lights/0/irradiance_linear_rgb", "[1, 2]", "lights[0].irradiance_linear_rgb must be a number or a list of 3"},
       {"/lights/0/irradiance_linear_rgb", "[1, -2, 3]",
        "irradiance_linear_rgb[1] must be a finite number of at least 0"},
@@ -155,13 +158,13 @@ TEST(SceneJson, MistakesAreNamedWithTheirPlace) {
       {"/geometry/radius", "0", "geometry.radius must be greater than 0; got 0"},
       {"/geometry/radius", "-1", "geometry.radius must be greater than 0; got -1"},
       {"/geometry/centre", "[1, 2]", "geometry.centre must be a list of 3 numbers; got [1,2]"},
-      {"/material/kind", "\"wood\"", "material.kind must be \"diffuse\", \"conductor\""},
+      {"/material/kind", "\"wood\"", "material.kind must be one of \"diffuse\", \"conductor\""},
       {"/material/kind", "", "material.kind is missing"},
       {"/material/sigma_a", "", "material.sigma_a is missing"},
-      {"/material/sigma_a", "-0.1", "material.sigma_a must be a finite number of at least 0; got -0.1"},
+      {"/material/sigma_a", "-0.1", "material.sigma_a must lie between 0 and"},
       {"/material/sigma_s", "[1, null, 1]", "material.sigma_s[1] must be a number; got null"},
-      {"/material/g", "1.5", "material: g must lie between -1 and 1; got 1.5"},
-      {"/material/eta", "0", "material: eta must lie between"},
+      {"/material/g", "1.5", "material.g must lie between -1 and 1; got 1.5"},
+      {"/material/eta", "0", "material.eta must lie between"},
       {"/material/roughness", "true", "material.roughness must be a number; got true"},
       {"/material/specular", "1", "material.specular must be true or false; got 1"},
       {"/material/remaproughness", "true", "material.remaproughness must be false"},
@@ -194,7 +197,8 @@ TEST(SceneJson, WhatIsNotJsonIsNamedWithItsLine) {
 
 TEST(SceneJson, AModelThatDoesNotAnswerTheKindIsRefused) {
   expect_error([] { parse(sphere_scene(), {.model = Model::lambert}); },
-               "material.kind is \"smooth_mc\", which model_2 or model_1 or model_3 answers; got the model lambert");
+               "material.kind is \"smooth_mc\", which model_2 or model_1 or model_3 or transport answers; got the "
+               "model lambert");
 }
 
 TEST(SceneJson, AMaterialTellsAllItsParameters) {
@@ -207,4 +211,4 @@ TEST(SceneJson, AMaterialTellsAllItsParameters) {
 }
 
 }  // namespace
-}  // namespace mesograin::scene
+}  // namespace mesograin::io

@@ -45,7 +45,7 @@ class ViewTest : public testing::Test {
   void TearDown() override { EXPECT_TRUE(gl::ContextThread::instance().take_gl_errors().empty()); }
 
   scene::Material lambert_;
-  scene::Scene one_square_{{{square(), lambert_}}, {{{0, 0, 1}, {pi, 2 * pi, 3 * pi}}}};
+  scene::Scene one_square_{{{square(), lambert_}}, {scene::DirectionalLight{{0, 0, 1}, {pi, 2 * pi, 3 * pi}}}};
 };
 
 TEST_F(ViewTest, LambertSquareHasTheRadianceOfLambertsLaw) {
@@ -78,7 +78,7 @@ TEST_F(ViewTest, CoverageOfAnEdgePixelIsItsCoveredArea) {
   const scene::Camera camera{glm::translate(glm::dmat4(1.0), glm::dvec3(0, 0, -4)),
                              glm::ortho(-2.0, 2.0, -2.0, 2.0, 0.1, 10.0)};
   View view(4, 4);
-  scene::Scene scene{{{square(1.25), lambert_}}, {{{0, 0, 1}, {1, 1, 1}}}};
+  scene::Scene scene{{{square(1.25), lambert_}}, {scene::DirectionalLight{{0, 0, 1}, {1, 1, 1}}}};
   view.set_scene(scene);
   view.set_camera(camera);
   const std::vector<float> pixels = picture(view, 1024);
@@ -88,7 +88,7 @@ TEST_F(ViewTest, CoverageOfAnEdgePixelIsItsCoveredArea) {
 
 TEST_F(ViewTest, MoreGrainsThanAStencilHoldsKeepTheirOwnMaterials) {
   constexpr int side = 20;
-  scene::Scene scene{{}, {{{0, 0, 1}, {pi, pi, pi}}}};
+  scene::Scene scene{{}, {scene::DirectionalLight{{0, 0, 1}, {pi, pi, pi}}}};
   for (int i = 0; i < side * side; ++i) {
     const int column = i % side;
     const int row = i / side;
@@ -141,7 +141,7 @@ TEST_F(ViewTest, MirroredInstancesFaceTheSameWay) {
 
 TEST_F(ViewTest, BothSidesOfAnOpenMeshAreLit) {
   scene::Scene scene = one_square_;
-  scene.lights[0].direction_to_light = {0, 0, -1};
+  std::get<scene::DirectionalLight>(scene.lights[0]).direction_to_light = {0, 0, -1};
   View view(16, 16);
   view.set_scene(scene);
   view.set_camera(scene::Camera::look_at({0, 0, -4}, {0, 0, 0}, {0, 1, 0}, 45.0));
@@ -150,7 +150,7 @@ TEST_F(ViewTest, BothSidesOfAnOpenMeshAreLit) {
 
 TEST_F(ViewTest, NoLightLeaksOverTheSilhouetteOfAClosedGrain) {
   scene::Scene scene{{{std::make_shared<scene::Mesh>(scene::unit_sphere(64, 32)), lambert_}},
-                     {{{0, 0.3, -1}, {1, 1, 1}}}};
+                     {scene::DirectionalLight{{0, 0.3, -1}, {1, 1, 1}}}};
   View view(128, 128);
   view.set_scene(scene);
   view.set_camera(straight_camera());
@@ -176,7 +176,7 @@ TEST_F(ViewTest, LightsAddUpAndNoneIsBlack) {
 TEST_F(ViewTest, AWideSunGivesTheMeanCosineOverItsDisc) {
   scene::Scene scene = one_square_;
   const double angle = 1.0;
-  scene.lights[0].angle = angle;
+  std::get<scene::DirectionalLight>(scene.lights[0]).angle = angle;
   View view(8, 8);
   view.set_scene(scene);
   view.set_camera(straight_camera());
@@ -269,7 +269,7 @@ TEST_F(ViewTest, WhatCannotBeDrawnIsRefusedAndChangesNothing) {
   broken.instances[0].object_to_world = glm::dmat4(0.0);
   expect_error([&] { view.set_scene(broken); }, "invertible");
   broken = one_square_;
-  broken.lights[0].direction_to_light = glm::dvec3(0.0);
+  std::get<scene::DirectionalLight>(broken.lights[0]).direction_to_light = glm::dvec3(0.0);
   expect_error([&] { view.set_scene(broken); }, "direction_to_light");
   scene::Camera camera = straight_camera();
   camera.camera_to_clip[1][1] = std::numeric_limits<double>::infinity();

@@ -1,6 +1,6 @@
 // The endless cylinder against photons that walk through it, its limits, and what the kernel may gather beyond a
 // sphere.
-#include "physics/cylinder_exitance.h"
+#include "physics/body/cylinder_exitance.h"
 
 #include <gtest/gtest.h>
 
@@ -9,11 +9,12 @@
 #include <glm/vec3.hpp>
 #include <random>
 
-#include "physics/beyond_sphere.h"
-#include "physics/kernel_tables.h"
+#include "physics/body/half_space_exitance.h"
+#include "physics/body/sphere_exitance.h"
+#include "physics/kernels/beyond_sphere.h"
+#include "physics/kernels/kernel_tables.h"
+#include "physics/kernels/sphere_kernel.h"
 #include "physics/physics.h"
-#include "physics/sphere_exitance.h"
-#include "physics/surface_kernel.h"
 
 namespace mesograin::physics {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "physics/dielectric_surface.h"
-#include "physics/half_space.h"
+#include "physics/half_space/dielectric_surface.h"
+#include "physics/half_space/half_space.h"
 #include "physics/physics.h"
 #include "physics/quadrature.h"
 

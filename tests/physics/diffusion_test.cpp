@@ -1,4 +1,6 @@
 // The closed forms of diffusion theory against what was published with them.
+#include "physics/diffusion.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -93,6 +95,16 @@ TEST(BetterDipole, ReturnsEverythingWithoutAbsorption) {
 TEST(Diffusion, ReturnsNothingWithoutScattering) {
   EXPECT_EQ(dipole_total(1.0, 2.0), 0.0);
   EXPECT_EQ(better_dipole_total(1.0, 2.0, 0.2, 0.3), 0.0);
+}
+
+TEST(Diffusion, ASourceAndItsImageFarAwayDoNotCancel) {
+  // Far away the difference is that of a dipole: (z_v^2 - z_r^2) (1 + k r)/(2 r^3) exp(-k r), to first order in 1/r^2.
+  for (const double r : {1e4, 1e5, 1e6, 1e7})
+    for (const double decay : {0.0, 1e-7, 1e-5}) {
+      const double ours = image_difference(std::hypot(r, 1.0), std::hypot(r, 4.1), 15.81, decay);
+      const double dipole = 15.81 * (1.0 + decay * r) / (2.0 * r * r * r) * std::exp(-decay * r);
+      EXPECT_NEAR(ours / dipole, 1.0, 1e-5) << r << " " << decay;
+    }
 }
 
 }  // namespace

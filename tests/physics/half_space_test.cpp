@@ -1,15 +1,15 @@
 // The half-space solver against tables, Monte Carlo and the laws it must keep.
-#include "physics/half_space.h"
+#include "physics/half_space/half_space.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
-#include "physics/half_space_albedo.h"
+#include "base/error.h"
+#include "physics/half_space/half_space_albedo.h"
 #include "physics/physics.h"
 #include "physics/quadrature.h"
-#include "scene/error.h"
 
 namespace mesograin::physics {
 namespace {

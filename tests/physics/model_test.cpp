@@ -7,20 +7,23 @@
 #include <map>
 #include <random>
 
+#include "base/error.h"
 #include "gl/buffer.h"
 #include "gl/context_thread.h"
 #include "gl/program.h"
 #include "gl/shader_source.h"
 #include "gl/texture.h"
-#include "physics/dielectric_surface.h"
-#include "physics/material_inputs.h"
+#include "models/material_inputs.h"
+#include "physics/half_space/dielectric_surface.h"
 #include "physics/physics.h"
 #include "physics/quadrature.h"
-#include "scene/error.h"
 
 namespace mesograin::physics {
 namespace {
 
+using models::material_inputs;
+using models::MaterialInputs;
+using models::UniformValue;
 using scene::Boundary;
 using scene::Masking;
 using scene::Material;
@@ -93,9 +96,9 @@ class Evaluator {
         "void main() {\n"
         "  uint index = gl_GlobalInvocationID.x;\n"
         "  if (index >= radiance.length()) return;\n"
-        "  SurfacePoint point = SurfacePoint(vec3(0.0), normal, directions[2u * index + 1u].xyz);\n"
+        "  SurfacePoint point = SurfacePoint(vec3(0.0), normal, directions[2u * index + 1u].xyz, vec3(0.0));\n"
         "  radiance[index] = vec4(evaluate_model(point, look_outwards(point), LightSample(directions[2u * index].xyz, "
-        "vec3(1.0), 0, 0.0)), "
+        "vec3(1.0), 0, 0.0, 0)), "
         "1.0);\n"
         "}\n";
     return programs_.emplace(key, gl::Program(key, gl::ShaderSource::from_text(key + ".comp", text, defines)))

@@ -16,7 +16,7 @@ namespace mesograin::physics {
 std::vector<float> evaluate_on_gpu(const std::string& expression, const std::vector<ProbeInput>& inputs,
                                    const std::string& declarations) {
   const std::string text =
-      "#include \"physics/prelude.glsl\"\n#include \"physics/elementary.glsl\"\n#include \"physics/diffusion.glsl\"\n"
+      "#include \"physics/prelude.glsl\"\n#include \"physics/elementary.glsl\"\n"
       "#include \"physics/dielectric.glsl\"\n#include \"physics/half_space.glsl\"\n"
       "#include \"physics/henyey_greenstein.glsl\"\n"
       "layout(local_size_x = 64) in;\n"

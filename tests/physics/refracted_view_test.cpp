@@ -1,5 +1,5 @@
 // The view's side of Cycles 4's random walk: a refracted view ray, averaged over the visible normals.
-#include "physics/refracted_view.h"
+#include "physics/half_space/refracted_view.h"
 
 #include <gtest/gtest.h>
 

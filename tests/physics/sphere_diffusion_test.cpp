@@ -1,13 +1,14 @@
 // The diffusing sphere against closed forms, conservation and its half-space limit.
-#include "physics/sphere_diffusion.h"
+#include "physics/body/sphere_diffusion.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "physics/body/half_space_exitance.h"
+#include "physics/body/sphere_exitance.h"
+#include "physics/body/sphere_refraction.h"
 #include "physics/physics.h"
-#include "physics/sphere_exitance.h"
-#include "physics/sphere_refraction.h"
 
 namespace mesograin::physics {
 namespace {

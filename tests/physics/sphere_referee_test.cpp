@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
-#include "physics/entering_ring.h"
-#include "physics/sphere_exitance.h"
+#include "physics/body/entering_ring.h"
+#include "physics/body/sphere_exitance.h"
 
 namespace mesograin::physics {
 namespace {

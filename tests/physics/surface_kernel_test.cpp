@@ -1,12 +1,13 @@
 // The kernels that model 3 integrates: closed totals against quadrature, limits, and tables that sample what they say.
-#include "physics/surface_kernel.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numeric>
 
-#include "physics/kernel_tables.h"
+#include "physics/kernels/kernel_tables.h"
+#include "physics/kernels/planar_kernel.h"
+#include "physics/kernels/sphere_kernel.h"
 #include "physics/physics.h"
 
 namespace mesograin::physics {

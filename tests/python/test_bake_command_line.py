@@ -87,12 +87,11 @@ def test_meshes_say_whether_they_have_uvs():
 
 @pytest.mark.parametrize("words, sentence", [
     (["--reference", "diffuse"], "need --compare"),
-    (["--compare", "--half"], "neither with --half nor --margin"),
-    (["--compare", "--margin", "3"], "neither with --half nor --margin"),
     (["--compare", "--reference", "paint"], "invalid choice: 'paint'"),
 ])
 def test_what_a_comparison_takes(scene, capsys, words, sentence):
     with pytest.raises(SystemExit):
         arguments.parse([scene, "-o", "a.exr", *words])
     assert sentence in capsys.readouterr().err
-    assert arguments.parse([scene, "-o", "a.exr", "--compare"]).margin == 0
+    chosen = arguments.parse([scene, "-o", "a.exr", "--compare", "--half"])
+    assert (chosen.margin, chosen.half) == (16, True), "a comparison beside it changes nothing of the texture"

@@ -15,7 +15,7 @@ LIMITS = {"lambert": 0.005, "conductor": 0.002, "model_1": 0.025, "model_2": 0.0
 # Light that shines through, from in front and from behind: diffusion is least sure of it, a BRDF knows nothing of it.
 TRANSLUCENT = {"mc_H_e1.3_s6_A.exr": {"model_2": 0.023, "model_3": 0.02},
                "mc_H_e1.3_s1_A.exr": {"model_2": 0.05, "model_3": 0.047},
-               "mc_H_e1.0_s1_K.exr": {"model_2": 0.125, "model_3": 0.115}}
+               "mc_H_e1.0_s1_K.exr": {"model_2": 0.13, "model_3": 0.115}}
 MODELS = {"diffuse": ["lambert"], "conductor": ["conductor"], "smooth_mc": ["model_1", "model_2", "model_3"]}
 SAMPLES = {"lambert": 16, "model_3": 8}
 

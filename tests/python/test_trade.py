@@ -112,12 +112,12 @@ def test_a_noisy_reference_judges_in_blocks():
 def test_every_reference_of_compare_can_be_measured_against():
     assert arguments.REFERENCES == room("comparison.arguments").REFERENCES
     assert arguments.parse(["--reference", "volume_dielectric"]).reference_samples == 1024
-    assert arguments.parse(["--reference", "photon"]).models == ("model_1", "model_2", "model_3")
+    assert arguments.parse(["--reference", "photon"]).models == ("model_1", "model_2", "model_3", "transport")
 
 
 def test_defaults_suit_each_other():
     chosen = arguments.parse([])
-    assert chosen.models == ("model_1", "model_2", "model_3")
+    assert chosen.models == ("model_1", "model_2", "model_3", "transport")
     assert chosen.traced_samples == (1, 2, 4, 8, 16, 32, 64, 128)
     assert arguments.parse(["--reference", "glossy", "--reference-samples", "1"]).traced_samples == (1,)
 

@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "file/file.h"
+#include "base/file.h"
 #include "half_space.h"
+#include "io/scene_json.h"
 #include "picture_file.h"
-#include "scene/scene_json.h"
 #include "table_file.h"
 #include "tables.h"
 
@@ -86,7 +86,7 @@ void add_render(CLI::App& application) {
   CLI::App* command = application.add_subcommand("render", "a picture of a scene's sphere, in OpenEXR, with its noise");
   auto scene_path = std::make_shared<std::string>();
   auto output = std::make_shared<std::string>();
-  auto choices = std::make_shared<mesograin::scene::SceneChoices>();
+  auto choices = std::make_shared<mesograin::io::SceneChoices>();
   auto wanted = std::make_shared<PictureCase>();
   command->add_option("scene", *scene_path, "scene in JSON")->required()->option_text("SCENE.json");
   command->add_option("-o,--output", *output, "picture to write")->required()->option_text("OUT.exr");
@@ -98,8 +98,8 @@ void add_render(CLI::App& application) {
   command->add_option("--seed", wanted->seed, "the picture depends on it alone")->capture_default_str();
   command->add_option("--threads", wanted->threads, "0: as many as the machine has")->capture_default_str();
   command->callback([=] {
-    mesograin::file::require_writable(*output);
-    const mesograin::scene::SceneFile file = mesograin::scene::read_scene(*scene_path, *choices);
+    mesograin::base::require_writable(*output);
+    const mesograin::io::SceneFile file = mesograin::io::read_scene(*scene_path, *choices);
     PictureCase setup = picture_case(file);
     setup.samples = wanted->samples;
     setup.seed = wanted->seed;

@@ -9,9 +9,9 @@
 #include <numbers>
 #include <optional>
 
+#include "base/error.h"
 #include "parallel.h"
 #include "reduced_light.h"
-#include "scene/error.h"
 #include "walk.h"
 
 namespace mesograin::referee {

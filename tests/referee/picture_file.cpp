@@ -3,13 +3,14 @@
 
 #include <glm/matrix.hpp>
 #include <nlohmann/json.hpp>
+#include <variant>
 
-#include "image/exr.h"
-#include "scene/error.h"
+#include "base/error.h"
+#include "io/exr.h"
 
 namespace mesograin::referee {
 
-PictureCase picture_case(const scene::SceneFile& file) {
+PictureCase picture_case(const io::SceneFile& file) {
   const nlohmann::json source = nlohmann::json::parse(file.source);  // already read once, and found complete
   const nlohmann::json& geometry = source.at("geometry");
   if (geometry.at("shape") != "sphere")
@@ -24,14 +25,18 @@ PictureCase picture_case(const scene::SceneFile& file) {
     for (int axis = 0; axis < 3; ++axis) setup.centre[axis] = geometry["centre"][static_cast<std::size_t>(axis)];
   setup.radius = geometry.at("radius");
   setup.material = file.scene.instances.front().material;
-  setup.lights = file.scene.lights;
+  for (const scene::Light& light : file.scene.lights) {
+    const auto* sun = std::get_if<scene::DirectionalLight>(&light);
+    if (sun == nullptr) throw Error("The referee knows suns: every light's type must be 'distant'.");
+    setup.lights.push_back(*sun);
+  }
   setup.clip_to_world = glm::inverse(file.camera.camera_to_clip * file.camera.world_to_camera);
   setup.width = file.width;
   setup.height = file.height;
   return setup;
 }
 
-void write_picture(const std::filesystem::path& path, const scene::SceneFile& file, const PictureCase& setup,
+void write_picture(const std::filesystem::path& path, const io::SceneFile& file, const PictureCase& setup,
                    const Picture& picture) {
   image::Image pixels{.width = setup.width, .height = setup.height, .channels = 7, .pixels = {}};
   for (std::size_t pixel = 0; pixel < picture.radiance.size(); ++pixel) {
@@ -41,11 +46,11 @@ void write_picture(const std::filesystem::path& path, const scene::SceneFile& fi
     for (int channel = 0; channel < 3; ++channel)
       pixels.pixels.push_back(static_cast<float>(picture.noise[pixel][channel]));
   }
-  image::write_exr(
+  io::write_exr(
       path, pixels.view(), {"R", "G", "B", "A", "noise.R", "noise.G", "noise.B"},
       {{"mesograin:version", MESOGRAIN_VERSION},
        {"mesograin:method", "photon Monte Carlo, backward, smooth interface; light of at least one scattering"},
-       {"mesograin:material", scene::to_json(setup.material)},
+       {"mesograin:material", io::to_json(setup.material)},
        {"mesograin:scene", file.source},
        {"mesograin:samples", std::to_string(setup.samples)},
        {"mesograin:seed", std::to_string(setup.seed)},

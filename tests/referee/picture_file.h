@@ -4,18 +4,18 @@
 #include <filesystem>
 #include <functional>
 
+#include "io/scene_json.h"
 #include "picture.h"
-#include "scene/scene_json.h"
 
 namespace mesograin::referee {
 
 /// The sphere of a scene with its camera and lights. Throws Error unless the scene's geometry is a sphere and its
 /// material a medium.
-PictureCase picture_case(const scene::SceneFile& file);
+PictureCase picture_case(const io::SceneFile& file);
 
 /// Writes R, G, B, A (premultiplied radiance, coverage) and noise.R, noise.G, noise.B, with what made them in the
 /// header.
-void write_picture(const std::filesystem::path& path, const scene::SceneFile& file, const PictureCase& setup,
+void write_picture(const std::filesystem::path& path, const io::SceneFile& file, const PictureCase& setup,
                    const Picture& picture);
 
 }  // namespace mesograin::referee

@@ -9,9 +9,9 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
-#include "image/exr.h"
+#include "base/error.h"
+#include "io/exr.h"
 #include "picture_file.h"
-#include "scene/error.h"
 #include "sphere.h"
 #include "stored_table.h"
 #include "walk.h"
@@ -21,7 +21,7 @@ namespace {
 
 using scene::Boundary;
 
-PictureCase parse(const nlohmann::json& scene) { return picture_case(scene::parse_scene(scene.dump(), "")); }
+PictureCase parse(const nlohmann::json& scene) { return picture_case(io::parse_scene(scene.dump(), "")); }
 
 nlohmann::json thesis_scene(double sigma_s, double sigma_a, double eta, double scale) {
   nlohmann::json scene;
@@ -177,13 +177,13 @@ TEST(Picture, OfWhatCyclesSolvesAgreesWithAnotherMonteCarlo) {
 TEST(Picture, TravelsThroughAFileWithItsNoise) {
   nlohmann::json scene = thesis_scene(0.9, 0.1, 1.3, 1);
   scene["resolution"] = {7, 5};
-  const scene::SceneFile file = scene::parse_scene(scene.dump(), "");
+  const io::SceneFile file = io::parse_scene(scene.dump(), "");
   PictureCase setup = picture_case(file);
   setup.samples = 16;
   const Picture picture = trace_picture(setup);
   const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "referee_picture.exr";
   write_picture(path, file, setup, picture);
-  const image::ExrFile read = image::read_exr(path);
+  const io::ExrFile read = io::read_exr(path);
   std::filesystem::remove(path);
   ASSERT_EQ(read.channels.size(), 7u);
   EXPECT_EQ(read.image.width, 7);

@@ -68,7 +68,7 @@ def check_cycles_bakes_beside_and_the_panel_shows_both(window):
     assert (np.abs(shown - quiet).max(axis=-1) > 0.1).sum() > 1000, "the panel shows no numbers"
     area.type = "IMAGE_EDITOR"
     try:
-        for picture, file in (("model", "bake.exr"), ("reference", "bake.cycles.exr")):
+        for picture, file in (("model", "bake.mesograin.exr"), ("reference", "bake.cycles.exr")):
             with window.override(area):
                 bpy.ops.mesograin.show_bake(picture=picture)
             image = area.spaces.active.image

@@ -2,10 +2,11 @@
 # picture that follows is right.
 import addon_utils
 import bpy
-from mesograin import properties, status
+from mesograin import status
 from mesograin.background import job as jobs
 from mesograin.bake_panel import session as baking
 from mesograin.compare_panel import session as comparing
+from mesograin.schema import models
 
 ENDLESS = 1 << 16
 
@@ -25,8 +26,8 @@ def check_models_switch_while_rendering(window):
     area = yield from window.open("sphere", samples=ENDLESS)
     grain = bpy.data.materials["Translucent"].mesograin
     for _ in range(3):
-        for model in properties.MODELS:
-            grain.model = model[0]
+        for model in models.NAMES:
+            grain.model = model
             yield from window.seconds(0.1)
     yield from settle(window, area)
 

@@ -5,7 +5,7 @@ import math
 import bpy
 import numpy as np
 from mathutils import Quaternion
-from mesograin import engine, status
+from mesograin import engine, status, viewport
 
 
 def check_viewport_shows_what_the_native_module_renders(window):
@@ -85,6 +85,34 @@ def check_parameter_change_is_visible_and_sends_no_mesh(window):
     bright = before.min(axis=-1) > 0.4
     ratio = (window.linear(picture)[bright] / window.linear(before)[bright]).mean(axis=0)
     assert np.allclose(ratio, (0.5, 0.25, 1.0), atol=0.02), ratio
+
+
+def check_a_drag_shows_pictures_before_its_end(window):
+    yield from window.open("sphere", samples=1 << 16)
+    yield from window.until(lambda: status.get(status.VIEWPORT) is not None)
+    grain = bpy.data.materials["Translucent"].mesograin
+    grain.model, grain.scale = "model_2", 1.0
+    yield from window.seconds(1.0)
+    drawn = {"_view_draw": 0, "_take": 0}  # redraws, and new pictures in them
+    before = {name: getattr(engine.MesograinRenderEngine, name) for name in drawn}
+
+    def counted(name):
+        def call(*arguments):
+            drawn[name] += 1
+            return before[name](*arguments)
+        return call
+
+    try:
+        for name in drawn:
+            setattr(engine.MesograinRenderEngine, name, counted(name))
+        for change in range(16):
+            redraws = drawn["_view_draw"]
+            grain.scale *= 1.1
+            yield from window.until(lambda: drawn["_view_draw"] > redraws)
+    finally:
+        for name in drawn:
+            setattr(engine.MesograinRenderEngine, name, before[name])
+    assert drawn["_take"] >= drawn["_view_draw"] // 2, drawn
 
 
 def check_undo_brings_the_picture_back(window):
@@ -195,6 +223,36 @@ def check_bad_parameter_says_one_sentence_and_recovers(window):
     assert status.complaints() == []
 
 
+def check_an_error_of_a_redraw_is_seen_at_once(window):
+    """In the viewport itself, also where Blender hides its text, and in the panel, without anybody touching either."""
+    area = yield from window.open("sphere")
+    properties = window.area_of_type("PROPERTIES")
+    properties.spaces.active.context = "RENDER"
+    yield from window.converged_picture(area)
+    before = yield from window.picture(properties)
+    shot = window._screen()
+    render = viewport._render
+
+    def fail(view, samples):
+        raise window.native.Error("The device is gone: find it.")
+
+    viewport._render = fail
+    try:
+        bpy.data.materials["Translucent"].mesograin.reflectance = (0.7, 0.7, 0.7)
+        yield from window.until(lambda: status.complaints() == ["The device is gone: find it."])
+        yield from window.seconds(1.0)
+        changed = np.abs(window._screen() - shot).max(axis=-1) > 0.3
+    finally:
+        viewport._render = render
+    after = yield from window.picture(properties)
+    region, panel = window.region(area), window.region(properties)
+    rows = slice(shot.shape[0] - region.y - region.height, shot.shape[0] - region.y - region.height + 80)
+    assert changed[rows, region.x:region.x + region.width].sum() > 100, "the viewport does not say it"
+    top = shot.shape[0] - panel.y - panel.height
+    at_once = changed[top:top + panel.height, panel.x:panel.x + panel.width].sum()
+    assert at_once > 100 and (np.abs(after - before).max(axis=-1) > 0.3).sum() < 1.2 * at_once, "the panel does not"
+
+
 def check_scene_without_light_is_dark_and_says_why(window):
     area = yield from window.open("sphere")
     yield from window.converged_picture(area)
@@ -203,7 +261,7 @@ def check_scene_without_light_is_dark_and_says_why(window):
         bpy.data.objects.remove(bpy.data.objects[name])
     picture = yield from window.converged_picture(area)
     assert window.inner(picture).max() == 0.0
-    assert any("no sun light" in sentence for sentence in status.complaints()), status.complaints()
+    assert any("no light" in sentence for sentence in status.complaints()), status.complaints()
 
 
 def check_overbright_pixels_stay_bright(window):

@@ -1,4 +1,4 @@
-# Our texture and the one that Cycles bakes of the material that means the same, made in a Blender of their own.
+# An object's texture, and beside it ours and Cycles' of the material that means the same, in a Blender of their own.
 """See `ComparedBake`."""
 
 import json
@@ -11,8 +11,9 @@ from ..side_task import pictures
 
 
 class ComparedBake:
-    """Two textures that are being made. path: where ours goes, the rest beside it. name: of the object. arguments: of
-    `baking.beside.bake`, but for what these and the folders say. results: what OUT.json holds, once it was finished."""
+    """Textures that are being made. path: where the object's own goes, those that are compared beside it. name: of the
+    object. arguments: of `baking.beside.bake`, but for what these and the folders say. results: what OUT.json holds,
+    once it was finished."""
 
     def __init__(self, path, name, **arguments):
         self.path, self.name = path, name
@@ -70,7 +71,7 @@ class ComparedBake:
     @property
     def summary(self):
         width, height = self.results["size"]
-        return f"{self.path.name} and Cycles' beside it: {self.name}, {width} x {height} texels"
+        return f"{self.path.name}, and Mesograin's and Cycles' beside it: {self.name}, {width} x {height} texels"
 
     @property
     def entry(self):

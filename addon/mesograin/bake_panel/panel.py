@@ -17,10 +17,8 @@ def draw_settings(layout, context):
     column.prop(asked, "height", text="Y")
     layout.prop(asked, "samples")
     layout.prop(asked, "view_from")
-    column = layout.column()
-    column.active = not asked.compare  # which is of the texels themselves, as they are
-    column.prop(asked, "margin")
-    column.prop(asked, "half")
+    layout.prop(asked, "margin")
+    layout.prop(asked, "half")
     layout.prop(asked, "out")
     layout.prop(asked, "compare")
     if asked.compare:
@@ -50,7 +48,7 @@ def draw_bake(layout, context):
     for sentence in bake.sentences:
         panels.draw_sentence(layout, context, sentence)
     if bake.results is not None:
-        ours = "Texture, Mesograin", results.seconds(bake.results["our_seconds"])
+        ours = "Mesograin", results.seconds(bake.results["our_seconds"])
         results.draw(layout.box(), context, bake.entry, ours, operators.MESOGRAIN_OT_show_bake)
 
 

@@ -2,6 +2,7 @@
 import bpy
 from bpy.props import BoolProperty, EnumProperty, IntProperty, StringProperty
 
+from .. import compat
 from ..baking import choices
 from ..cycles import kinds
 from ..side_task.settings import remembered_by_scenes
@@ -31,7 +32,8 @@ class BakeProperties(bpy.types.PropertyGroup):
     half: BoolProperty(name="Half floats", default=False, description="16-bit instead of 32-bit floats")
     compare: BoolProperty(
         name="Compare with Cycles", default=False,
-        description="Bake the Cycles material that means the same too, beside this Blender, and measure the difference")
+        description="Bake besides, in a Blender of its own, what can be compared with Cycles, and Cycles' bake of it, "
+        "and measure the difference")
     # Their numbers are those of the table, so that files keep their choice when there are more.
     reference: EnumProperty(
         name="Reference", default=USUAL, description="What Cycles solves",
@@ -41,7 +43,7 @@ class BakeProperties(bpy.types.PropertyGroup):
     reference_samples: IntProperty(
         name="Cycles Samples", default=0, min=0, max=1 << 20, soft_max=4096,
         description="Cycles' samples of each texel, for each of two seeds; 0 is 64 for surfaces and 128 for volumes")
-    out: StringProperty(name="File", default="//bake.exr", subtype="FILE_PATH",
+    out: StringProperty(name="File", default="//bake.exr", subtype="FILE_PATH", **compat.relative_path_options(),
                         description="The EXR file to write; // is the folder of the .blend file")
 
 

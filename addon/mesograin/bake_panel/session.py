@@ -144,6 +144,7 @@ def _prepare_compared(asked, path, name):
         raise surface.BakeError(str(problem)) from problem
     return ComparedBake(
         path, name, size=[asked.width, asked.height], samples=asked.samples, view_from=asked.view_from,
+        margin=asked.margin, half=asked.half,
         reference=None if asked.reference == USUAL else asked.reference,
         reference_samples=asked.reference_samples or None, cache=str(cache.folder), cache_limit=cache.limit)
 

@@ -7,15 +7,16 @@ from pathlib import Path
 
 from ..command_line import parser as shared
 from ..command_line.values import positive
-from ..comparison.arguments import MODELS, REFERENCES
+from ..comparison.arguments import REFERENCES
+from ..schema.models import NAMES
 from .choices import DEFAULT_MARGIN, LARGEST_MARGIN, LARGEST_SIDE, VIEW_FROM
 
 
 def build():
     """The parser, for --help without Blender."""
     parser = shared.Parser(
-        prog="mesograin bake",
-        usage="mesograin bake SCENE.blend -o OUT.exr [options]",
+        prog="./mesograin bake",
+        usage="./mesograin bake SCENE.blend -o OUT.exr [options]",
         description="Bakes an object's surface to an EXR texture at its UVs, and Cycles' beside it with --compare.",
         epilog="Exit codes: 0 written, 1 it could not be baked, 2 bad arguments or scene, 3 the output cannot be"
         " written, 130 interrupted. Files appear complete or not at all.",
@@ -24,19 +25,20 @@ def build():
     parser.add_argument("-o", "--output", type=_exr, required=True, metavar="OUT.exr", help="texture to write")
     parser.add_argument("--object", default=None, metavar="NAME",
                         help="what to bake (default: the active object, or the only one)")
-    parser.add_argument("--model", choices=MODELS, default=None, metavar="MODEL",
-                        help=f"one of {', '.join(MODELS)} (default: the material's)")
+    parser.add_argument("--model", choices=NAMES, default=None, metavar="MODEL",
+                        help=f"one of {', '.join(NAMES)} (default: the material's)")
     parser.add_argument("--size", type=_size, default=(1024, 1024), metavar="SIDE|WxH",
                         help="texels (default: 1024, square)")
     parser.add_argument("--samples", type=positive, default=64, metavar="N", help="samples a texel (default: 64)")
     parser.add_argument("--view-from", choices=VIEW_FROM, default=VIEW_FROM[0], metavar="WHERE",
                         help=f"what looks at the surface: {' or '.join(VIEW_FROM)} (default: the first)")
-    parser.add_argument("--margin", type=_margin, default=None, metavar="N",
-                        help="texels by which what is baked reaches beyond the UVs (default: 16; with --compare 0)")
+    parser.add_argument("--margin", type=_margin, default=DEFAULT_MARGIN, metavar="N",
+                        help="texels by which what is baked reaches beyond the UVs (default: 16)")
     parser.add_argument("--half", action="store_true", help="16-bit instead of 32-bit floats")
     shared.add_settings(parser, "")
     parser.add_argument("--compare", action="store_true",
-                        help="also bakes with Cycles: OUT.cycles.exr, OUT.error.exr, PNGs, and numbers in OUT.json")
+                        help="also bakes what can be compared with Cycles, without a margin: OUT.mesograin.exr,"
+                        " OUT.cycles.exr, OUT.error.exr, PNGs, and numbers in OUT.json")
     parser.add_argument("--reference", choices=REFERENCES, default=None, metavar="KIND",
                         help=f"with --compare: what Cycles solves, of {', '.join(REFERENCES)} (default: the model's)")
     parser.add_argument("--reference-samples", type=positive, default=None, metavar="N",
@@ -50,10 +52,6 @@ def parse(words):
     chosen = parser.choose(words)
     if not chosen.compare and (chosen.reference or chosen.reference_samples):
         parser.error("--reference and --reference-samples need --compare")
-    if chosen.compare and (chosen.half or chosen.margin):
-        parser.error("--compare writes 32-bit floats without a margin, so it goes neither with --half nor --margin")
-    if chosen.margin is None:
-        chosen.margin = 0 if chosen.compare else DEFAULT_MARGIN
     return chosen
 
 

@@ -38,12 +38,11 @@ def _bake_shown(chosen, depsgraph, progress):
 
     overrides = export.overrides(chosen.settings, depsgraph.scene)
     name = surface.choose(depsgraph, chosen.object)
+    own = {**overrides, "model": chosen.model} if chosen.model else overrides
+    ours = surface.Surface(depsgraph, name, chosen.size, chosen.view_from, own)
     if chosen.compare:
-        _compare(chosen, depsgraph, name, overrides, progress)
+        _compare(chosen, depsgraph, ours, overrides, progress)
         return
-    if chosen.model:
-        overrides["model"] = chosen.model
-    ours = surface.Surface(depsgraph, name, chosen.size, chosen.view_from, overrides)
     for warning in ours.warnings:
         progress.say(f"bake: {warning}")
     progress.plan([(f"baking {name}", "bake", 1.0)])
@@ -58,21 +57,22 @@ def _bake_shown(chosen, depsgraph, progress):
           flush=True)
 
 
-def _compare(chosen, depsgraph, name, overrides, progress):
+def _compare(chosen, depsgraph, own, overrides, progress):
     from mesograin.baking import comparison
     from mesograin.comparison.verdict import verdict
     from mesograin.cycles.cache import Cache
 
-    ours, theirs, mask, results = comparison.compare(
-        depsgraph, name, chosen.size, chosen.samples, chosen.view_from, overrides, chosen.model, chosen.reference,
-        chosen.reference_samples, Cache(), progress)
-    progress.close()
-    written = comparison.write(chosen.output, ours, theirs, mask, results)
+    pair = comparison.Pair(
+        depsgraph, own.name, chosen.size, chosen.samples, chosen.view_from, overrides, chosen.model, chosen.reference,
+        chosen.reference_samples, Cache())
+    written, results = comparison.bake(
+        chosen.output, own, pair, chosen.samples, chosen.margin, chosen.half, progress)
     metrics, floor = results["metrics"], results["noise_floor"]
     numbers = [f"{title} {_share(value)}" for title, value in (
         ("relative L1", metrics["relative_l1"]), ("in blocks", metrics["relative_l1_blocks"]),
         ("noise floor", floor["relative_l1"]), ("light in all", metrics["bias"]))]
-    print(f"{name}, {results['model']} beside {results['reference_title']}: {verdict({**results, 'status': 'done'})}")
+    what = f"{own.name}, {results['model']} beside {results['reference_title']}"
+    print(f"{what}: {verdict({**results, 'status': 'done'})}")
     print(f"{', '.join(numbers)}; {results['mask']['pixels']} texels; Cycles {results['reference_seconds']:.1f} s")
     print(f"{chosen.output.absolute().parent}: {', '.join(written)}", flush=True)
 

@@ -1,5 +1,5 @@
 # A grain's texture by Mesograin beside the one that Cycles bakes of the material that means the same.
-"""See `compare`."""
+"""See `Pair`, and `bake` for the object's own texture with them."""
 
 import json
 import time
@@ -11,6 +11,7 @@ from ..comparison.results import Output
 from ..cycles import kinds, nodes, reference
 from ..cycles.unwrapping import Unwrapping
 from ..report import colours
+from . import surface
 from .surface import BakeError, Surface
 
 FORMAT = "mesograin-bake"
@@ -23,84 +24,127 @@ eight."""
 ERROR = "i - r: our texture less the mean of the reference's seeds, linear radiance"
 
 
-def compare(depsgraph, name, size, samples, view_from, overrides, model, kind, reference_samples, cache, progress):
-    """Bakes both; returns (Surface, Reference, mask, results), of which results is JSON-able.
+class Pair:
+    """Both textures of one object of an evaluated scene, ready to bake.
 
     name: of the object. size: (width, height) in texels. samples: a texel on our side, reference_samples: a texel and
     seed on Cycles' (None: the kind's default). overrides: {parameter: value} for every material, coefficients per
     scene unit. model: of ours, None for the material's. kind: of reference, None for the model's. cache:
     `cycles.cache.Cache`.
-    progress: `comparison.progress.Progress`. Raises BakeError, ReferenceError, StageError or native.Error.
+    Raises BakeError, ReferenceError or native.Error, before anything is rendered.
     """
-    model = model or _only_model(depsgraph, name, size, overrides)
-    kind = kind or kinds.default_kind(model)
-    if model not in kinds.KINDS[kind].models:
-        raise BakeError(f"The reference {kind} does not answer {model}: choose another.")
-    chosen = {"model": model, **kinds.our_side(kind, nodes.features())}
-    ours = Surface(depsgraph, name, size, view_from, {**overrides, **chosen}, min(SEEDS, samples))
-    for warning in ours.warnings:
-        progress.say(warning)
-    # Said before anything is rendered: what Cycles cannot bake at all, and what it can only approximate.
-    sampling = reference.Sampling(
-        depsgraph, kind, size, reference_samples, cache, overrides, Unwrapping(name, view_from))
-    notes = [*sampling.notes, *_coarse(ours)]
-    for note in notes:
-        progress.say(note)
-    million = size[0] * size[1] * 1e-6
-    rendered = sampling.kind.cost * sampling.samples * len(reference.SEEDS) * million
-    progress.plan([(f"Cycles bakes {name} ({kind})", kind, rendered),
-                   (f"baking {name}", model, 0.3 * samples * million)])
-    progress.begin()
-    sampling.add(reference.SEEDS, progress.update)
-    theirs = sampling.result()
-    progress.end(learn=not theirs.cached)
-    progress.begin()
-    started = time.monotonic()
-    ours.render(samples, progress.update)
-    our_seconds = time.monotonic() - started
-    progress.end()
 
-    parts, texture, mean = ours.parts(), ours.texture(), theirs.mean
-    mask = native_module.get().default_mask(texture[..., 3], 0) & (mean[..., 3] == 1.0)
-    if not mask.any():
-        raise BakeError(f"No texel of '{name}' is covered on both sides: bake a larger texture.")
-    numbers = measure.compare(texture, theirs.images, mask)
-    verdict, _ = significance.test(parts, theirs.images, mask)
-    results = {
-        "format": FORMAT,
-        "format_version": FORMAT_VERSION,
-        "scene": origin.scene_name(),
-        "object": name,
-        "model": model,
-        "reference": kind,
-        "reference_title": kinds.KINDS[kind].title,
-        "judged_by": kinds.KINDS[kind].judged_by,
-        "view_from": view_from,
-        "size": list(size),
-        **numbers,
-        "our_noise": measure.compare(mean, parts, mask)["noise_floor"],
-        "significance": verdict,
-        "material": ours.materials,
-        "uv_use": ours.uv_use,
-        "samples": ours.samples,
-        "our_seeds": len(parts),
-        "our_seconds": round(our_seconds, 4),
-        "passes_ms": dict(ours.timings()),
-        "reference_samples": sampling.samples,
-        "reference_seeds": list(theirs.seeds),
-        "reference_seconds": round(theirs.seconds, 3),
-        "reference_cached": theirs.cached,
-        "notes": notes,
-        "versions": origin.versions(),
-        "device": native_module.get().device_info(),
-        "definitions": definitions.all_definitions(sorted(numbers["metrics"])),
-    }
-    return ours, theirs, mask, json.loads(json.dumps(results))
+    def __init__(self, depsgraph, name, size, samples, view_from, overrides, model, kind, reference_samples, cache):
+        model = model or _only_model(depsgraph, name, size, overrides)
+        kind = kind or kinds.default_kind(model)
+        if model not in kinds.KINDS[kind].models:
+            raise BakeError(f"The reference {kind} does not answer {model}: choose another.")
+        self._model, self._kind, self._samples = model, kind, samples
+        chosen = {"model": model, **kinds.our_side(kind, nodes.features())}
+        self._ours = Surface(depsgraph, name, size, view_from, {**overrides, **chosen}, min(SEEDS, samples))
+        # What Cycles cannot bake at all is an error here; what it can only approximate, a note.
+        self._sampling = reference.Sampling(
+            depsgraph, kind, size, reference_samples, cache, overrides, Unwrapping(name, view_from))
+        self._notes = [*self._sampling.notes, *_coarse(self._ours)]
+
+    @property
+    def sentences(self):
+        """What the scene has and we leave out, and what Cycles can only approximate."""
+        return (*self._ours.warnings, *self._notes)
+
+    @property
+    def steps(self):
+        """Of `comparison.progress.Progress.plan`."""
+        sampling, name = self._sampling, self._ours.name
+        rendered = sampling.kind.cost * sampling.samples * len(reference.SEEDS) * million(self._ours.size)
+        return [(f"Cycles bakes {name} ({self._kind})", self._kind, rendered),
+                (f"baking {name} as Cycles has it", self._model, our_cost(self._ours.size, self._samples))]
+
+    def bake(self, progress):
+        """Begins and ends `steps`; returns (Surface, Reference, mask, results), of which results is JSON-able.
+        Raises BakeError, ReferenceError, StageError or native.Error."""
+        progress.begin()
+        self._sampling.add(reference.SEEDS, progress.update)
+        theirs = self._sampling.result()
+        progress.end(learn=not theirs.cached)
+        progress.begin()
+        started = time.monotonic()
+        self._ours.render(self._samples, progress.update)
+        our_seconds = time.monotonic() - started
+        progress.end()
+        return self._measure(theirs, our_seconds)
+
+    def _measure(self, theirs, our_seconds):
+        parts, texture, mean = self._ours.parts(), self._ours.texture(), theirs.mean
+        mask = native_module.get().default_mask(texture[..., 3], 0) & (mean[..., 3] == 1.0)
+        if not mask.any():
+            raise BakeError(f"No texel of '{self._ours.name}' is covered on both sides: bake a larger texture.")
+        numbers = measure.compare(texture, theirs.images, mask)
+        verdict, _ = significance.test(parts, theirs.images, mask)
+        results = {
+            "format": FORMAT,
+            "format_version": FORMAT_VERSION,
+            "scene": origin.scene_name(),
+            "object": self._ours.name,
+            "model": self._model,
+            "reference": self._kind,
+            "reference_title": kinds.KINDS[self._kind].title,
+            "judged_by": kinds.KINDS[self._kind].judged_by,
+            "view_from": self._ours.view_from,
+            "size": list(self._ours.size),
+            **numbers,
+            "our_noise": measure.compare(mean, parts, mask)["noise_floor"],
+            "significance": verdict,
+            "material": self._ours.materials,
+            "uv_use": self._ours.uv_use,
+            "samples": self._ours.samples,
+            "our_seeds": len(parts),
+            "our_seconds": round(our_seconds, 4),
+            "passes_ms": dict(self._ours.timings()),
+            "reference_samples": self._sampling.samples,
+            "reference_seeds": list(theirs.seeds),
+            "reference_seconds": round(theirs.seconds, 3),
+            "reference_cached": theirs.cached,
+            "notes": self._notes,
+            "versions": origin.versions(),
+            "device": native_module.get().device_info(),
+            "definitions": definitions.all_definitions(sorted(numbers["metrics"])),
+        }
+        return self._ours, theirs, mask, json.loads(json.dumps(results))
+
+
+def million(size):
+    """How many millions of texels."""
+    return size[0] * size[1] * 1e-6
+
+
+def our_cost(size, samples):
+    """Guessed seconds of a texture of ours, for the first estimate of the time left."""
+    return 0.3 * samples * million(size)
+
+
+def bake(path, own, pair, samples, margin, half, progress):
+    """Writes the texture that was asked for, the Surface `own`, to `path`, OUT.exr, and those of a Pair beside it.
+    Returns (names of all files, results).
+
+    samples: a texel. margin, half: of `own` alone. progress: `comparison.progress.Progress`.
+    Raises BakeError, ReferenceError, StageError, OutputError or native.Error.
+    """
+    for sentence in dict.fromkeys((*own.warnings, *pair.sentences)):
+        progress.say(sentence)
+    progress.plan([(f"baking {own.name}", "texture", our_cost(own.size, samples)), *pair.steps])
+    progress.begin()
+    own.render(samples, progress.update)
+    progress.end()
+    *found, results = pair.bake(progress)
+    progress.close()
+    surface.write(path, own.texture(margin), own.provenance(margin), half)
+    return [path.name, *write(path, *found, results)], results
 
 
 def write(path, ours, theirs, mask, results):
-    """Writes beside `path`, OUT.exr: OUT.cycles.exr, OUT.error.exr, a PNG of each, and OUT.json. Returns their names.
-    Raises OutputError."""
+    """Writes beside `path`, OUT.exr, which is left alone: OUT.mesograin.exr, OUT.cycles.exr, OUT.error.exr, a PNG of
+    each, and OUT.json. Returns their names. Raises OutputError."""
     native = native_module.get()
     output = Output(path.absolute().parent)
     names = files(path)
@@ -120,13 +164,14 @@ def write(path, ours, theirs, mask, results):
 
 
 def files(path):
-    """{what it holds: its name} of the files that `write` puts beside `path`, OUT.exr, which is one of them."""
+    """{what it holds: its name} of the files that `write` puts beside `path`, OUT.exr, which is none of them: our side
+    of a comparison has the reference's boundary and no margin, and is not the texture that was asked for."""
     stem = path.name[: -len(path.suffix)]
     return {
-        "model": path.name,
+        "model": f"{stem}.mesograin.exr",
         "reference": f"{stem}.cycles.exr",
         "error": f"{stem}.error.exr",
-        "model_png": f"{stem}.png",
+        "model_png": f"{stem}.mesograin.png",
         "reference_png": f"{stem}.cycles.png",
         "error_png": f"{stem}.error.png",
         "results": f"{stem}.json",

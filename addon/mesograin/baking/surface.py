@@ -1,7 +1,6 @@
 # Our side of a bake: one object of a scene, unwrapped at its UVs and shaded by Mesograin.
 """See `Surface`. The user's file is read, never written."""
 
-import dataclasses
 import json
 import tempfile
 import time
@@ -43,8 +42,8 @@ class Surface:
             raise BakeError(f"Object '{name}' has UVs that are no numbers: unwrap it anew (UV > Unwrap in Edit Mode).")
         if not all(scene.instances[index].mesh.has_uvs for index in instances):
             raise BakeError(f"Object '{name}' has no UVs to bake at: unwrap it (UV > Unwrap in Edit Mode).")
-        changed = tuple(_with(instance, overrides or {}) for instance in scene.instances)
-        scene = dataclasses.replace(scene, instances=changed)
+        scene = scene.with_materials(lambda material: _with(material, overrides or {}))
+        changed = scene.instances
         self.name, self.size, self.view_from = name, tuple(size), view_from
         self.materials = {changed[index].material.name: dict(changed[index].material.values) for index in instances}
         self.triangles = sum(changed[index].mesh.triangle_count for index in instances)
@@ -181,10 +180,8 @@ def _instances(scene, name):
     return next(iter(placings.values()))
 
 
-def _with(instance, overrides):
-    values = {**dict(instance.material.values), **overrides}
-    return dataclasses.replace(
-        instance, material=export.MaterialValues(instance.material.name, tuple(values.items())))
+def _with(material, overrides):
+    return export.MaterialValues(material.name, tuple({**dict(material.values), **overrides}.items()))
 
 
 def _picture_size(scene):

@@ -4,6 +4,7 @@
 import argparse
 from pathlib import Path
 
+from ..schema.parameters import SETTABLE
 from . import values
 
 BAD_INPUT = 2
@@ -39,7 +40,7 @@ def add_settings(parser, where):
         dest="settings",
         metavar="NAME=VALUE",
         help=(
-            f"a material parameter{where}: {', '.join(values.SETTABLE)}; RGB as one number or three with commas; may be"
+            f"a material parameter{where}: {', '.join(SETTABLE)}; RGB as one number or three with commas; may be"
             " repeated"
         ),
     )

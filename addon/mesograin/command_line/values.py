@@ -2,20 +2,9 @@
 """Each takes a word and returns what it means, or raises argparse.ArgumentTypeError: what is needed and what came."""
 
 import argparse
-import math
 import re
 
-SETTABLE = {
-    "reflectance": 3,
-    "sigma_a": 3,
-    "sigma_s": 3,
-    "g": 1,
-    "eta": 1,
-    "roughness": 1,
-    "scale": 1,
-    "profile": 0,
-}
-"""Parameters that --set may change, and how many numbers each takes; 0 for a word."""
+from ..schema.parameters import PARAMETERS, SETTABLE
 
 
 def positive(text):
@@ -53,24 +42,27 @@ def byte_count(text):
 
 
 def setting(text):
-    """(name, value) of a word NAME=VALUE: a number, three, or a word, as SETTABLE has it."""
-    name, equals, value = text.partition("=")
+    """(name, value) of a word NAME=VALUE, one of SETTABLE: a number, three, true or false, or a name."""
+    name, equals, word = text.partition("=")
     if not equals or name not in SETTABLE:
-        hint = " (the reference chooses it)" if name in ("boundary", "masking") else ""
+        chosen = name in PARAMETERS and PARAMETERS[name].decided_by == "reference"
+        hint = " (the reference chooses it)" if chosen else ""
         raise argparse.ArgumentTypeError(f"NAME=VALUE with one of {', '.join(SETTABLE)} is needed, '{text}' came{hint}")
-    count = SETTABLE[name]
-    if count == 0:
-        return name, value
+    parameter = PARAMETERS[name]
+    value = parameter.check(_value(parameter.kind, word))
+    if value is None:
+        raise argparse.ArgumentTypeError(f"{name} takes {parameter.allowed}, '{word}' came")
+    return name, value
+
+
+def _value(kind, word):
+    """What a word means to a kind of parameter; None if nothing."""
+    if kind == "choice":
+        return word
+    if kind == "switch":
+        return {"true": True, "false": False}.get(word)
     try:
-        numbers = tuple(float(number) for number in value.split(","))
+        numbers = [float(number) for number in word.split(",")]
     except ValueError:
-        numbers = ()
-    if not all(map(math.isfinite, numbers)):
-        numbers = ()
-    if count == 3 and len(numbers) == 1:
-        numbers *= 3
-    if len(numbers) != count:
-        raise argparse.ArgumentTypeError(
-            f"{name} takes {'one number or three' if count == 3 else 'one number'}, '{value}' came"
-        )
-    return name, numbers if count == 3 else numbers[0]
+        return None
+    return numbers[0] if len(numbers) == 1 else numbers

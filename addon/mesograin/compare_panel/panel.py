@@ -49,7 +49,7 @@ def _draw_case(box, context, entry):
         results.draw_title(box, entry)
         panels.draw_sentence(box, context, entry["error"])
         return
-    results.draw(box, context, entry, ("Frame, Mesograin", f"{entry['frame_ms']:.2f} ms"),
+    results.draw(box, context, entry, ("Mesograin", f"{entry['frame_ms']:.2f} ms"),
                  operators.MESOGRAIN_OT_show_picture, case=entry["name"])
 
 

@@ -4,8 +4,9 @@ import dataclasses
 import bpy
 from bpy.props import EnumProperty, IntProperty, StringProperty
 
+from .. import compat
 from ..cycles import kinds
-from ..properties import MODELS
+from ..schema import models
 from ..side_task.settings import remembered_by_scenes
 
 
@@ -39,8 +40,8 @@ class CompareProperties(bpy.types.PropertyGroup):
     """`scene.mesograin_compare`."""
 
     models: EnumProperty(
-        name="Models", items=_flags([item[:3] for item in MODELS]), options={"ENUM_FLAG"},
-        default={"model_1", "model_2", "model_3"},
+        name="Models", options={"ENUM_FLAG"}, default=set(models.WITH_LOBES),
+        items=_flags([(model.name, model.label, model.sentence) for model in models.MODELS.values()]),
         description="Models to compare; every material of the scene is rendered with each (Shift adds to the choice)")
     references: EnumProperty(
         name="References", options={"ENUM_FLAG"}, default=set(),
@@ -54,7 +55,7 @@ class CompareProperties(bpy.types.PropertyGroup):
         name="Size", default=25, min=1, max=100, subtype="PERCENTAGE",
         description="Size of the pictures, of the scene's resolution; at least 8 pixels a side")
     out: StringProperty(
-        name="Folder", default="//comparison", subtype="DIR_PATH",
+        name="Folder", default="//comparison", subtype="DIR_PATH", **compat.relative_path_options(),
         description="Where pictures, results.json, results.csv and report.html go; // is the folder of the .blend file")
 
 
@@ -71,7 +72,7 @@ def arguments(scene):
     quality = QUALITIES[settings.quality]
     # In the order of the table, which a set does not keep.
     return {
-        "models": [item[0] for item in MODELS if item[0] in settings.models],
+        "models": [name for name in models.NAMES if name in settings.models],
         "references": [kind for kind in kinds.KINDS if kind in settings.references] or None,
         "size": list(size(scene)),
         "samples": quality.samples,

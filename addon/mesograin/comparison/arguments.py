@@ -7,11 +7,13 @@ from pathlib import Path
 from ..command_line import parser as shared
 from ..command_line.values import fraction, picture_size, positive
 from ..cycles import kinds
+from ..schema import models
 from . import mask_names
 
-MODELS = ("lambert", "conductor", "model_1", "model_2", "model_3")
+MODELS = tuple(name for name in models.NAMES if kinds.default_kind(name))
 REFERENCES = tuple(kinds.KINDS)
-DEFAULT_MODELS = ("lambert", "conductor", "model_1", "model_2", "model_3")
+# Transport takes seconds for each case before its first picture.
+DEFAULT_MODELS = tuple(name for name in MODELS if not models.MODELS[name].mesh)
 MOST_SEEDS = 64
 """How many seeds of a reference --until may lead to, if nothing else is said."""
 
@@ -19,8 +21,8 @@ MOST_SEEDS = 64
 def build():
     """The parser, for --help without Blender."""
     parser = shared.Parser(
-        prog="mesograin compare",
-        usage="mesograin compare [SCENE.blend] [options]",
+        prog="./mesograin compare",
+        usage="./mesograin compare [SCENE.blend] [options]",
         description=(
             "Renders every model and the Cycles reference that means the same, and writes pictures, numbers and a"
             " report."

@@ -4,7 +4,7 @@
 import dataclasses
 import statistics
 
-from .. import export, meshes, native_module
+from .. import export, lights, meshes, native_module
 
 
 SEEDS = 4
@@ -22,17 +22,16 @@ class Ours:
     def __init__(self, depsgraph, size, overrides, parts=SEEDS):
         native = native_module.get()
         self._overrides = overrides
-        self._scene = export.read_scene(depsgraph, meshes.MeshCache())
+        scene = export.read_scene(depsgraph, meshes.MeshCache())
+        # What is behind the grains is no part of a comparison: alpha tells where they are.
+        self._scene = dataclasses.replace(scene, world=dataclasses.replace(scene.world, seen=False))
         self._views = self._all_views = [native.View(*size, seed=seed) for seed in range(parts)]
         self._camera = export.camera_from_scene(depsgraph, *size)
-        self.warnings = self._scene.warnings
+        self.warnings = scene.warnings
 
     def parameters(self, chosen):
         """{material name: {parameter: value}} as a case renders them. chosen: {parameter: value} of the case."""
-        return {
-            instance.material.name: dict(self._material(instance.material, chosen).values)
-            for instance in self._scene.instances
-        }
+        return {material.name: dict(self._material(material, chosen).values) for material in self._scene.materials}
 
     def _material(self, material, chosen):
         values = {**dict(material.values), **self._overrides, **chosen}
@@ -45,22 +44,21 @@ class Ours:
 
     def suns(self, least_sun=0.0):
         """[(direction to the light, full angle in radians, irradiance)] as `begin` takes them, the strongest first."""
-        lights = sorted(self._lights(least_sun), key=lambda light: -sum(light.irradiance))
-        return [(light.direction_to_light, light.angle, light.irradiance) for light in lights]
+        suns = [light for light in self._lights(least_sun) if isinstance(light, lights.SunValues)]
+        strongest = sorted(suns, key=lambda light: -sum(light.irradiance))
+        return [(light.direction_to_light, light.angle, light.irradiance) for light in strongest]
 
     def _lights(self, least_sun):
         return tuple(
-            dataclasses.replace(light, angle=max(light.angle, least_sun)) for light in self._scene.lights
+            dataclasses.replace(light, angle=max(light.angle, least_sun)) if isinstance(light, lights.SunValues)
+            else light for light in self._scene.lights
         )
 
     def begin(self, chosen, least_sun=0.0, taps=None):
         """Starts a picture without samples. chosen: the case's choice of parameters. least_sun: radians; narrower suns
         are widened to this. taps: of model 3, for each sample; None as they were."""
-        instances = tuple(
-            dataclasses.replace(instance, material=self._material(instance.material, chosen))
-            for instance in self._scene.instances
-        )
-        scene = dataclasses.replace(self._scene, instances=instances, lights=self._lights(least_sun)).to_native()
+        changed = self._scene.with_materials(lambda material: self._material(material, chosen))
+        scene = dataclasses.replace(changed, lights=self._lights(least_sun)).to_native()
         self._views = self._all_views
         for view in self._views:
             if taps:

@@ -1,4 +1,4 @@
-# What Cycles prints while it renders, taken off the terminal and read for its progress.
+# What Cycles prints or tells while it renders, taken off the terminal and read for its progress.
 """See `Console`."""
 
 import collections
@@ -7,7 +7,11 @@ import re
 import sys
 import threading
 
-_SAMPLE = re.compile(rb"Sample (\d+)/(\d+)")
+import bpy
+
+from .. import compat
+
+_SAMPLE = re.compile(r"Sample (\d+)/(\d+)")
 
 
 class Console:
@@ -25,6 +29,7 @@ class Console:
     def __init__(self, on_progress=None):
         self._on_progress = on_progress
         self.lines = collections.deque(maxlen=20)
+        self._handler = self._listen  # one object: what is removed must be what was appended
 
     def __enter__(self):
         sys.stdout.flush()
@@ -34,6 +39,8 @@ class Console:
         os.close(writing)
         self._thread = threading.Thread(target=self._read, args=(reading,), daemon=True)
         self._thread.start()
+        if not compat.has_printed_statistics():
+            bpy.app.handlers.render_stats.append(self._handler)
         with Console.gate:
             Console.active = True
         return self
@@ -41,6 +48,8 @@ class Console:
     def __exit__(self, *_):
         with Console.gate:
             Console.active = False
+        if self._handler in bpy.app.handlers.render_stats:
+            bpy.app.handlers.render_stats.remove(self._handler)
         sys.stdout.flush()
         os.dup2(self._saved, 1)  # closes the pipe's last writing end
         os.close(self._saved)
@@ -49,8 +58,15 @@ class Console:
     def _read(self, reading):
         with os.fdopen(reading, "rb") as pipe:
             for line in pipe:
-                found = _SAMPLE.search(line)
-                if found and self._on_progress:
-                    done, total = (int(number) for number in found.groups())
-                    self._on_progress(done / max(total, 1))
-                self.lines.append(line.decode("utf-8", "replace").rstrip())
+                text = line.decode("utf-8", "replace").rstrip()
+                self._tell(text)
+                self.lines.append(text)
+
+    def _listen(self, text, *_):
+        self._tell(text)
+
+    def _tell(self, text):
+        found = _SAMPLE.search(text)
+        if found and self._on_progress:
+            done, total = (int(number) for number in found.groups())
+            self._on_progress(done / max(total, 1))

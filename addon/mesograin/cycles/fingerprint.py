@@ -7,9 +7,10 @@ import json
 import bpy
 import numpy
 
+from . import lighting
 from .stage import CAMERA_PROPERTIES
 
-FORMAT = 2
+FORMAT = 3
 """Raised whenever a stored reference may no longer be used."""
 
 
@@ -18,19 +19,25 @@ def key(description):
     return hashlib.sha256(json.dumps(description, sort_keys=True, separators=(",", ":")).encode()).hexdigest()
 
 
-def describe(scene, recipes, settings):
-    """JSON-able description of a staged scene. recipes: {material name: recipe}. settings: `settings.settings(...)`."""
+def describe(stage, recipes, settings):
+    """JSON-able description of a `stage.Stage`. recipes: {material name: recipe}. settings: of `settings.settings`."""
     meshes = {}
-    objects = []
-    for placed in scene.collection.objects:
+
+    def shape(mesh):
+        if mesh.name not in meshes:
+            meshes[mesh.name] = {"mesh": _mesh(mesh), "materials": [recipes[each.name] for each in mesh.materials]}
+        return meshes[mesh.name]
+
+    heaps = {heap.object.name for heap in stage.heaps}
+    objects = [{**shape(heap.mesh), "matrices": _unordered(heap.matrices)} for heap in stage.heaps]
+    for placed in stage.scene.collection.objects:
+        if placed.name in heaps:
+            continue
         matrix = [list(row) for row in placed.matrix_world]
         if placed.type == "MESH":
-            digest = meshes.setdefault(placed.data.name, _mesh(placed.data))
-            materials = [recipes[material.name] for material in placed.data.materials]
-            objects.append({"mesh": digest, "materials": materials, "matrix": matrix})
+            objects.append({**shape(placed.data), "matrix": matrix})
         elif placed.type == "LIGHT":
-            light = placed.data
-            objects.append({"sun": light.energy, "color": list(light.color), "angle": light.angle, "matrix": matrix})
+            objects.append({**lighting.describe(placed.data), "matrix": matrix})
         elif placed.type == "CAMERA":
             camera = {name: getattr(placed.data, name) for name in CAMERA_PROPERTIES}
             objects.append({"camera": camera, "matrix": matrix})
@@ -39,8 +46,15 @@ def describe(scene, recipes, settings):
         "blender": bpy.app.version_string,
         "build": bpy.app.build_hash.decode("ascii", "replace"),
         "objects": sorted(objects, key=lambda described: json.dumps(described, sort_keys=True)),
+        "world": lighting.describe_world(stage.world),
         "settings": settings,
     }
+
+
+def _unordered(matrices):
+    """Digest of (n, 4, 4) matrices, whatever their order."""
+    rows = numpy.ascontiguousarray(matrices, dtype=numpy.float32).reshape(-1, 16)
+    return hashlib.sha256(rows[numpy.lexsort(rows.T)].tobytes()).hexdigest()
 
 
 def _mesh(mesh):

@@ -3,6 +3,8 @@
 
 from dataclasses import dataclass
 
+from ..schema.parameters import PARAMETERS
+
 
 @dataclass(frozen=True)
 class GrainValues:
@@ -13,12 +15,12 @@ class GrainValues:
     g: mean cosine of the Henyey-Greenstein phase function. eta: relative index of refraction. roughness: GGX alpha.
     """
 
-    reflectance: tuple = (0.5, 0.5, 0.5)
-    sigma_a: tuple = (0.1, 0.1, 0.1)
-    sigma_s: tuple = (0.9, 0.9, 0.9)
-    g: float = 0.0
-    eta: float = 1.3
-    roughness: float = 0.0
+    reflectance: tuple = PARAMETERS["reflectance"].default
+    sigma_a: tuple = PARAMETERS["sigma_a"].default
+    sigma_s: tuple = PARAMETERS["sigma_s"].default
+    g: float = PARAMETERS["g"].default
+    eta: float = PARAMETERS["eta"].default
+    roughness: float = PARAMETERS["roughness"].default
 
     @classmethod
     def from_parameters(cls, parameters):

@@ -4,7 +4,7 @@
 import math
 from dataclasses import dataclass, replace
 
-TRANSLUCENT_MODELS = ("model_1", "model_2", "model_3")
+from ..schema.models import TRANSLUCENT, WITH_LOBES
 
 
 @dataclass(frozen=True)
@@ -80,12 +80,12 @@ KINDS = {
     for kind in (
         Kind("diffuse", "Cycles Diffuse BSDF", ("lambert",), 0, 64, False, 0.6, parts=()),
         Kind("glossy", "Cycles Glossy BSDF, GGX", ("conductor",), 0, 64, False, 0.6, parts=("specular",)),
-        Kind("volume_index_matched", "Cycles volume, index-matched", TRANSLUCENT_MODELS, 1024, 128, True, 5.0),
-        Kind("subsurface", "Cycles Subsurface Scattering, random walk", TRANSLUCENT_MODELS, 1024, 128, False, 5.0),
+        Kind("volume_index_matched", "Cycles volume, index-matched", TRANSLUCENT, 1024, 128, True, 5.0),
+        Kind("subsurface", "Cycles Subsurface Scattering, random walk", WITH_LOBES, 1024, 128, False, 5.0),
         Kind(
             "subsurface_burley",
             "Cycles Subsurface Scattering, Christensen-Burley",
-            TRANSLUCENT_MODELS,
+            WITH_LOBES,
             1024,
             128,
             False,
@@ -95,7 +95,7 @@ KINDS = {
         Kind(
             "volume_dielectric",
             "Cycles glass with a volume",
-            TRANSLUCENT_MODELS,
+            TRANSLUCENT,
             1024,
             1024,
             True,
@@ -108,7 +108,7 @@ KINDS = {
         Kind(
             "photon",
             "Photon Monte Carlo, smooth dielectric sphere",
-            TRANSLUCENT_MODELS,
+            TRANSLUCENT,
             0,
             256,
             False,

@@ -5,7 +5,7 @@ import functools
 
 import bpy
 
-from .. import export
+from .. import compat, export
 from . import kinds, recipes
 from .grain_values import GrainValues
 
@@ -24,7 +24,7 @@ def build(name, recipe):
     """A new material from a recipe. Raises RuntimeError if a node has a socket that the recipe leaves open."""
     material = bpy.data.materials.new(name)
     try:
-        material.use_nodes = True
+        compat.use_nodes(material)
         tree = material.node_tree
         tree.nodes.clear()
         nodes = {label: _build_node(tree, label, description) for label, description in recipe["nodes"].items()}
@@ -33,7 +33,8 @@ def build(name, recipe):
         for label, node in nodes.items():
             _check_sockets(node, recipe["nodes"][label])
         for name_, value in recipe["material"].items():
-            setattr(material.cycles, name_, value)
+            if hasattr(material.cycles, name_):  # Blender 5 finds out by itself which volumes are homogeneous
+                setattr(material.cycles, name_, value)
     except BaseException:
         bpy.data.materials.remove(material)
         raise
@@ -70,6 +71,11 @@ def _check_sockets(node, description):
             )
 
 
+WALKS = ("RANDOM_WALK_FIXED_RADIUS", "RANDOM_WALK_LEGACY", "RANDOM_WALK")
+"""Of the Subsurface Scattering node: names of the random walk whose mean free path is the radius / 4 pi, the surest
+first. Where one of the first two is there, the last is another."""
+
+
 @functools.lru_cache(maxsize=1)
 def features():
     """What this Blender's nodes can do: kinds.NodeFeatures. Looks at nodes in a tree that it removes again."""
@@ -78,13 +84,13 @@ def features():
         glossy_type, merged = _glossy_node(tree)
         subsurface = tree.nodes.new("ShaderNodeSubsurfaceScattering")
         methods = {item.identifier for item in subsurface.bl_rna.properties["falloff"].enum_items}
-        fixed = "RANDOM_WALK_FIXED_RADIUS"
         glass = tree.nodes.new("ShaderNodeBsdfGlass").bl_rna.properties["distribution"].enum_items
         return kinds.NodeFeatures(
             glossy_type=glossy_type,
             # The two glossy nodes became one when Cycles' microfacet code went over to height-correlated masking.
             glossy_masking="correlated" if merged else "separable",
-            subsurface_method=fixed if fixed in methods else "RANDOM_WALK",
+            # It has borne all three names; each that is there and comes first here is the one.
+            subsurface_method=next(name for name in WALKS if name in methods),
             subsurface_refracts="Roughness" in subsurface.inputs,
             glass_distribution="SHARP" if "SHARP" in glass else "GGX",
             # That came with the same rewrite.

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy
 
-from .. import export, meshes, native_module
+from .. import export, lights, meshes, native_module
 from . import shot
 from .shot import ReferenceError, Shot
 
@@ -91,10 +91,15 @@ def _scene(depsgraph, size, overrides):
     values = export.read_scene(depsgraph, meshes.MeshCache())
     values.to_native()  # says which light or material has values that cannot be
     centre, radius = _sphere(depsgraph)
+    others = [light.name for light in values.lights if not isinstance(light, lights.SunValues)]
+    if others or values.world.shines:
+        what = f"'{others[0]}' is none" if others else "the world shines"
+        raise ReferenceError(f"The photon reference knows suns under a black world, and {what}: remove it, or choose "
+                             "another reference.")
     if not values.lights:
         raise ReferenceError("The scene has no visible sun light: add one.")
-    parameters = {**dict(values.instances[0].material.values), **overrides}
-    if len({instance.material for instance in values.instances}) > 1:
+    parameters = {**dict(values.materials[0].values), **overrides}
+    if len(values.materials) > 1:
         raise ReferenceError("The photon reference traces one sphere of one material; the scene's has several.")
     return {
         "geometry": {"shape": "sphere", "centre": centre, "radius": radius},

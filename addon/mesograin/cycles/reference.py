@@ -131,6 +131,9 @@ def _check(depsgraph, kind, overrides):
     """Raises ReferenceError for the first material that Cycles cannot render; returns what it can only approximate."""
     materials = {}
     for instance in depsgraph.object_instances:
+        if instance.show_self and instance.object.type == "POINTCLOUD":
+            raise ReferenceError(f"Object '{instance.object.name}' is a point cloud, which a reference cannot show: "
+                                 "hide it, or put an instance on each of its points.")
         # Blender 3.4 crashes at the slots of an object that can have none.
         drawn = instance.show_self and meshes.is_drawn(instance.object, instance.matrix_world)
         for slot in instance.object.material_slots if drawn else ():
@@ -146,6 +149,9 @@ def _check(depsgraph, kind, overrides):
     if not (kind.referee or nodes.features().even_suns or widest <= WIDEST_SUN):
         raise ReferenceError("This Blender's Cycles renders a sun as a flat disc, unlike ours beyond "
                              f"{math.degrees(WIDEST_SUN):.0f} degrees; got {math.degrees(widest):.0f}: narrow it.")
+    if kind.smooth_interface and not suns:
+        raise ReferenceError(f"The reference {kind.name} is measured by the strongest sun, and there is no visible "
+                             "sun: add one, or choose another reference.")
     for name, material in sorted(materials.items()):
         for limit in limits(shot.grain_values(depsgraph, overrides, material), kind.recipe):
             sentence = f"Material '{name}': {limit.sentence}"

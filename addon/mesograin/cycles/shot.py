@@ -59,8 +59,8 @@ def take(
         used[made.name] = recipe
         return made
 
-    with Stage(depsgraph, description, build, kind.least_sun) as stage:
-        determined_by = fingerprint.describe(stage.scene, used, description)
+    with Stage(depsgraph, description, build, kind.least_sun, unwrapping and unwrapping.name) as stage:
+        determined_by = fingerprint.describe(stage, used, description)
         if unwrapping:
             determined_by["unwrapping"] = unwrapping.describe(stage)
         if kind.light != "all":

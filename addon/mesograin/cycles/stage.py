@@ -1,13 +1,13 @@
 # A scene of its own for each reference, copied from the evaluated one, so that the user's scene is never touched.
 """See `Stage`."""
 
-import math
-
 import addon_utils
 import bpy
+import numpy
+from mathutils import Matrix
 
-from .. import export, meshes
-from . import nodes, settings
+from .. import export, meshes, surroundings
+from . import instancing, lighting, settings
 
 
 class StageError(Exception):
@@ -21,31 +21,36 @@ def need_cycles():
 
 
 class Stage:
-    """A context manager that holds a new scene: a depsgraph's meshes, sun lights and camera under a black world.
+    """A context manager that holds a new scene: a depsgraph's meshes, lights, world and camera.
 
     depsgraph: evaluated; copied from, never kept. description: `settings.settings(...)`.
     build_material: makes the new Cycles material for a bpy.types.Material in use, or for None (faces without one).
-    placed: {name of an object: what stands for its first instance here}.
+    apart: the name of an object whose first instance is an object here, too, in `placed`: {name: that object}.
+    world: surroundings.WorldValues.
+    heaps: of `instancing.Heap`, the placings of meshes that have many.
     least_sun: radians; narrower suns are widened to this, of the same irradiance.
     Everything made here is removed on exit, whatever happened inside.
     """
 
-    def __init__(self, depsgraph, description, build_material, least_sun=0.0):
+    def __init__(self, depsgraph, description, build_material, least_sun=0.0, apart=None):
         self._depsgraph = depsgraph
         self._description = description
         self._build_material = build_material
         self._least_sun = least_sun
+        self._apart = apart
         self._made = []
         self._materials = {}
         self._meshes = {}
+        self._placings = {}  # {name of a mesh here: (it, its matrices)}
         self.placed = {}
+        self.heaps = []
 
     def __enter__(self):
         try:
             self.scene = self._own(bpy.data.scenes.new("Mesograin reference"))
-            self.scene.world = self._own(bpy.data.worlds.new("Mesograin black"))
-            self.scene.world.use_nodes = False
-            self.scene.world.color = (0.0, 0.0, 0.0)
+            self.world, _ = surroundings.read(self._depsgraph.scene)
+            self.scene.world = self._own(bpy.data.worlds.new("Mesograin world"))
+            lighting.fill_world(self.scene.world, self.world)
             settings.apply(self.scene, self._description)
             self._copy_camera()
             self._copy_instances()
@@ -89,25 +94,19 @@ class Stage:
             source = instance.object
             if not instance.show_self:
                 continue
-            if export.is_sun(source):
-                self._copy_sun(source.data, instance.matrix_world)
+            if source.type == "LIGHT":
+                self._copy_light(source.data, instance.matrix_world)
             elif meshes.is_drawn(source, instance.matrix_world):
                 self._copy_shape(source, instance.matrix_world)
+        self._place_shapes()
         if not self._meshes:
             raise StageError("The scene has no visible mesh: add a grain, or switch its rendering on.")
-        if not any(made.type == "LIGHT" for made in self.scene.collection.objects):
-            raise StageError("The scene has no visible sun light: add one.")
+        if not self.world.shines and not any(made.type == "LIGHT" for made in self.scene.collection.objects):
+            raise StageError("The scene has no visible light, and its world is black: add a light.")
 
-    def _copy_sun(self, source, matrix):
-        light = self._own(bpy.data.lights.new("Mesograin sun", "SUN"))
-        light.color = source.color
-        light.angle = max(source.angle, self._least_sun)
-        # Where Cycles' sun is even, it is brighter than ours by what the cosine takes from its rim: a plane facing
-        # theirs receives the strength, one facing ours a little less.
-        rim = (1.0 + math.cos(0.5 * light.angle)) / 2.0 if nodes.features().even_suns else 1.0
-        light.energy = source.energy * rim
-        light.cycles.max_bounces = 1024
-        self._add("Mesograin sun", light, matrix)
+    def _copy_light(self, source, matrix):
+        light = self._own(lighting.copy_light(source, self._least_sun))
+        self._add(light.name, light, matrix)
 
     def _copy_shape(self, source, matrix):
         materials = [slot.material.original if slot.material else None for slot in source.material_slots] or [None]
@@ -125,17 +124,49 @@ class Stage:
             mesh.materials.clear()
             for material in materials:
                 mesh.materials.append(self._material(material))
+        if source.name == self._apart and self._apart not in self.placed:
+            self.placed[self._apart] = self._add_grain(mesh, matrix)
+        else:
+            _, placings = self._placings.setdefault(mesh.name, (mesh, []))
+            placings.append(matrix[0][:] + matrix[1][:] + matrix[2][:] + matrix[3][:])
+
+    def _place_shapes(self):
+        for mesh, rows in self._placings.values():
+            matrices = numpy.array(rows).reshape(-1, 4, 4)
+            plain = instancing.expressible(matrices)
+            if plain.sum() >= instancing.FROM:
+                self._add_heap(mesh, matrices[plain])
+                matrices = matrices[~plain]
+            for matrix in matrices:
+                self._add_grain(mesh, Matrix(matrix))
+
+    def _add_heap(self, mesh, matrices):
+        heap = instancing.Heap(mesh, matrices, self._own)
+        self.scene.collection.objects.link(heap.object)
+        _keep_shadows_smooth(heap.object)
+        self.heaps.append(heap)
+
+    def _add_grain(self, mesh, matrix):
         made = self._add("Mesograin grain", mesh, matrix)
-        self.placed.setdefault(source.name, made)
-        # The smooth normals are ours and theirs; the facets' shadow on themselves is nobody's.
-        made.cycles.shadow_terminator_offset = 0.0
-        made.cycles.shadow_terminator_geometry_offset = 0.1
+        if not instancing.expressible([matrix]).all():
+            # An object has no shear of its own, but what it inherits from a parent may have.
+            made.parent = self._add("Mesograin parent", None, Matrix())
+            made.matrix_parent_inverse, made.matrix_basis = matrix, Matrix()
+            self.scene.view_layers[0].update()
+        _keep_shadows_smooth(made)
+        return made
 
     def _material(self, source):
         key = source.name_full if source else None
         if key not in self._materials:
             self._materials[key] = self._own(self._build_material(source))
         return self._materials[key]
+
+
+def _keep_shadows_smooth(made):
+    """The smooth normals are ours and theirs; the facets' shadow on themselves is nobody's."""
+    made.cycles.shadow_terminator_offset = 0.0
+    made.cycles.shadow_terminator_geometry_offset = 0.1
 
 
 CAMERA_PROPERTIES = (

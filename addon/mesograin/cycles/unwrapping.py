@@ -28,6 +28,11 @@ SETTINGS = {
 }
 
 
+PARTS = 16
+"""What Cycles says of a bake under way is nothing at all, so its samples are baked in as many parts: the same samples
+of the same sequence, whose mean differs from that of one bake by rounding alone."""
+
+
 @dataclass(frozen=True)
 class Unwrapping:
     """name: of the object to bake, whose first instance counts. view_from: `above_surface` or `active_camera`."""
@@ -63,16 +68,27 @@ class Unwrapping:
                 node = material.node_tree.nodes.new("ShaderNodeTexImage")
                 node.image = image
                 material.node_tree.nodes.active = node
-            self._bake(placed, scene, on_progress)
-            pixels = numpy.empty(width * height * 4, numpy.float32)
-            image.pixels.foreach_get(pixels)
+            pixels = self._mean(placed, scene, image, on_progress)
         finally:
             bpy.data.images.remove(image)
         # Blender's rows begin at the bottom.
         return numpy.ascontiguousarray(pixels.reshape(height, width, 4)[::-1])
 
-    def _bake(self, placed, scene, on_progress):
-        with _shown(scene), Console(on_progress) as console:
+    def _mean(self, placed, scene, image, on_progress):
+        """The image's pixels after all of the scene's samples, (4 w h,) float32."""
+        samples = scene.cycles.samples
+        total = numpy.zeros(len(image.pixels))
+        pixels = numpy.empty(len(image.pixels), numpy.float32)
+        for done, part in _parts(samples):
+            _take_samples(scene.cycles, done, part)
+            self._bake(placed, scene)
+            image.pixels.foreach_get(pixels)
+            total += part * pixels.astype(numpy.float64)
+            on_progress((done + part) / samples)
+        return (total / samples).astype(numpy.float32)
+
+    def _bake(self, placed, scene):
+        with _shown(scene), Console() as console:
             for other in scene.objects:
                 other.select_set(other == placed)
             scene.view_layers[0].objects.active = placed
@@ -96,6 +112,20 @@ class Unwrapping:
         if layer is None:
             raise ReferenceError(f"Object '{self.name}' has no UVs to bake at: unwrap it (UV > Unwrap in Edit Mode).")
         return layer
+
+
+def _parts(samples):
+    """(samples before it, samples of it) of each part."""
+    step = -(-samples // PARTS)
+    return [(done, min(step, samples - done)) for done in range(0, samples, step)]
+
+
+def _take_samples(cycles, done, count):
+    """Makes Cycles take `count` samples of its sequence, from the sample `done` on."""
+    cycles.samples, cycles.sample_offset = count, done
+    if hasattr(cycles, "use_sample_subset"):  # where an offset counts in a subset alone
+        cycles.samples = done + count
+        cycles.use_sample_subset, cycles.sample_subset_length = True, count
 
 
 @contextlib.contextmanager

@@ -1,6 +1,8 @@
 # The plot of a trade curve: error against milliseconds, ours and the path tracer's, with the Pareto front.
 """See `trade`."""
 
+import itertools
+
 from .plots import log_axis, new_figure, percent
 from .wording import times
 
@@ -25,12 +27,13 @@ def trade(results):
         axes.set_yscale("log")
         judged_by = results["reference"]["judged_by"]
         _front(axes, results, palette)
-        colours = {"model_3": palette.ours, "model_2": palette.second, "model_1": palette.third}
+        models = dict.fromkeys(point["model"] for point in points if point["side"] != "traced")
+        colours = dict(zip(reversed(models), itertools.cycle((palette.ours, palette.second, palette.third))))
         lines = {}
         for point in points:
             lines.setdefault((point["side"], point["model"], point["taps"]), []).append(point)
         for number, ((side, model, taps), line) in enumerate(lines.items()):
-            colour = palette.theirs if side == "traced" else colours.get(model, palette.ours)
+            colour = palette.theirs if side == "traced" else colours[model]
             label = f"{model}, {taps} taps" if taps else model
             _line(axes, line, colour, MARKERS[number % len(MARKERS)], label, palette, judged_by)
         floor = results["reference"]["noise_floor"]

@@ -3,15 +3,13 @@ from .. import panels
 from ..comparison.progress import duration
 from ..comparison.significance import NO_DIFFERENCE
 from ..comparison.verdict import verdict
-from ..properties import MODELS
+from ..schema.models import MODELS
 from . import pictures
-
-MODEL_LABELS = {item[0]: item[1] for item in MODELS}
 
 
 def draw_title(box, entry):
     """What was compared."""
-    box.label(text=f"{MODEL_LABELS[entry['model']]} against {entry['reference_title']}")
+    box.label(text=f"{MODELS[entry['model']].label} against {entry['reference_title']}")
 
 
 def draw(box, context, entry, ours, button, **properties):
@@ -41,10 +39,11 @@ def seconds(number):
 
 def _numbers(entry, ours):
     """(title, value) pairs. The definitions are in the file of the results."""
-    yield "Error (relative L1)", _share(entry["metrics"]["relative_l1"])
-    yield "Noise of the reference", _share(entry["noise_floor"]["relative_l1"])
+    # Short enough for half a panel of Blender's default width.
+    yield "Relative L1", _share(entry["metrics"]["relative_l1"])
+    yield "Noise floor", _share(entry["noise_floor"]["relative_l1"])
     yield ours
-    yield "Reference, Cycles", seconds(entry["reference_seconds"])
+    yield "Cycles", seconds(entry["reference_seconds"])
 
 
 def _share(value):

@@ -11,47 +11,14 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..cycles.kinds import KINDS, PARTS, default_kind, has, missing_part
+from ..schema.parameters import PARAMETERS, SETTABLE
 
 MODELS = tuple(dict.fromkeys(model for kind in KINDS.values() for model in kind.models))
 REFERENCES = tuple(KINDS)
-PROFILES = ("half_space", "better_dipole", "dipole", "photon_beam")
-LARGEST_COEFFICIENT = 1e12
 
 
 class PlanError(Exception):
     """The file cannot be swept: one sentence that names the line and what is allowed."""
-
-
-@dataclass(frozen=True)
-class Number:
-    """A number in [low, high]."""
-
-    low: float
-    high: float
-
-    def check(self, value):
-        if isinstance(value, bool) or not isinstance(value, (int, float)) or not self.low <= value <= self.high:
-            return None
-        return float(value)
-
-    def __str__(self):
-        return f"a number from {self.low:g} to {self.high:g}"
-
-
-@dataclass(frozen=True)
-class Colour:
-    """One number for all three channels of linear RGB, or three."""
-
-    low: float
-    high: float
-
-    def check(self, value):
-        values = value if isinstance(value, list) else [value] * 3
-        numbers = [Number(self.low, self.high).check(channel) for channel in values]
-        return numbers if len(numbers) == 3 and None not in numbers else None
-
-    def __str__(self):
-        return f"a number or three of them, from {self.low:g} to {self.high:g}"
 
 
 @dataclass(frozen=True)
@@ -96,17 +63,6 @@ class Switch:
         return "true or false"
 
 
-# Boundary and masking are not among them: the kind of reference decides both.
-PARAMETERS = {
-    "reflectance": Colour(0.0, 1.0),
-    "sigma_a": Colour(0.0, LARGEST_COEFFICIENT),
-    "sigma_s": Colour(0.0, LARGEST_COEFFICIENT),
-    "g": Number(-1.0, 1.0),
-    "eta": Number(0.5, 4.0),
-    "roughness": Number(0.0, 1.0),
-    "scale": Number(0.0, LARGEST_COEFFICIENT),
-    "profile": Choice(PROFILES),
-}
 SETTINGS = {
     "size": Whole(8, 16384),
     "samples": Whole(1, 1 << 20),
@@ -340,14 +296,18 @@ class _Reader:
         return checked
 
     def parameter(self, section, name, value, occurrence=0):
-        if name not in PARAMETERS:
+        if name not in SETTABLE:
             raise self.error(
                 section,
                 name,
-                f"'{name}' is not a material's parameter; allowed are {', '.join(PARAMETERS)}",
+                f"'{name}' is not a material's parameter; allowed are {', '.join(SETTABLE)}",
                 occurrence,
             )
-        return self.value(section, name, value, PARAMETERS[name], occurrence)
+        checked = PARAMETERS[name].check(value)
+        if checked is None:
+            allowed = PARAMETERS[name].allowed
+            raise self.error(section, name, f"{name} must be {allowed}; got {_came(value)}", occurrence)
+        return list(checked) if isinstance(checked, tuple) else checked
 
     def value(self, section, name, value, kind, occurrence=0):
         if isinstance(kind, Whole) and name == "size" and isinstance(value, list) and len(value) == 2:

@@ -14,8 +14,8 @@ LEAST_CONVERGED = 512
 def build():
     """The parser, for --help without Blender."""
     parser = shared.Parser(
-        prog="mesograin trade",
-        usage="mesograin trade [SCENE.blend] [options]",
+        prog="./mesograin trade",
+        usage="./mesograin trade [SCENE.blend] [options]",
         description=(
             "Measures error against time: every model at several sample counts, and Cycles itself (or the photon"
             " tracer) at rising samples, all against one converged render; draws the Pareto front."

@@ -1,0 +1,8 @@
+# What a grain is made of and which models answer: grain.json, that C++, Blender, the commands and the docs read.
+"""`models.MODELS` and `parameters.PARAMETERS`. Readable without Blender and without the native module."""
+
+import json
+from pathlib import Path
+
+GRAIN = json.loads(Path(__file__).with_name("grain.json").read_text(encoding="utf-8"))
+"""The file as it stands."""

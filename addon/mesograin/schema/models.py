@@ -1,0 +1,43 @@
+# The models: what each is called, what it answers, and what it takes.
+"""See `Model`; MODELS has them by name, in the order in which Blender files number them."""
+
+from dataclasses import dataclass
+
+from . import GRAIN
+
+
+@dataclass(frozen=True)
+class Model:
+    """One model. shaders/models/NAME.glsl and native/models/NAME_inputs.cpp are the rest of it.
+
+    name: everywhere. label, sentence: for people. translucent: light goes through it. kinds: of `material.kind`
+    in a scene's JSON, that it answers. parameters: that it reads. preferred: it stands for its kinds where none is
+    named. profiles: of the parameter `profile`, that it knows; empty for all. grain_radius: its inputs depend on the
+    grain's size. light_maps: it asks what the light sees of the grain. taps: it takes samples of the lit surface, whose
+    number may be chosen. mesh: light's way through the grain's own mesh is its input, which knows no cosine lobes.
+    """
+
+    name: str
+    label: str
+    sentence: str
+    translucent: bool
+    kinds: tuple
+    parameters: tuple
+    preferred: bool = False
+    profiles: tuple = ()
+    grain_radius: bool = False
+    light_maps: bool = False
+    taps: bool = False
+    mesh: bool = False
+
+
+def _model(entry):
+    return Model(**{key: tuple(value) if isinstance(value, list) else value for key, value in entry.items()})
+
+
+MODELS = {entry["name"]: _model(entry) for entry in GRAIN["models"]}
+NAMES = tuple(MODELS)
+OPAQUE = tuple(name for name, model in MODELS.items() if not model.translucent)
+TRANSLUCENT = tuple(name for name, model in MODELS.items() if model.translucent)
+# Those that know the cosine lobes of Cycles' Subsurface Scattering node.
+WITH_LOBES = tuple(name for name in TRANSLUCENT if not MODELS[name].mesh)

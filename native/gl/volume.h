@@ -1,0 +1,21 @@
+// A 3-D texture with fixed storage.
+#pragma once
+
+#include "gl/texture_storage.h"
+
+namespace mesograin::gl {
+
+class Volume : public TextureStorage<GL_TEXTURE_3D> {
+ public:
+  /// One level of `format` (GL_RGBA16F, GL_R16F, ...), linear filtering. Throws Error if the size is beyond the
+  /// device's.
+  Volume(GLenum format, int width, int height, int depth);
+
+  /// Uploads tightly packed texels, x fastest, then y.
+  void upload(GLenum components, const float* texels);
+
+ private:
+  int depth_;
+};
+
+}  // namespace mesograin::gl

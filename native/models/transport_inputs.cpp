@@ -1,0 +1,147 @@
+// Packs stored transport into texels.
+#include <algorithm>
+#include <cmath>
+#include <glm/matrix.hpp>
+#include <utility>
+
+#include "base/error.h"
+#include "models/dielectric_inputs.h"
+#include "models/inputs_of_models.h"
+#include "models/prototype_inputs.h"
+#include "transport/octahedron.h"
+#include "transport/stored_transport.h"
+
+namespace mesograin::models {
+namespace {
+
+using transport::StoredTransport;
+
+constexpr int terms_a_texel = 4;
+
+// Mean free paths between nodes beyond which the light just below the surface is not resolved.
+constexpr double widest_spacing = 1.5;
+
+// The medium that is similar to the material's and scatters isotropically (van de Hulst 1980, section 14.1.3).
+transport::StoredMedium stored_medium(const scene::Material& material, double unit) {
+  const glm::dvec3 sigma_s = material.scale * (1.0 - material.g) * material.sigma_s;
+  transport::StoredMedium medium;
+  medium.sigma_t = (material.scale * material.sigma_a + sigma_s) * unit;
+  for (int channel = 0; channel < 3; ++channel)
+    medium.albedo[channel] = sigma_s[channel] > 0.0 ? sigma_s[channel] * unit / medium.sigma_t[channel] : 0.0;
+  medium.eta = material.boundary == scene::Boundary::dielectric ? material.eta : 1.0;
+  return medium;
+}
+
+// A block of nodes for each texel's terms (a grey medium) or for each term, one behind the other along z.
+Volume sources_volume(const StoredTransport& stored) {
+  const bool grey = stored.channels == 1;
+  const int blocks = grey ? stored.terms / terms_a_texel : stored.terms;
+  Volume volume{stored.size.x, stored.size.y, stored.size.z * blocks, 4, {}};
+  volume.texels.reserve(stored.nodes() * static_cast<std::size_t>(blocks) * 4);
+  for (int block = 0; block < blocks; ++block)
+    for (std::size_t node = 0; node < stored.nodes(); ++node)
+      for (int component = 0; component < 4; ++component) {
+        const auto term = static_cast<std::size_t>(grey ? block * terms_a_texel + component : block);
+        const std::size_t index = term * stored.nodes() + node;
+        if (grey)
+          volume.texels.push_back(stored.sources[index]);
+        else
+          volume.texels.push_back(component < 3 ? stored.sources[3 * index + static_cast<std::size_t>(component)]
+                                                : 0.0F);
+      }
+  return volume;
+}
+
+// The octahedral maps of four terms a texel, one below the other, each with a frame of the texels across its edges.
+Table lobes_table(const StoredTransport& stored) {
+  constexpr int side = transport::octahedron_side;
+  constexpr int framed = side + 2;
+  const int blocks = stored.terms / terms_a_texel;
+  Table table{framed, framed * blocks, {}};
+  for (int block = 0; block < blocks; ++block)
+    for (int y = -1; y <= side; ++y)
+      for (int x = -1; x <= side; ++x) {
+        // Beyond an edge the map goes on mirrored about that edge's middle.
+        int u = x, v = y;
+        if (u < 0 || u >= side) {
+          u = u < 0 ? 0 : side - 1;
+          v = side - 1 - v;
+        }
+        if (v < 0 || v >= side) {
+          v = v < 0 ? 0 : side - 1;
+          u = side - 1 - u;
+        }
+        glm::vec4 texel;
+        for (int term = 0; term < terms_a_texel; ++term) {
+          const int index = ((block * terms_a_texel + term) * side + v) * side + u;
+          texel[term] = stored.lobes[static_cast<std::size_t>(index)];
+        }
+        table.texels.push_back(texel);
+      }
+  return table;
+}
+
+}  // namespace
+
+TurnAndStretch turn_and_stretch(const glm::dmat3& linear) {
+  glm::dmat3 turn = linear;
+  constexpr int most_steps = 64;
+  for (int step = 0; step < most_steps; ++step) {
+    const glm::dmat3 other = glm::transpose(glm::inverse(turn));
+    double size = 0.0, other_size = 0.0, change = 0.0;
+    for (int i = 0; i < 3; ++i) {
+      size += glm::dot(turn[i], turn[i]);
+      other_size += glm::dot(other[i], other[i]);
+    }
+    // Scaled so that large and small transforms take as few steps as a turn does.
+    const double scale = std::pow(other_size / size, 0.25);
+    const glm::dmat3 next = 0.5 * (scale * turn + other / scale);
+    for (int i = 0; i < 3; ++i) change += glm::dot(next[i] - turn[i], next[i] - turn[i]);
+    turn = next;
+    if (change < 1e-28) break;
+  }
+  return {turn, glm::transpose(turn) * linear};
+}
+
+// All that does not depend on the mesh.
+MaterialInputs transport_inputs(const scene::Material& material, double /*grain_radius*/) {
+  if (material.boundary == scene::Boundary::lambert_lambert || material.boundary == scene::Boundary::lambert_refracted)
+    throw Error("boundary for the model transport must be dielectric or index_matched; got '{}'.",
+                scene::name_of(material.boundary));
+  const transport::StoredMedium medium = stored_medium(material, 1.0);
+  MaterialInputs inputs;
+  if (medium.eta != 1.0) inputs.defines.emplace_back("REFRACTION");
+  if (medium.grey()) inputs.defines.emplace_back("GREY");
+  inputs.uniforms["stored.eta"] = static_cast<float>(medium.eta);
+  add_dielectric(material, inputs);
+  return inputs;
+}
+
+Prototype prototype_inputs(const scene::Material& material, const scene::Mesh& mesh, const glm::dmat3& stretch) {
+  MaterialInputs inputs = material_inputs(material);
+  const transport::Body body(mesh, stretch);
+  const transport::StoredMedium medium = stored_medium(material, body.unit());
+  const double densest = std::max({medium.sigma_t.r, medium.sigma_t.g, medium.sigma_t.b});
+  if (densest * transport::node_spacing(body, {}) > widest_spacing) {
+    scene::Material thick = material;
+    thick.model = scene::Model::model_3;
+    const double radius = mesh.equivalent_radius() * std::cbrt(std::abs(glm::determinant(stretch)));
+    return {thick.model, material_inputs(thick, radius)};
+  }
+  const StoredTransport stored = transport::compute_transport(body, medium);
+  const glm::dmat3 axes = glm::transpose(body.axes());
+  inputs.uniforms["stored.x_axis"] = glm::vec3(axes[0]);
+  inputs.uniforms["stored.y_axis"] = glm::vec3(axes[1]);
+  inputs.uniforms["stored.z_axis"] = glm::vec3(axes[2]);
+  inputs.uniforms["stored.lower"] = stored.lower;
+  inputs.uniforms["stored.nodes_a_unit"] = 1.0F / stored.spacing;
+  inputs.uniforms["stored.last_node"] = glm::vec3(stored.size - 1);
+  inputs.uniforms["stored.units"] = static_cast<float>(1.0 / stored.unit);
+  inputs.uniforms["stored.sigma_t"] = glm::vec3(medium.sigma_t);
+  inputs.tables["lobes"] = lobes_table(stored);
+  inputs.volumes["sources"] = sources_volume(stored);
+  inputs.volumes["distances"] = {stored.size.x, stored.size.y, stored.size.z, 1, stored.distances};
+  return {material.model, std::move(inputs)};
+}
+
+}  // namespace mesograin::models

@@ -1,0 +1,143 @@
+// Many equal instances become an array; a scene's bounds are those of its instances' balls.
+#include "render/content.h"
+
+#include <algorithm>
+#include <glm/gtc/type_ptr.hpp>
+#include <map>
+#include <utility>
+
+namespace mesograin::render {
+namespace {
+
+// What depends on the mesh's own transport is told how each instance is turned, which an array does not.
+bool fits_array(const scene::Material& material) { return !scene::traits_of(material.model).mesh; }
+
+// Instances of one mesh and material that are as many as an array deserves are drawn as one; the others are added to
+// `alone`, whose own are left out.
+std::vector<scene::InstanceArray> gathered(const scene::Scene& scene, std::vector<std::size_t>& alone) {
+  std::vector<bool> taken(scene.instances.size(), false);
+  for (const std::size_t instance : alone) taken[instance] = true;
+  std::map<const scene::Mesh*, std::vector<std::vector<std::size_t>>> alike;
+  for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+    if (taken[i]) continue;
+    const scene::Instance& instance = scene.instances[i];
+    if (!fits_array(instance.material)) {
+      alone.push_back(i);
+      continue;
+    }
+    std::vector<std::vector<std::size_t>>& of_mesh = alike[instance.mesh.get()];
+    const auto same = std::find_if(of_mesh.begin(), of_mesh.end(), [&](const std::vector<std::size_t>& members) {
+      return scene.instances[members.front()].material == instance.material;
+    });
+    if (same == of_mesh.end())
+      of_mesh.push_back({i});
+    else
+      same->push_back(i);
+  }
+  std::vector<scene::InstanceArray> arrays;
+  for (const auto& [mesh, of_mesh] : alike)
+    for (const std::vector<std::size_t>& members : of_mesh) {
+      if (members.size() < fewest_in_array) {
+        alone.insert(alone.end(), members.begin(), members.end());
+        continue;
+      }
+      const scene::Instance& first = scene.instances[members.front()];
+      std::vector<glm::dmat4> transforms;
+      transforms.reserve(members.size());
+      for (const std::size_t member : members) transforms.push_back(scene.instances[member].object_to_world);
+      arrays.emplace_back(first.mesh, first.material, std::move(transforms));
+    }
+  std::sort(alone.begin(), alone.end());
+  return arrays;
+}
+
+glm::dvec3 middle(const scene::Mesh& mesh, const glm::dmat4& object_to_world) {
+  const glm::dvec3 of_bounds = 0.5 * (glm::dvec3(mesh.lower()) + glm::dvec3(mesh.upper()));
+  return glm::dvec3(object_to_world * glm::dvec4(of_bounds, 1.0));
+}
+
+glm::dvec3 amid(const scene::Scene& scene) {
+  Bounds middles;
+  for (const scene::Instance& instance : scene.instances)
+    middles.include(middle(*instance.mesh, instance.object_to_world), 0.0);
+  for (const scene::InstanceArray& array : scene.arrays)
+    for (const glm::dmat4& object_to_world : array.object_to_world())
+      middles.include(middle(*array.mesh, object_to_world), 0.0);
+  return middles.empty() ? glm::dvec3(0.0) : 0.5 * (middles.lower + middles.upper);
+}
+
+}  // namespace
+
+Content::Content(DeviceCache& cache, const scene::Scene& scene, Content before,
+                 const std::vector<std::size_t>& alone_too)
+    : anchor_(amid(scene)) {
+  std::vector<std::size_t> alone = alone_too;
+  std::vector<scene::InstanceArray> arrays = gathered(scene, alone);
+  for (const scene::InstanceArray& array : scene.arrays)
+    if (!array.object_to_world().empty() && fits_array(array.material)) arrays.push_back(array);
+  if (!arrays.empty()) {
+    instances_.emplace(cache, arrays, anchor_);
+    if (before.instances_) instances_->take_light_maps(*before.instances_);
+  }
+  for (const std::size_t index : alone) {
+    draws_.emplace_back(cache, scene.instances[index], index);
+    draws_.back().take_light_maps(before.draws_);
+  }
+  for (const scene::InstanceArray& array : scene.arrays) {
+    if (fits_array(array.material)) continue;
+    for (const glm::dmat4& object_to_world : array.object_to_world()) {
+      draws_.emplace_back(cache, scene::Instance{array.mesh, array.material, object_to_world}, Draw::of_an_array);
+      draws_.back().take_light_maps(before.draws_);
+    }
+  }
+  // Neighbours that share a material need it bound once.
+  std::stable_sort(draws_.begin(), draws_.end(),
+                   [](const Draw& a, const Draw& b) { return a.material.get() < b.material.get(); });
+  tell_objects();
+  for (std::size_t i = 0; i < draws_.size(); ++i)
+    if (!shades_itself(draws_[i]) && !draws_[i].light_maps && (!ground_ || draws_[i].radius > draws_[*ground_].radius))
+      ground_ = i;
+  for (std::size_t i = 0; i < draws_.size(); ++i) {
+    bounds_.include(draws_[i].centre - anchor_, draws_[i].radius);
+    if (i != ground_) over_ground_.include(draws_[i].centre - anchor_, draws_[i].radius);
+  }
+  const std::size_t in_arrays = instances_ ? instances_->count() : 0;
+  for (std::size_t i = 0; i < in_arrays; ++i) {
+    const glm::vec4& ball = instances_->ball(i);
+    bounds_.include(glm::dvec3(ball), ball.w);
+    over_ground_.include(glm::dvec3(ball), ball.w);
+  }
+  shadows_ = in_arrays + draws_.size() > 1 ||
+             std::any_of(draws_.begin(), draws_.end(), [this](const Draw& draw) { return shades_itself(draw); });
+}
+
+void Content::tell_objects() {
+  const auto place = [this](std::size_t draw) {
+    const double* numbers = glm::value_ptr(draws_[draw].object_to_world);
+    return std::vector<double>(numbers, numbers + 16);
+  };
+  std::map<std::vector<double>, std::size_t> first;
+  for (std::size_t draw = 0; draw < draws_.size(); ++draw) {
+    const auto [found, is_first] = first.try_emplace(place(draw), draw);
+    draws_[draw].object = found->second;
+    if (is_first) continue;
+    draws_[draw].part = true;
+    draws_[found->second].part = true;
+  }
+}
+
+std::size_t Content::draw_of(std::size_t instance) const {
+  const auto found =
+      std::find_if(draws_.begin(), draws_.end(), [&](const Draw& draw) { return draw.instance == instance; });
+  return static_cast<std::size_t>(found - draws_.begin());
+}
+
+Receiver Content::receiver(std::size_t number) const {
+  const std::size_t in_arrays = instances_ ? instances_->count() : 0;
+  if (number < in_arrays) return {instances_->ball(number), true, false};
+  const Draw& draw = draws_[number - in_arrays];
+  return {glm::vec4(glm::vec3(draw.centre - anchor_), static_cast<float>(draw.radius)), draw.light_maps != nullptr,
+          number - in_arrays == ground_};
+}
+
+}  // namespace mesograin::render

@@ -1,0 +1,73 @@
+// What a view draws: instances one by one, and arrays of them.
+#pragma once
+
+#include <cstddef>
+#include <glm/vec3.hpp>
+#include <optional>
+#include <vector>
+
+#include "render/bounds.h"
+#include "render/draw.h"
+#include "render/instances.h"
+#include "render/receivers.h"
+#include "scene/scene.h"
+
+namespace mesograin::render {
+
+class Content {
+ public:
+  Content() = default;
+
+  /// Takes over the light maps of `before` that still serve. The instances of these numbers are in no array, however
+  /// many are like them.
+  Content(DeviceCache& cache, const scene::Scene& scene, Content before, const std::vector<std::size_t>& alone = {});
+
+  std::vector<Draw>& draws() { return draws_; }
+  const std::vector<Draw>& draws() const { return draws_; }
+
+  /// Null if there are no arrays.
+  Instances* instances() { return instances_ ? &*instances_ : nullptr; }
+  const Instances* instances() const { return instances_ ? &*instances_ : nullptr; }
+
+  /// A place amid the scene: all but single draws' matrices is told from there.
+  const glm::dvec3& anchor() const { return anchor_; }
+
+  /// Of everything, from the anchor.
+  const Bounds& bounds() const { return bounds_; }
+
+  /// Of everything but the ground: a single draw that cannot shade itself and is larger than any other.
+  const Bounds& over_ground() const { return over_ground_; }
+
+  /// The number by which shaders know a draw; instances of arrays come first.
+  std::size_t number(std::size_t draw) const { return (instances_ ? instances_->count() : 0) + draw; }
+
+  /// The number by which shadows know it: the materials of one object are draws of their own, whose surfaces go on into
+  /// each other.
+  std::size_t object_number(std::size_t draw) const { return number(draws_[draw].object); }
+
+  /// Whether a draw may stand in its own light, for all that its model knows.
+  bool shades_itself(const Draw& draw) const { return draw.part || (!draw.convex && !draw.light_maps); }
+
+  /// Of the instance of this number.
+  Receiver receiver(std::size_t number) const;
+
+  /// The draw of this instance of the scene's, which is in no array.
+  std::size_t draw_of(std::size_t instance) const;
+
+  /// Whether something may stand in the light of something: there are two objects, or one with a hollow that its model
+  /// does not know of.
+  bool shadows() const { return shadows_; }
+
+ private:
+  void tell_objects();
+
+  std::vector<Draw> draws_;
+  std::optional<Instances> instances_;
+  glm::dvec3 anchor_{0.0};
+  Bounds bounds_;
+  Bounds over_ground_;
+  std::optional<std::size_t> ground_;  // which draw
+  bool shadows_ = false;
+};
+
+}  // namespace mesograin::render

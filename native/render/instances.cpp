@@ -1,0 +1,156 @@
+// Sorts instances into groups and chooses what a picture shows of them.
+#include "render/instances.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+#include <map>
+#include <utility>
+
+namespace mesograin::render {
+namespace {
+
+// Sizes to an octave that have tables of their own; an instance takes one of the two nearest, so that on average all is
+// as for its own size.
+constexpr double sizes_an_octave = 8.0;
+
+// In [0, 1), of an instance's number alone (the golden ratio's additive recurrence).
+double random_of(std::size_t number) {
+  constexpr double golden = 0.61803398874989484820;
+  const double product = golden * static_cast<double>(number + 1);
+  return product - std::floor(product);
+}
+
+double scale_of(const glm::dmat4& object_to_world) {
+  return std::cbrt(std::abs(glm::determinant(glm::dmat3(object_to_world))));
+}
+
+// As in make_draw: a bound of how much a length grows.
+double largest_stretch(const glm::dmat3& linear) {
+  const glm::dmat3 squared = glm::transpose(linear) * linear;
+  double largest = 0.0;
+  for (int row = 0; row < 3; ++row)
+    largest = std::max(largest, std::abs(squared[0][row]) + std::abs(squared[1][row]) + std::abs(squared[2][row]));
+  return std::sqrt(largest);
+}
+
+}  // namespace
+
+Instances::Instances(DeviceCache& cache, const std::vector<scene::InstanceArray>& arrays, const glm::dvec3& anchor) {
+  std::size_t count = 0;
+  for (const scene::InstanceArray& array : arrays) count += array.object_to_world().size();
+  rows_.reserve(3 * count);
+  balls_.reserve(count);
+  for (const scene::InstanceArray& array : arrays) add(cache, array, anchor);
+  device_.emplace(rows_);
+}
+
+std::size_t Instances::prototype(DeviceCache& cache, const scene::MeshPointer& mesh) {
+  for (std::size_t i = 0; i < prototypes_.size(); ++i)
+    if (prototypes_[i].mesh == mesh) return i;
+  prototypes_.push_back({mesh, cache.details(mesh), nullptr});
+  return prototypes_.size() - 1;
+}
+
+void Instances::add(DeviceCache& cache, const scene::InstanceArray& array, const glm::dvec3& anchor) {
+  const std::size_t of = prototype(cache, array.mesh);
+  const scene::Mesh& mesh = *array.mesh;
+  const glm::dvec3 middle = 0.5 * (glm::dvec3(mesh.lower()) + glm::dvec3(mesh.upper()));
+
+  // One group where size plays no part.
+  std::map<int, std::vector<std::size_t>> by_size;
+  const bool sized = scene::traits_of(array.material.model).grain_radius;
+  for (std::size_t i = 0; i < array.object_to_world().size(); ++i) {
+    const double size =
+        sized ? sizes_an_octave * std::log2(std::max(scale_of(array.object_to_world()[i]), 1e-300)) + random_of(i)
+              : 0.0;
+    by_size[static_cast<int>(std::floor(size))].push_back(i);
+  }
+  for (const auto& [size, members] : by_size) {
+    InstanceGroup group;
+    group.prototype = of;
+    group.typical_scale = std::exp2(size / sizes_an_octave);
+    const double radius = std::max(mesh.equivalent_radius() * group.typical_scale, 1e-30);
+    group.material = cache.material(array.material, radius);
+    if (group.material->light_maps() && !prototypes_[of].light_maps)
+      prototypes_[of].light_maps = std::make_unique<LightMapAtlas>(array.mesh);
+    const glm::dvec3 reduced =
+        array.material.scale * (array.material.sigma_a + (1.0 - array.material.g) * array.material.sigma_s);
+    group.mean_free_paths_across =
+        2.0 * mesh.reach() * group.typical_scale * std::max({reduced.r, reduced.g, reduced.b});
+    group.first = static_cast<std::uint32_t>(balls_.size());
+    group.count = static_cast<std::uint32_t>(members.size());
+    groups_.push_back(std::move(group));
+    for (const std::size_t member : members) {
+      const glm::dmat4& object_to_world = array.object_to_world()[member];
+      const glm::dmat3 linear(object_to_world);
+      const glm::dvec3 place = glm::dvec3(object_to_world * glm::dvec4(middle, 1.0)) - anchor;
+      for (int row = 0; row < 3; ++row) rows_.emplace_back(linear[0][row], linear[1][row], linear[2][row], place[row]);
+      balls_.emplace_back(glm::vec3(place), static_cast<float>(mesh.reach() * largest_stretch(linear)));
+    }
+  }
+}
+
+void Instances::take_light_maps(Instances& before) {
+  for (Prototype& prototype : prototypes_)
+    for (Prototype& old : before.prototypes_)
+      if (prototype.light_maps && old.light_maps && old.mesh == prototype.mesh)
+        prototype.light_maps = std::move(old.light_maps);
+}
+
+Selection Instances::select(const glm::dmat4& anchor_to_clip, int width, int height) const {
+  Selection selection;
+  // Rows of the matrix are planes; their lengths tell how far a ball reaches across them.
+  const glm::dmat4 rows = glm::transpose(anchor_to_clip);
+  const glm::vec4 x(rows[0]);
+  const glm::vec4 y(rows[1]);
+  const glm::vec4 z(rows[2]);
+  const glm::vec4 w(rows[3]);
+  const auto length = [](const glm::vec4& plane) { return glm::length(glm::vec3(plane)); };
+  const glm::vec4 planes[6] = {w + x, w - x, w + y, w - y, w + z, w - z};
+  float lengths[6];
+  for (int i = 0; i < 6; ++i) lengths[i] = length(planes[i]);
+  const float pixels = 0.5F * std::max(length(x) * static_cast<float>(width), length(y) * static_cast<float>(height));
+
+  std::vector<std::vector<std::uint32_t>> by_level;
+  for (std::size_t g = 0; g < groups_.size(); ++g) {
+    const InstanceGroup& group = groups_[g];
+    const Details& details = *prototypes_[group.prototype].details;
+    by_level.assign(details.count(), {});
+    for (std::uint32_t i = group.first; i < group.first + group.count; ++i) {
+      const glm::vec4& ball = balls_[i];
+      const glm::vec4 place(glm::vec3(ball), 1.0F);
+      bool seen = true;
+      for (int plane = 0; plane < 6 && seen; ++plane) seen = glm::dot(planes[plane], place) > -ball.w * lengths[plane];
+      if (!seen) continue;
+      const float depth = glm::dot(w, place);
+      const float across = depth > 0.0F ? 2.0F * ball.w * pixels / depth : 1e6F;
+      selection.largest_pixels_across = std::max(selection.largest_pixels_across, static_cast<double>(across));
+      by_level[details.level(across)].push_back(i);
+    }
+    for (std::size_t level = 0; level < by_level.size(); ++level) {
+      if (by_level[level].empty()) continue;
+      selection.parts.push_back({g, level, static_cast<std::uint32_t>(selection.instances.size()),
+                                 static_cast<std::uint32_t>(by_level[level].size())});
+      selection.instances.insert(selection.instances.end(), by_level[level].begin(), by_level[level].end());
+    }
+  }
+  return selection;
+}
+
+LightMapDirections Instances::light_directions(std::size_t prototype, const std::vector<glm::dvec3>& to_light) const {
+  LightMapDirections directions;
+  for (const InstanceGroup& group : groups_) {
+    if (group.prototype != prototype || !group.material->light_maps()) continue;
+    for (std::uint32_t i = group.first; i < group.first + group.count && !directions.all(); ++i) {
+      // Transposed and so, but for the scale, inverted.
+      const glm::dmat3 rows{glm::dvec3(rows_[3 * i]), glm::dvec3(rows_[3 * i + 1]), glm::dvec3(rows_[3 * i + 2])};
+      for (const glm::dvec3& direction : to_light) directions.ask_for(glm::normalize(rows * direction));
+    }
+  }
+  return directions;
+}
+
+}  // namespace mesograin::render

@@ -1,0 +1,93 @@
+// A scene's arrays of instances on the device: a transform each, in groups that are drawn and shaded together.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "gl/buffer.h"
+#include "render/details.h"
+#include "render/device_cache.h"
+#include "render/light_map_atlas.h"
+#include "scene/scene.h"
+
+namespace mesograin::render {
+
+/// As many instances of one mesh and material are drawn as an array; fewer are drawn one by one, exactly.
+inline constexpr std::size_t fewest_in_array = 9;
+
+/// A mesh as its instances share it.
+struct Prototype {
+  scene::MeshPointer mesh;
+  std::shared_ptr<Details> details;
+  std::unique_ptr<LightMapAtlas> light_maps;  // once a material reads them
+};
+
+/// Instances that one call draws and one program shades: of one prototype and one material, and, where the material's
+/// tables depend on the grain's radius, of about one size.
+struct InstanceGroup {
+  std::size_t prototype;
+  std::shared_ptr<DeviceMaterial> material;
+  double typical_scale;           // of the instances that the material's tables were made for
+  double mean_free_paths_across;  // reduced, in the densest channel
+  std::uint32_t first;            // instance; they lie one after the other
+  std::uint32_t count;
+};
+
+/// Which instances a picture draws, by group and level of detail.
+struct Selection {
+  struct Part {
+    std::size_t group;
+    std::size_t level;
+    std::uint32_t first;  // in `instances`
+    std::uint32_t count;
+  };
+  std::vector<Part> parts;
+  std::vector<std::uint32_t> instances;
+  double largest_pixels_across = 0.0;
+};
+
+class Instances {
+ public:
+  /// Takes the arrays of a scene. `anchor`, a place amid the scene, is the origin of all that is on the device.
+  Instances(DeviceCache& cache, const std::vector<scene::InstanceArray>& arrays, const glm::dvec3& anchor);
+
+  /// Takes over the light maps of prototypes that were there before.
+  void take_light_maps(Instances& before);
+
+  const std::vector<InstanceGroup>& groups() const { return groups_; }
+  std::vector<Prototype>& prototypes() { return prototypes_; }
+  const std::vector<Prototype>& prototypes() const { return prototypes_; }
+  std::size_t count() const { return balls_.size(); }
+
+  /// The ball that holds an instance: xyz its middle, from the anchor; w its radius.
+  const glm::vec4& ball(std::size_t instance) const { return balls_[instance]; }
+
+  /// Those that a picture of `width` x `height` pixels may show, `anchor_to_clip` being its projection.
+  Selection select(const glm::dmat4& anchor_to_clip, int width, int height) const;
+
+  /// The directions, in the prototype's own axes, from which lights in these directions (unit length) meet its
+  /// instances.
+  LightMapDirections light_directions(std::size_t prototype, const std::vector<glm::dvec3>& to_light) const;
+
+  /// Makes them what shaders/scene/instances.glsl reads.
+  void bind() const { device_->bind_storage(2); }
+
+ private:
+  void add(DeviceCache& cache, const scene::InstanceArray& array, const glm::dvec3& anchor);
+  std::size_t prototype(DeviceCache& cache, const scene::MeshPointer& mesh);
+
+  std::vector<Prototype> prototypes_;
+  std::vector<InstanceGroup> groups_;
+  std::vector<glm::vec4> rows_;  // three an instance: object to anchor's space, the middle of the bounds at the origin
+  std::vector<glm::vec4> balls_;
+  std::optional<gl::Buffer> device_;
+};
+
+}  // namespace mesograin::render

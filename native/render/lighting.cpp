@@ -1,0 +1,86 @@
+// Low-discrepancy points choose a direction of every light for each sample.
+#include "render/lighting.h"
+
+#include "lights/device_light.h"
+#include "render/sequence.h"
+
+namespace mesograin::render {
+namespace {
+
+// The angle that a direction of the world stands for, as a sun's disc would have it.
+constexpr double world_angle = 0.5;
+
+// Where each family of lights begins among the seeds of their points.
+constexpr std::uint32_t sun_seeds = 0x10000U;
+constexpr std::uint32_t world_seed = 0x20000U;
+constexpr std::uint32_t local_seeds = 0x30000U;
+
+}  // namespace
+
+void Lighting::set(const scene::Scene& scene) {
+  suns_.clear();
+  local_.clear();
+  for (const scene::Light& light : scene.lights)
+    if (const auto* sun = std::get_if<scene::DirectionalLight>(&light))
+      suns_.push_back(*sun);
+    else
+      local_.push_back(light);
+  if (scene.world == world_) return;
+  world_ = scene.world;
+  world_light_.reset();
+  world_image_.reset();
+  if (world_.shines()) world_light_.emplace(world_);
+  if (!world_.seen || !world_.image) return;
+  world_image_.emplace(GL_RGB32F, world_.image->width(), world_.image->height());
+  world_image_->upload(GL_RGB, GL_FLOAT, world_.image->texels().data());
+  world_image_->sample_linearly(true);
+}
+
+SampledLights Lighting::sample(std::uint32_t index, std::uint32_t seed, int world_directions) const {
+  SampledLights sampled;
+  for (std::size_t i = 0; i < suns_.size(); ++i) {
+    const glm::dvec2 random = r4_point(index, seeded_offset(seed + sun_seeds + static_cast<std::uint32_t>(i)));
+    const lights::LightDraw drawn = lights::sample(suns_[i], glm::dvec3(0.0), random);
+    sampled.distant.push_back({drawn.to_light, drawn.irradiance, suns_[i].angle});
+  }
+  const glm::dvec2 offset = seeded_offset(seed + world_seed);
+  for (int i = 0; world_light_ && i < world_directions; ++i) {
+    const lights::LightDraw drawn = world_light_->draw(
+        r2_point(index * static_cast<std::uint32_t>(world_directions) + static_cast<std::uint32_t>(i), offset));
+    sampled.distant.push_back({drawn.to_light, drawn.irradiance / static_cast<double>(world_directions), world_angle});
+  }
+  for (std::size_t i = 0; i < local_.size(); ++i)
+    sampled.randoms.push_back(r4_point(index, seeded_offset(seed + local_seeds + static_cast<std::uint32_t>(i))));
+  return sampled;
+}
+
+std::vector<LightDirection> Lighting::at(const SampledLights& sampled, const glm::dvec3& place) const {
+  std::vector<LightDirection> directions = sampled.distant;
+  for (std::size_t i = 0; i < local_.size(); ++i) {
+    const lights::DeviceLight packed = lights::pack(local_[i], place);
+    const lights::LightDraw drawn = lights::draw_light(packed, glm::dvec3(0.0), sampled.randoms[i]);
+    directions.push_back({drawn.to_light, drawn.irradiance, lights::light_angle(packed, drawn.reach)});
+  }
+  return directions;
+}
+
+std::vector<ShadowEye> Lighting::eyes(const SampledLights& sampled, const glm::dvec3& anchor) const {
+  std::vector<ShadowEye> eyes;
+  for (const LightDirection& direction : sampled.distant) eyes.emplace_back(direction.to_light, 0.0);
+  for (std::size_t i = 0; i < local_.size(); ++i) {
+    const lights::DeviceLight packed = lights::pack(local_[i], anchor);
+    const lights::LightDraw drawn = lights::draw_light(packed, glm::dvec3(0.0), sampled.randoms[i]);
+    // What turns its back on the anchor still has its middle.
+    const bool seen = drawn.reach < lights::LIGHT_INFINITELY_FAR;
+    eyes.emplace_back(seen ? drawn.reach * drawn.to_light : glm::dvec3(packed.place), 1.0);
+  }
+  return eyes;
+}
+
+std::vector<std::array<glm::vec4, 5>> Lighting::device_local(const glm::dvec3& origin) const {
+  std::vector<std::array<glm::vec4, 5>> device;
+  for (const scene::Light& light : local_) device.push_back(lights::to_device(lights::pack(light, origin)));
+  return device;
+}
+
+}  // namespace mesograin::render

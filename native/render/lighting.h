@@ -1,0 +1,65 @@
+// The lights of a view: what of them one sample sees.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <optional>
+#include <vector>
+
+#include "gl/texture.h"
+#include "lights/world_light.h"
+#include "render/shadow_maps.h"
+#include "scene/scene.h"
+
+namespace mesograin::render {
+
+/// One direction that light comes from.
+struct LightDirection {
+  glm::dvec3 to_light;    ///< unit length
+  glm::dvec3 irradiance;  ///< linear RGB, on a plane that faces it
+  double angle;           ///< edge to edge, of what it is drawn from
+};
+
+/// What one sample sees of the lights: a direction of each that is endlessly far, and a point of each that has a place.
+struct SampledLights {
+  std::vector<LightDirection> distant;
+  std::vector<glm::dvec2> randoms;  ///< of each light that has a place, in their order
+};
+
+class Lighting {
+ public:
+  /// Takes the lights and the world of a scene.
+  void set(const scene::Scene& scene);
+
+  const scene::World& world() const { return world_; }
+
+  /// Null unless the world is an image that is seen.
+  const gl::Texture* world_image() const { return world_image_ ? &*world_image_ : nullptr; }
+
+  /// Whether any light has a place.
+  bool any_local() const { return !local_.empty(); }
+
+  /// `world_directions`: of how many directions the world's light is the mean.
+  SampledLights sample(std::uint32_t index, std::uint32_t seed, int world_directions) const;
+
+  /// Everything that comes to one place, the distant ones first.
+  std::vector<LightDirection> at(const SampledLights& sampled, const glm::dvec3& place) const;
+
+  /// Where the shadows of each are seen from, in the order of at(), from the anchor.
+  std::vector<ShadowEye> eyes(const SampledLights& sampled, const glm::dvec3& anchor) const;
+
+  /// The lights that have a place, from `origin`, as shaders/lights/light.glsl has them.
+  std::vector<std::array<glm::vec4, 5>> device_local(const glm::dvec3& origin) const;
+
+ private:
+  std::vector<scene::DirectionalLight> suns_;
+  std::vector<scene::Light> local_;
+  scene::World world_;
+  std::optional<lights::WorldLight> world_light_;  // if it shines
+  std::optional<gl::Texture> world_image_;         // if it is seen
+};
+
+}  // namespace mesograin::render

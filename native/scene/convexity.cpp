@@ -1,0 +1,85 @@
+// Looks at every edge from both of its triangles. A closed surface that is convex at every edge can still wind around
+// itself (a star polygon's prism does), which no mesh of a grain is known to do.
+#include "scene/convexity.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <glm/geometric.hpp>
+#include <map>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+namespace mesograin::scene {
+namespace {
+
+// Of the mesh's reach: how far a neighbour's corner may stand above a triangle's plane.
+constexpr double tolerance = 1e-5;
+
+// The same number for positions that coincide but for rounding, as on the seam of a sphere.
+std::vector<std::uint32_t> welded(const Mesh& mesh) {
+  const double cell = 0.1 * tolerance * std::max(mesh.reach(), 1e-300);
+  std::map<std::tuple<std::int64_t, std::int64_t, std::int64_t>, std::uint32_t> known;
+  std::vector<std::uint32_t> numbers;
+  numbers.reserve(mesh.positions().size());
+  const glm::dvec3 middle = 0.5 * (glm::dvec3(mesh.lower()) + glm::dvec3(mesh.upper()));
+  for (const glm::vec3& position : mesh.positions()) {
+    const glm::dvec3 place = (glm::dvec3(position) - middle) / cell;
+    numbers.push_back(known
+                          .try_emplace({std::llround(place.x), std::llround(place.y), std::llround(place.z)},
+                                       static_cast<std::uint32_t>(known.size()))
+                          .first->second);
+  }
+  return numbers;
+}
+
+}  // namespace
+
+bool is_convex(const Mesh& mesh) {
+  const std::vector<std::uint32_t> numbers = welded(mesh);
+  const double allowed = tolerance * mesh.reach();
+  struct Side {
+    glm::dvec3 opposite;
+    int triangles;
+  };
+  std::map<std::pair<std::uint32_t, std::uint32_t>, Side> sides;  // by edge, as one of its triangles goes along it
+  // Triangles without area, such as at a sphere's poles, are no part of the surface.
+  const auto collapsed = [&](const glm::uvec3& triangle) {
+    return numbers[triangle.x] == numbers[triangle.y] || numbers[triangle.y] == numbers[triangle.z] ||
+           numbers[triangle.z] == numbers[triangle.x];
+  };
+  for (const glm::uvec3& triangle : mesh.triangles())
+    for (int corner = 0; corner < 3 && !collapsed(triangle); ++corner) {
+      const std::uint32_t from = numbers[triangle[corner]];
+      const std::uint32_t to = numbers[triangle[(corner + 1) % 3]];
+      Side& side = sides.try_emplace({from, to}, Side{{}, 0}).first->second;
+      side.opposite = glm::dvec3(mesh.positions()[triangle[(corner + 2) % 3]]);
+      ++side.triangles;
+    }
+  bool closed = true;
+  bool flat = true;
+  for (const glm::uvec3& triangle : mesh.triangles()) {
+    const glm::dvec3 a(mesh.positions()[triangle.x]);
+    const glm::dvec3 across =
+        glm::cross(glm::dvec3(mesh.positions()[triangle.y]) - a, glm::dvec3(mesh.positions()[triangle.z]) - a);
+    const double area = glm::length(across);
+    if (area == 0.0 || collapsed(triangle)) continue;
+    for (int corner = 0; corner < 3; ++corner) {
+      const std::uint32_t from = numbers[triangle[corner]];
+      const std::uint32_t to = numbers[triangle[(corner + 1) % 3]];
+      const auto other = sides.find({to, from});
+      if (other == sides.end()) {
+        closed = false;
+        continue;
+      }
+      if (other->second.triangles > 1) return false;
+      const double above = glm::dot(other->second.opposite - a, across) / area;
+      if (above > allowed) return false;
+      if (above < -allowed) flat = false;
+    }
+  }
+  return closed || flat;
+}
+
+}  // namespace mesograin::scene

@@ -1,0 +1,28 @@
+// How much of the light at a node comes from scattering at every other one: rays from each node, reflected inside.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "transport/body.h"
+#include "transport/effort.h"
+#include "transport/grid.h"
+
+namespace mesograin::transport {
+
+/// For one extinction, a sparse matrix by rows: mean radiance = entries * source function, and what else arrives at a
+/// node comes from outside, unscattered.
+struct Exchange {
+  std::vector<std::size_t> first;  ///< of each row, and one past the last
+  std::vector<std::uint32_t> columns;
+  std::vector<float> values;
+  std::vector<float> escape;  ///< of each row: the share of directions from which light comes in unscattered
+
+  std::size_t rows() const { return escape.size(); }
+};
+
+/// One for each of `extinctions` (sigma_t per unit of the body), all from the same rays, `across` squared a node.
+std::vector<Exchange> trace_exchange(const Body& body, const Grid& grid, double eta,
+                                     const std::vector<double>& extinctions, int across, const Effort& effort);
+
+}  // namespace mesograin::transport

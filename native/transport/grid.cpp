@@ -1,0 +1,157 @@
+// Lays the nodes out, and finds which side of the surface each is on.
+#include "transport/grid.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <optional>
+
+#include "transport/directions.h"
+#include "transport/incidence.h"
+
+namespace mesograin::transport {
+namespace {
+
+// By the majority of three lines, since one may run along an edge.
+bool is_inside(const Body& body, const glm::vec3& place) {
+  constexpr glm::vec3 lines[] = {
+      {0.5377F, 0.2183F, 0.8144F}, {-0.7071F, 0.6123F, 0.3536F}, {0.1483F, -0.9231F, -0.3548F}};
+  int votes = 0;
+  for (const glm::vec3& line : lines) {
+    const std::optional<Hit> hit = body.first_hit(place, line);
+    if (hit && glm::dot(hit->normal, line) > 0.0F) ++votes;
+  }
+  return votes >= 2;
+}
+
+// Where a place counts as being on the surface.
+constexpr float below = 1e-4F;
+
+// From the surface's nearest point into the body, at edges and corners too.
+glm::vec3 inwards(const Nearest& surface, const glm::vec3& place, bool inside) {
+  if (surface.distance > 0.1F * below)
+    return (inside ? place - surface.point : surface.point - place) / surface.distance;
+  // Nodes on the surface lie on the box, whose middle is the origin.
+  return glm::normalize(-surface.normal - 0.5F * place);
+}
+
+}  // namespace
+
+Grid::Grid(const Body& body, int nodes, const Effort& effort) {
+  const glm::vec3 extent = glm::max(body.upper() - body.lower(), glm::vec3(1e-4F));
+  const float even = std::cbrt(extent.x * extent.y * extent.z / static_cast<float>(nodes));
+  size_ = glm::clamp(glm::ivec3(glm::round(extent / even)) + 1, glm::ivec3(4), glm::ivec3(128));
+  spacing_ = extent / glm::vec3(size_ - 1);
+  lower_ = body.lower();
+  const std::size_t plane = static_cast<std::size_t>(size_.x) * static_cast<std::size_t>(size_.y);
+  const std::size_t count = plane * static_cast<std::size_t>(size_.z);
+  distances_.resize(count);
+  used_.assign(count, -1);
+  std::vector<glm::vec3> nearest(count);
+  run_pieces(effort, static_cast<std::size_t>(size_.z), [&](std::size_t z) {
+    for (std::size_t i = z * plane; i < (z + 1) * plane; ++i) {
+      const glm::ivec3 node(static_cast<int>(i % static_cast<std::size_t>(size_.x)),
+                            static_cast<int>(i % plane) / size_.x, static_cast<int>(z));
+      const glm::vec3 place = lower_ + glm::vec3(node) * spacing_;
+      const Nearest surface = body.nearest(place);
+      const bool inside = is_inside(body, place);
+      distances_[i] = inside ? -surface.distance : surface.distance;
+      nearest[i] = inside && surface.distance > below ? place : surface.point + below * inwards(surface, place, inside);
+    }
+  });
+  const float diagonal = glm::length(spacing_);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (distances_[i] >= diagonal) continue;
+    used_[i] = static_cast<int>(places_.size());
+    places_.push_back(nearest[i]);
+    depths_.push_back(std::max(-distances_[i], 0.0F));
+  }
+  measure_volumes(body);
+  choose_deputies();
+}
+
+std::array<Corner, 8> Grid::corners(const glm::vec3& place) const {
+  const glm::vec3 scaled = (place - lower_) / spacing_;
+  const glm::ivec3 cell = glm::clamp(glm::ivec3(glm::floor(scaled)), glm::ivec3(0), size_ - 2);
+  const glm::vec3 along = glm::clamp(scaled - glm::vec3(cell), 0.0F, 1.0F);
+  std::array<Corner, 8> result{};
+  float sum = 0.0F;
+  for (unsigned corner = 0; corner < 8; ++corner) {
+    const glm::ivec3 step(static_cast<int>(corner & 1U), static_cast<int>(corner >> 1U & 1U),
+                          static_cast<int>(corner >> 2U));
+    const glm::ivec3 node = cell + step;
+    const int used = used_[index(node)];
+    const glm::vec3 share = glm::mix(1.0F - along, along, glm::vec3(step));
+    // What rounding takes for outside has a corner that is not used.
+    const float weight = used < 0 ? 0.0F : share.x * share.y * share.z;
+    result[corner] = {std::max(used, 0), weight};
+    sum += weight;
+  }
+  for (Corner& corner : result) corner.weight /= std::max(sum, 1e-6F);
+  return result;
+}
+
+std::size_t Grid::index(const glm::ivec3& node) const {
+  const int place = (node.z * size_.y + node.y) * size_.x + node.x;
+  return static_cast<std::size_t>(place);
+}
+
+void Grid::measure_volumes(const Body& body) {
+  // By straight lines from three sides.
+  constexpr int across = 96;
+  std::vector<double> volumes(places_.size(), 0.0);
+  const float step = 0.25F * std::min({spacing_.x, spacing_.y, spacing_.z});
+  const glm::vec3 sides[] = {{1.0F, 0.02F, 0.03F}, {0.03F, 1.0F, 0.02F}, {0.02F, 0.03F, 1.0F}};
+  for (const glm::vec3& side : sides) {
+    const Incidence incidence(body, side);
+    const glm::vec3 direction = -incidence.to_light();
+    const double share = incidence.area() / (3.0 * across * across);
+    for (int i = 0; i < across * across; ++i) {
+      const int row = i / across;
+      glm::vec3 place =
+          incidence.start((static_cast<float>(i % across) + 0.5F) / across, (static_cast<float>(row) + 0.5F) / across);
+      while (const std::optional<Hit> hit = body.first_hit(place, direction)) {
+        if (glm::dot(hit->normal, direction) > 0.0F) {
+          const int steps = std::max(1, static_cast<int>(std::ceil(hit->distance / step)));
+          const float length = hit->distance / static_cast<float>(steps);
+          for (int s = 0; s < steps; ++s)
+            for (const Corner& corner : corners(place + (static_cast<float>(s) + 0.5F) * length * direction))
+              volumes[static_cast<std::size_t>(corner.node)] += share * length * corner.weight;
+        }
+        place += (hit->distance + 2e-6F) * direction;
+      }
+    }
+  }
+  volumes_.assign(volumes.begin(), volumes.end());
+}
+
+void Grid::choose_deputies() {
+  const float enough = 0.04F * spacing_.x * spacing_.y * spacing_.z;
+  deputies_.resize(places_.size());
+  for (std::size_t i = 0; i < used_.size(); ++i) {
+    if (used_[i] < 0) continue;
+    const auto self = static_cast<std::size_t>(used_[i]);
+    deputies_[self] = used_[i];
+    if (volumes_[self] >= enough) continue;
+    const auto place = static_cast<int>(i);
+    const glm::ivec3 node(place % size_.x, place / size_.x % size_.y, place / (size_.x * size_.y));
+    constexpr int reach = 2;
+    const glm::ivec3 first = glm::max(node - reach, glm::ivec3(0));
+    const glm::ivec3 last = glm::min(node + reach, size_ - 1);
+    float nearest = std::numeric_limits<float>::infinity();
+    for (int z = first.z; z <= last.z; ++z)
+      for (int y = first.y; y <= last.y; ++y)
+        for (int x = first.x; x <= last.x; ++x) {
+          const int other = used_[index({x, y, z})];
+          if (other < 0 || volumes_[static_cast<std::size_t>(other)] < enough) continue;
+          const float apart = glm::distance(lower_ + glm::vec3(x, y, z) * spacing_, places_[self]);
+          if (apart >= nearest) continue;
+          nearest = apart;
+          deputies_[self] = other;
+        }
+  }
+}
+
+}  // namespace mesograin::transport

@@ -1,0 +1,69 @@
+// The nodes that light inside a body is known at: a box of them, linear in between.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "transport/body.h"
+#include "transport/effort.h"
+
+namespace mesograin::transport {
+
+/// A node's share of what is at some place.
+struct Corner {
+  int node;
+  float weight;
+};
+
+/// Corner nodes lie on the body's box. Used are all nodes of cells that the body reaches into; those that lie outside
+/// it stand for the point of its surface that is nearest to them.
+class Grid {
+ public:
+  /// About `nodes` of them in the body's box, spaced nearly evenly.
+  Grid(const Body& body, int nodes, const Effort& effort = {});
+
+  const glm::ivec3& size() const { return size_; }
+  const glm::vec3& lower() const { return lower_; }
+  const glm::vec3& spacing() const { return spacing_; }
+
+  /// Distance from the surface at every node of the box, negative inside; x runs fastest.
+  const std::vector<float>& distances() const { return distances_; }
+
+  /// The used node at every node of the box, or -1.
+  const std::vector<int>& used() const { return used_; }
+
+  /// Where each used node's light is to be known.
+  const std::vector<glm::vec3>& places() const { return places_; }
+
+  /// How far below the surface each used node's place is.
+  const std::vector<float>& depths() const { return depths_; }
+
+  /// How much of the body is each used node's: the integral of its weight.
+  const std::vector<float>& volumes() const { return volumes_; }
+
+  /// The used node that answers for light that passes each used node: most do it themselves, those that hardly any of
+  /// the body belongs to have a neighbour.
+  const std::vector<int>& deputies() const { return deputies_; }
+
+  /// The used nodes around a place inside the body; their weights make 1.
+  std::array<Corner, 8> corners(const glm::vec3& place) const;
+
+ private:
+  std::size_t index(const glm::ivec3& node) const;
+  void measure_volumes(const Body& body);
+  void choose_deputies();
+
+  glm::ivec3 size_{2};
+  glm::vec3 lower_{0.0F};
+  glm::vec3 spacing_{1.0F};
+  std::vector<float> distances_;
+  std::vector<int> used_;
+  std::vector<glm::vec3> places_;
+  std::vector<float> depths_;
+  std::vector<float> volumes_;
+  std::vector<int> deputies_;
+};
+
+}  // namespace mesograin::transport

@@ -1,0 +1,52 @@
+// What light does inside one prototype, a mesh with a medium: the source function of scattered light at nodes of a
+// grid, for parallel light from anywhere, as a few products of a function of the place and one of the direction.
+#pragma once
+
+#include <array>
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "transport/body.h"
+#include "transport/effort.h"
+
+namespace mesograin::transport {
+
+/// A medium in three channels that scatters isotropically, behind a smooth surface.
+struct StoredMedium {
+  glm::dvec3 sigma_t{1.0};  ///< per unit of the body
+  glm::dvec3 albedo{0.9};
+  double eta = 1.0;
+
+  bool grey() const {
+    return sigma_t.r == sigma_t.g && sigma_t.r == sigma_t.b && albedo.r == albedo.g && albedo.r == albedo.b;
+  }
+};
+
+/// How much work goes into it.
+struct Quality {
+  int nodes = 12000;      ///< of the grid in the body's box
+  int light_across = 64;  ///< rays for each direction of light, squared
+  int way_across = 16;    ///< rays from each node, squared
+};
+
+struct StoredTransport {
+  glm::ivec3 size{0};            ///< nodes along x, y and z
+  glm::vec3 lower{0.0F};         ///< the first node, in the body's space
+  glm::vec3 spacing{1.0F};       ///< between nodes
+  double unit = 1.0;             ///< scene units a unit of the body
+  int terms = 0;                 ///< products that are summed
+  int channels = 3;              ///< 1 for a grey medium
+  std::vector<float> distances;  ///< from the surface at every node, negative inside; x runs fastest
+  std::vector<float> sources;  ///< [term][node][channel]: radiance that a mean free path would send out, per irradiance
+  std::vector<float> lobes;    ///< [term][texel of the octahedral map that the light comes from]
+
+  std::size_t nodes() const { return distances.size(); }
+};
+
+/// How far the grid's nodes will be from one another, in units of the body.
+double node_spacing(const Body& body, const Quality& quality);
+
+StoredTransport compute_transport(const Body& body, const StoredMedium& medium, const Quality& quality = {},
+                                  const Effort& effort = {});
+
+}  // namespace mesograin::transport

@@ -1,0 +1,113 @@
+// Follows rays of parallel light through the body and leaves at the nodes what they pass.
+#include "transport/unscattered.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <numbers>
+#include <optional>
+
+#include "physics/physics.h"
+#include "transport/directions.h"
+#include "transport/incidence.h"
+#include "transport/octahedron.h"
+#include "transport/random.h"
+
+namespace mesograin::transport {
+namespace {
+
+// A ray is given up when so little of it is left.
+constexpr float least_flux = 3e-3F;
+constexpr int most_reflections = 64;
+
+class Tracks {
+ public:
+  Tracks(const Grid& grid, const std::vector<double>& extinctions)
+      : grid_(grid),
+        extinctions_(extinctions.begin(), extinctions.end()),
+        sums_(grid.places().size() * extinctions.size(), 0.0F),
+        step_(0.5F * std::min({grid.spacing().x, grid.spacing().y, grid.spacing().z})) {}
+
+  /// Leaves the fluence of a ray of `flux` on its way; each extinction has so much of it left as `left` says.
+  void add(const glm::vec3& place, const glm::vec3& direction, float length, float flux, std::vector<float>& left,
+           Random& random) {
+    const int steps = std::max(1, static_cast<int>(std::ceil(length / step_)));
+    const float step = length / static_cast<float>(steps);
+    const std::size_t count = extinctions_.size();
+    for (int s = 0; s < steps; ++s) {
+      const auto corners = grid_.corners(place + (static_cast<float>(s) + random.uniform()) * step * direction);
+      for (std::size_t e = 0; e < count; ++e) {
+        const float passed = left[e] * std::exp(-extinctions_[e] * step);
+        const float track = extinctions_[e] * step > 1e-4F ? (left[e] - passed) / extinctions_[e] : left[e] * step;
+        left[e] = passed;
+        for (const Corner& corner : corners)
+          sums_[static_cast<std::size_t>(corner.node) * count + e] += flux * track * corner.weight;
+      }
+    }
+  }
+
+  std::vector<float> take() { return std::move(sums_); }
+
+ private:
+  const Grid& grid_;
+  std::vector<float> extinctions_;
+  std::vector<float> sums_;
+  float step_;
+};
+
+void follow(const Body& body, float eta, glm::vec3 place, glm::vec3 direction, float flux, std::vector<float>& left,
+            Tracks& tracks, Random& random) {
+  for (int reflection = 0; reflection <= most_reflections; ++reflection) {
+    const std::optional<Hit> hit = body.first_hit(place, direction);
+    if (!hit || glm::dot(hit->normal, direction) <= 0.0F) return;
+    tracks.add(place, direction, hit->distance, flux, left, random);
+    if (eta == 1.0F) {
+      const std::optional<glm::vec3> entry = body.next_entry(place + hit->distance * direction, direction);
+      if (!entry) return;
+      place = *entry;
+      continue;
+    }
+    const float cosine = std::min(glm::dot(hit->normal, direction), 1.0F);
+    flux *= static_cast<float>(physics::fresnel_reflectance(cosine, 1.0 / eta));
+    if (flux * *std::max_element(left.begin(), left.end()) < least_flux) return;
+    place += hit->distance * direction;
+    direction = glm::normalize(direction - 2.0F * cosine * hit->normal);
+  }
+}
+
+}  // namespace
+
+std::vector<std::vector<float>> unscattered_light(const Body& body, const Grid& grid, double eta,
+                                                  const std::vector<double>& extinctions, int across,
+                                                  const Effort& effort) {
+  std::vector<std::vector<float>> light(octahedron_texels);
+  const auto index = static_cast<float>(eta);
+  run_pieces(effort, octahedron_texels, [&](std::size_t texel) {
+    const Incidence incidence(body, octahedron_direction(static_cast<int>(texel)));
+    const glm::vec3 towards = -incidence.to_light();
+    Random random(effort.seed, texel);
+    Tracks tracks(grid, extinctions);
+    const auto count = static_cast<float>(across);
+    for (int i = 0; i < across * across; ++i) {
+      const int row = i / across;
+      const glm::vec3 start = incidence.start((static_cast<float>(i % across) + random.uniform()) / count,
+                                              (static_cast<float>(row) + random.uniform()) / count);
+      const std::optional<Hit> hit = body.first_hit(start, towards);
+      if (!hit) continue;
+      const float cosine = std::clamp(-glm::dot(hit->normal, towards), 0.0F, 1.0F);
+      const auto entered = static_cast<float>(1.0 - physics::fresnel_reflectance(cosine, eta));
+      const glm::vec3 inwards = eta == 1.0 ? towards : refracted(towards, hit->normal, index);
+      std::vector<float> left(extinctions.size(), 1.0F);
+      follow(body, index, start + hit->distance * towards, inwards, entered, left, tracks, random);
+    }
+    std::vector<float> radiance = tracks.take();
+    const float share = incidence.area() / (count * count * 4.0F * std::numbers::pi_v<float>);
+    for (std::size_t node = 0; node < grid.places().size(); ++node)
+      for (std::size_t e = 0; e < extinctions.size(); ++e)
+        radiance[node * extinctions.size() + e] *= share / std::max(grid.volumes()[node], 1e-12F);
+    light[texel] = std::move(radiance);
+  });
+  return light;
+}
+
+}  // namespace mesograin::transport

@@ -1,0 +1,172 @@
+// The model `transport`: what light does inside this very mesh, found beforehand by rays in it and stored as the source function at nodes of a
+// grid, for light from anywhere. The view ray is followed through the grain, and once more from where it is reflected inside.
+// Not physical: a rough surface is smooth from inside; light that has left does not come back; scattering is isotropic, by similarity.
+//
+// What is chosen at compile time (models::transport_inputs), besides what dielectric.glsl names:
+//   GREY                 red, green and blue are the same medium: a texel of `sources` holds four terms, else one in three colours
+#include "models/dielectric.glsl"
+#include "models/interface.glsl"
+#include "physics/prelude.glsl"
+#include "physics/elementary.glsl"
+#include "physics/fresnel.glsl"
+
+struct Stored {
+  vec3 x_axis;        // of the body, in the prototype's
+  vec3 y_axis;
+  vec3 z_axis;
+  vec3 lower;         // the first node; lengths are in units of the body
+  vec3 nodes_a_unit;
+  vec3 last_node;
+  vec3 sigma_t;
+  float units;        // of the body, a scene unit
+  float eta;
+};
+uniform Stored stored;
+uniform mat3 grain_to_prototype;  // a turn
+
+#ifdef GREY
+#define Spectrum float
+#define SPECTRUM(value) (value).r
+const int TERMS = 16;
+#else
+#define Spectrum vec3
+#define SPECTRUM(value) (value).rgb
+const int TERMS = 8;
+#endif
+
+// Terms of the source function: of the place, blocks of nodes behind one another; of the light's direction, octahedral maps with frames below
+// one another, four terms a texel.
+uniform sampler3D sources;
+uniform sampler2D lobes;
+uniform sampler3D distances;  // from the surface, negative inside
+
+const int LOBE_TEXELS = TERMS / 4;
+vec4 lobe[LOBE_TEXELS];
+
+void look_up_lobes(vec3 to_light) {
+  vec2 square = to_light.xy / (abs(to_light.x) + abs(to_light.y) + abs(to_light.z));
+  vec2 side = vec2(square.x < 0.0 ? -1.0 : 1.0, square.y < 0.0 ? -1.0 : 1.0);
+  if (to_light.z < 0.0) square = (1.0 - abs(square.yx)) * side;
+  float framed = float(textureSize(lobes, 0).x);
+  vec2 texel = 1.0 + (framed - 2.0) * (0.5 + 0.5 * square);
+  for (int i = 0; i < LOBE_TEXELS; ++i)
+    lobe[i] = texture(lobes, vec2(texel.x, texel.y + float(i) * framed) / vec2(framed, framed * float(LOBE_TEXELS)));
+}
+
+vec3 to_nodes(vec3 place) { return clamp((place - stored.lower) * stored.nodes_a_unit, vec3(0.0), stored.last_node); }
+
+float distance_at(vec3 place) { return texture(distances, (to_nodes(place) + 0.5) / (stored.last_node + 1.0)).r; }
+
+vec3 outwards_at(vec3 place) {
+  vec3 step = 0.5 / stored.nodes_a_unit;
+  vec3 gradient = vec3(distance_at(place + vec3(step.x, 0.0, 0.0)) - distance_at(place - vec3(step.x, 0.0, 0.0)),
+                       distance_at(place + vec3(0.0, step.y, 0.0)) - distance_at(place - vec3(0.0, step.y, 0.0)),
+                       distance_at(place + vec3(0.0, 0.0, step.z)) - distance_at(place - vec3(0.0, 0.0, step.z))) / step;
+  return gradient * inversesqrt(max(dot(gradient, gradient), 1e-12));
+}
+
+// Radiance that a mean free path of the medium adds, per irradiance.
+Spectrum source_at(vec3 place) {
+  vec3 size = stored.last_node + 1.0;
+  vec3 node = to_nodes(place) + 0.5;
+#ifdef GREY
+  const int blocks = LOBE_TEXELS;
+#else
+  const int blocks = TERMS;
+#endif
+  vec3 scale = 1.0 / vec3(size.xy, size.z * float(blocks));
+  Spectrum sum = Spectrum(0.0);
+  for (int block = 0; block < blocks; ++block) {
+    vec4 texel = texture(sources, vec3(node.xy, node.z + float(block) * size.z) * scale);
+#ifdef GREY
+    sum += dot(texel, lobe[block]);
+#else
+    sum += texel.rgb * lobe[block / 4][block % 4];
+#endif
+  }
+  return max(sum, Spectrum(0.0));
+}
+
+// How far it is through the grain, by steps as long as the surface is away.
+float way_through(vec3 place, vec3 direction) {
+  vec3 spacing = 1.0 / stored.nodes_a_unit;
+  float shortest = 0.3 * min(spacing.x, min(spacing.y, spacing.z));
+  float way = shortest;
+  float before = 0.0;
+  float below = 0.0;
+  for (int i = 0; i < 48; ++i) {
+    float above = distance_at(place + way * direction);
+    // The first step may not have got below the surface yet, where the grid rounds an edge off.
+    if (above >= 0.0 && i > 0) return mix(before, way, below / max(below + above, 1e-6));
+    below = max(-above, 0.0);
+    before = way;
+    way += max(below, shortest);
+  }
+  return way;
+}
+
+struct Marched {
+  Spectrum radiance;
+  Spectrum passed;  // the share of light that comes through from the other end
+};
+
+// What is sent towards the beginning of a way through the grain.
+Marched march(vec3 place, vec3 direction, float way, int taps) {
+  Spectrum sigma_t = SPECTRUM(stored.sigma_t);
+  float mean_sigma_t = (stored.sigma_t.r + stored.sigma_t.g + stored.sigma_t.b) / 3.0;
+  float thickness = mean_sigma_t * way;
+  float within = thickness > 1e-3 ? 1.0 - exp(-thickness) : thickness;
+  Marched marched = Marched(Spectrum(0.0), Spectrum(1.0));
+  for (int i = 0; i < taps; ++i) {
+    // Intervals in each of which as much is scattered.
+    float middle = (float(i) + 0.5) / float(taps);
+    float end = (float(i) + 1.0) / float(taps);
+    float at = thickness > 1e-3 ? -log(1.0 - middle * within) / mean_sigma_t : middle * way;
+    float until = i + 1 == taps ? way : thickness > 1e-3 ? -log(1.0 - end * within) / mean_sigma_t : end * way;
+    Spectrum left = exp(-sigma_t * until);
+    marched.radiance += (marched.passed - left) * source_at(place + at * direction);
+    marched.passed = left;
+  }
+  return marched;
+}
+
+Spectrum radiance_inside(vec3 place, vec3 direction) {
+  float way = way_through(place, direction);
+  Marched first = march(place, direction, way, 6);
+#ifdef REFRACTION
+  vec3 end = place + way * direction;
+  vec3 normal = outwards_at(end);
+  float cosine = dot(normal, direction);
+  if (cosine <= 0.0) return first.radiance;
+  Spectrum reflected = first.passed * fresnel_reflectance(min(cosine, 1.0), 1.0 / stored.eta);
+#ifdef GREY
+  float most = reflected;
+#else
+  float most = max(reflected.r, max(reflected.g, reflected.b));
+#endif
+  if (most > 0.004) {
+    direction = direction - 2.0 * cosine * normal;
+    way = way_through(end, direction);
+    Marched second = march(end, direction, way, 3);
+    vec3 other_end = end + way * direction;
+    float other_cosine = clamp(dot(outwards_at(other_end), direction), 0.0, 1.0);
+    // From there on as if every way were like this one and the source as it is there.
+    float again = fresnel_reflectance(other_cosine, 1.0 / stored.eta);
+    Spectrum rest = source_at(other_end) * (1.0 - second.passed) / max(1.0 - again * second.passed, Spectrum(1e-4));
+    first.radiance += reflected * (second.radiance + second.passed * again * rest);
+  }
+#endif
+  return first.radiance;
+}
+
+vec3 evaluate_model(SurfacePoint point, Outwards outwards, LightSample light) {
+  mat3 to_body = transpose(mat3(stored.x_axis, stored.y_axis, stored.z_axis)) * grain_to_prototype;
+  look_up_lobes(to_body * light.to_light);
+  vec3 inwards = (outwards.mu * point.normal - point.to_viewer) / stored.eta - outwards.mu_refracted * point.normal;
+  Spectrum inside = radiance_inside(to_body * point.position * stored.units, normalize(to_body * inwards));
+  vec3 radiance = light.irradiance * (outwards.transmittance / (stored.eta * stored.eta) * inside);
+#ifdef SPECULAR
+  radiance += specular_reflection(point, outwards, light);
+#endif
+  return radiance;
+}

@@ -1,0 +1,129 @@
+# Instances by the hundreds: read as arrays, drawn where they are, left out where they cannot be.
+import math
+
+import bpy
+import numpy as np
+import pytest
+from mathutils import Euler, Matrix
+from test_export import add_camera, add_cube, add_mesh_object, add_object, add_sun, read_scene
+
+import mesograin
+from mesograin import heaps
+
+SIDE = 12
+
+
+def scatter(places, **settings):
+    """A cube of half width 0.1 on each vertex of a mesh."""
+    points = add_mesh_object("Points", places, [])
+    grain = add_cube("Grain", matrix=Matrix.Scale(0.1, 4))
+    grain.parent, points.instance_type = points, "VERTS"
+    for name, value in settings.items():
+        setattr(points, name, value)
+    return points, grain
+
+
+def grid():
+    return [(x - 0.5 * (SIDE - 1), y - 0.5 * (SIDE - 1), 0.0) for x in range(SIDE) for y in range(SIDE)]
+
+
+def placings(heap):
+    return np.frombuffer(heap.placings, dtype=np.float32).reshape(-1, 4, 4)
+
+
+def test_many_are_one_array_where_blender_has_them():
+    scatter(grid())
+    values = read_scene()
+    [heap] = values.heaps
+    assert len(heap) == SIDE * SIDE and heap.name == "Grain"
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    theirs = np.array([each.matrix_world.copy() for each in depsgraph.object_instances if each.is_instance])
+    np.testing.assert_array_equal(placings(heap), theirs.astype(np.float32))
+    assert read_scene() == values, "what did not change is equal"
+
+
+def test_few_stay_instances():
+    scatter(grid()[:heaps.MANY - 1])
+    values = read_scene()
+    assert values.heaps == () and sum(each.name == "Grain" for each in values.instances) >= heaps.MANY - 1
+
+
+def test_those_that_cannot_be_drawn_are_counted():
+    points, _ = scatter(grid())
+    points.scale.z = 0.0
+    values = read_scene()
+    assert values.heaps == ()
+    assert any(f"{SIDE * SIDE} instances of 'Grain'" in sentence for sentence in values.warnings)
+
+
+def test_materials_are_those_of_the_slots():
+    _, grain = scatter(grid())
+    red = bpy.data.materials.new("Red")
+    red.mesograin.reflectance = (0.9, 0.1, 0.1)
+    grain.data.materials.append(red)
+    [heap] = read_scene().heaps
+    assert heap.material.name == "Red" and dict(heap.material.values)["reflectance"] == pytest.approx((0.9, 0.1, 0.1))
+
+
+def test_a_heap_is_seen(render):
+    scene = bpy.context.scene
+    scene.render.resolution_x = scene.render.resolution_y = 4 * SIDE
+    scene.render.film_transparent = True
+    scene.mesograin.samples = 64
+    add_sun((0.0, 0.0, 1.0), math.pi)
+    add_camera((0.0, 0.0, 20.0), type="ORTHO", ortho_scale=SIDE)
+    scatter(grid())
+    covered = render()[..., 3].reshape(SIDE, 4, SIDE, 4).mean(axis=(1, 3))
+    np.testing.assert_allclose(covered, 0.04, atol=0.005)
+
+
+def makes_point_clouds():
+    return "POINTCLOUD" in bpy.ops.object.convert.get_rna_type().properties["target"].enum_items
+
+
+@pytest.mark.skipif(not makes_point_clouds(), reason="this Blender makes no point clouds by script")
+def test_points_are_spheres_of_their_radius():
+    mesh = add_mesh_object("Points", [(1.0, 2.0, 3.0), (-1.0, 0.0, 0.0)], [])
+    bpy.context.view_layer.objects.active = mesh
+    mesh.select_set(True)
+    bpy.ops.object.convert(target="POINTCLOUD")
+    cloud = bpy.context.object
+    for point, radius in zip(cloud.data.points, (0.5, 2.0)):
+        point.radius = radius
+    cloud.data.update_tag()
+    cloud.matrix_world = Matrix.Translation((10.0, 0.0, 0.0))
+    values = read_scene()
+    found = sorted(tuple(np.reshape(each.object_to_world, (4, 4))[:3, 3]) + (each.object_to_world[0],)
+                   for each in values.instances)
+    assert found == [pytest.approx((9.0, 0.0, 0.0, 2.0)), pytest.approx((11.0, 2.0, 3.0, 0.5))]
+
+
+def test_the_sphere_of_a_point_is_a_sphere():
+    assert heaps.sphere().triangle_count == 2 * 48 * 23
+
+
+def test_grains_shade_each_other_and_the_ground_as_in_cycles(tmp_path):
+    """Direct light alone, in blocks of 8 x 8 pixels."""
+    scene = bpy.context.scene
+    scene.render.resolution_x = scene.render.resolution_y = 96
+    scene.render.resolution_percentage = 100
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=48, ring_count=24)
+    grain = bpy.context.object
+    grain.data.polygons.foreach_set("use_smooth", [True] * len(grain.data.polygons))
+    ground = add_mesh_object("Ground", [(-30, -30, 0), (30, -30, 0), (30, 30, 0), (-30, 30, 0)], [(0, 1, 2, 3)])
+    for each, reflectance in ((grain, (0.8, 0.6, 0.4)), (ground, (0.5, 0.5, 0.5))):
+        material = bpy.data.materials.new(each.name)
+        material.mesograin.model, material.mesograin.reflectance = "lambert", reflectance
+        each.data.materials.append(material)
+    places = [(2.05 * x + layer % 2 - 8.0, 2.05 * y + layer % 2 - 8.0, 1.0 + 1.45 * layer)
+              for layer in range(2) for x in range(8) for y in range(8)]
+    points = add_mesh_object("Points", places, [])
+    grain.parent, points.instance_type = points, "VERTS"
+    add_sun((-0.5, -0.6, 0.7), 3.0, angle=0.02)
+    camera = bpy.data.cameras.new("Camera")
+    scene.camera = add_object("Camera", camera, Matrix.LocRotScale((0.0, -30.0, 24.0), Euler((0.9, 0.0, 0.0)), None))
+    [case] = mesograin.compare(models=["lambert"], out=tmp_path / "out", samples=64, reference_samples=64,
+                               cache=tmp_path / "cache", report=False).cases
+    metrics = case.entry["metrics"]
+    assert metrics["relative_l1_blocks_corrected"] < 0.015
+    assert metrics["bias"] == pytest.approx(1.0, abs=0.005)

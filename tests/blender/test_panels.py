@@ -1,0 +1,125 @@
+# What the panels offer and how they name it, without a window: each is drawn into a layout that remembers.
+import itertools
+import types
+
+import bpy
+import numpy as np
+import pytest
+from mesograin import compat, engine, export, panels
+from mesograin.bake_panel import panel as bake_panel
+from mesograin.compare_panel import panel as compare_panel
+from mesograin.schema import models, parameters
+from mesograin.side_task import results
+
+# Pixels at a UI scale of 1, in a Properties editor of Blender's default layout on a screen 1920 wide, 333 across: what
+# a label left of its value gets, and one of two columns in a box.
+LABEL, HALF = 100, 115
+
+
+class Layout:
+    """Takes whatever a panel draws. labels: what stands left of values. menus: their names."""
+
+    def __init__(self):
+        self.labels, self.menus = [], []
+
+    def __getattr__(self, name):
+        return lambda *_, **named: self if "heading" not in named else (self.labels.append(named["heading"]), self)[1]
+
+    def prop(self, owner, name, text=None, **_):
+        declared = owner.bl_rna.properties[name]
+        if text != "" and declared.type != "BOOLEAN":  # whose names stand right of their boxes
+            self.labels.append(declared.name if text is None else text)
+
+    def menu(self, name, **_):
+        self.menus.append(name)
+
+    def label(self, **_):
+        """Of a column of its own."""
+
+
+def draw(panel, **context):
+    """The Layout that a panel fills."""
+    layout = Layout()
+    functions = {name: value for name, value in vars(panel).items() if callable(value) or
+                 isinstance(value, (staticmethod, classmethod))}
+    fake = type("Fake", (), {name: functions[name] for name in functions if not name.startswith("__")})()
+    fake.layout = layout
+    given = {"scene": bpy.context.scene, "region": None, "view_layer": bpy.context.view_layer,
+             "preferences": types.SimpleNamespace(system=types.SimpleNamespace(ui_scale=1.0)),  # which is 0 here
+             "window_manager": bpy.context.window_manager, **context}
+    fake.draw(types.SimpleNamespace(**given))
+    return layout
+
+
+def width(text):
+    import blf
+
+    blf.size(0, 11)
+    return blf.dimensions(0, text)[0]
+
+
+@pytest.fixture
+def material():
+    return bpy.data.materials.new("Sand")
+
+
+@pytest.mark.parametrize("model", models.NAMES)
+def test_no_label_of_a_grain_is_cut_off(material, model):
+    material.mesograin.model = model
+    labels = draw(panels.MESOGRAIN_PT_material, material=material).labels
+    assert len(labels) >= 2
+    assert {label: width(label) for label in labels if width(label) > LABEL} == {}
+
+
+@pytest.mark.parametrize("panel", [panels.MESOGRAIN_PT_sampling, bake_panel.MESOGRAIN_PT_bake])
+def test_no_label_of_the_render_settings_is_cut_off(panel):
+    bpy.context.scene.mesograin_bake.compare = True
+    labels = draw(panel).labels
+    assert len(labels) >= 3
+    assert {label: width(label) for label in labels if width(label) > LABEL} == {}
+
+
+def test_no_title_of_a_result_is_cut_off():
+    entry = {"metrics": {"relative_l1": 0.01}, "noise_floor": {"relative_l1": 0.01}, "reference_seconds": 185.0}
+    titles = [title for title, _ in results._numbers(entry, ("Mesograin", "41 ms"))]
+    assert len(titles) == 4 and all(width(title) < HALF for title in titles), titles
+    assert compare_panel.results is results
+
+
+def test_the_light_type_is_chosen_in_one_place():
+    for name in ("DATA_PT_light", "NODE_DATA_PT_light"):
+        panel = getattr(bpy.types, name, None)
+        assert panel is None or engine.MesograinRenderEngine.bl_idname not in panel.COMPAT_ENGINES
+    assert bpy.types.DATA_PT_lens in compat.borrowed_panels()
+
+
+def test_only_profiles_that_a_model_knows_are_offered(native, material):
+    assert panels.MESOGRAIN_MT_profiles.bl_idname in draw(panels.MESOGRAIN_PT_material, material=sugar(material)).menus
+    mesh = native.Mesh([[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], None,
+                       [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])
+    view = native.View(4, 4)
+    view.set_camera(native.Camera.look_at((0.0, 0.0, 2.0), (0.0, 0.0, 0.0), (0.0, 1.0, 0.0), 40.0))
+    profiles = [choice.name for choice in parameters.PARAMETERS["profile"].choices]
+    for model, profile in itertools.product(models.NAMES, profiles):
+        material.mesograin.model, material.mesograin.profile = model, profile
+        known = dict(export.material_values(material, 1.0).values)
+        try:
+            view.set_scene(native.Scene(instances=[native.Instance(mesh, native.Material(**known), np.eye(4))]))
+            view.render(1)
+            works = True
+        except native.Error:
+            works = False
+        assert works == (profile in parameters.profiles_of(model)), (model, profile)
+
+
+def test_a_profile_that_the_model_does_not_know_is_named_with_model_and_material(native, material):
+    sugar(material).mesograin.profile = "photon_beam"
+    with pytest.raises(native.Error) as complaint:
+        export.material_values(material, 1.0).to_native(native)
+    sentence = str(complaint.value)
+    assert all(word in sentence for word in ("'Sand'", "model_2", "photon_beam", "half_space")), sentence
+
+
+def sugar(material):
+    material.mesograin.model = "model_2"
+    return material

@@ -1,0 +1,85 @@
+# Materials of which nothing of Mesograin was ever chosen: what their nodes say, and what is left out by name.
+import bpy
+import pytest
+from test_export import add_cube, add_sun, read_scene
+
+from mesograin import compat
+
+COLOUR = (0.1, 0.4, 0.7)
+
+
+@pytest.fixture
+def material():
+    made = bpy.data.materials.new("Paint")
+    compat.use_nodes(made)
+    made.node_tree.nodes.clear()
+    add_cube().data.materials.append(made)
+    add_sun((0.0, 0.0, 1.0), 3.0)
+    return made
+
+
+def shade(material, kind, **inputs):
+    """A node of this kind as the material's surface."""
+    tree = material.node_tree
+    output = tree.get_output_node("CYCLES") or tree.nodes.new("ShaderNodeOutputMaterial")
+    node = tree.nodes.new(kind)
+    for name, value in inputs.items():
+        node.inputs[name.replace("_", " ")].default_value = value
+    tree.links.new(node.outputs[0], output.inputs["Surface"])
+    return node
+
+
+def drawn():
+    """({parameter: value}, sentences) of the one cube."""
+    values = read_scene()
+    return dict(values.instances[0].material.values), values.warnings
+
+
+def test_diffuse_is_lambert(material):
+    shade(material, "ShaderNodeBsdfDiffuse", Color=(*COLOUR, 1.0))
+    values, sentences = drawn()
+    assert values["model"] == "lambert" and values["reflectance"] == pytest.approx(COLOUR)
+    assert sentences == ()
+
+
+def test_glossy_is_a_conductor_of_the_same_facets(material):
+    node = shade(material, "ShaderNodeBsdfGlossy" if hasattr(bpy.types, "ShaderNodeBsdfGlossy") else
+                 "ShaderNodeBsdfAnisotropic", Color=(*COLOUR, 1.0), Roughness=0.5)
+    values, _ = drawn()
+    assert node.type in ("BSDF_GLOSSY", "BSDF_ANISOTROPIC")
+    assert values["model"] == "conductor" and values["roughness"] == pytest.approx(0.25)
+
+
+@pytest.mark.parametrize("metallic, model", [(0.0, "lambert"), (1.0, "conductor")])
+def test_principled_is_what_it_mostly_is(material, metallic, model):
+    shade(material, "ShaderNodeBsdfPrincipled", Base_Color=(*COLOUR, 1.0), Metallic=metallic, Roughness=0.3)
+    values, sentences = drawn()
+    assert values["model"] == model and values["reflectance"] == pytest.approx(COLOUR)
+    assert len(sentences) == (metallic == 0.0)
+    assert all("Material 'Paint'" in sentence and "reflection" in sentence for sentence in sentences)
+
+
+def test_what_varies_is_said_and_the_viewport_colour_stands_for_it(material):
+    material.diffuse_color = (*COLOUR, 1.0)
+    node = shade(material, "ShaderNodeBsdfDiffuse")
+    texture = material.node_tree.nodes.new("ShaderNodeTexChecker")
+    material.node_tree.links.new(texture.outputs["Color"], node.inputs["Color"])
+    values, [sentence] = drawn()
+    assert values["reflectance"] == pytest.approx(COLOUR)
+    assert "Material 'Paint'" in sentence and "texture of its color" in sentence
+
+
+@pytest.mark.parametrize("kind", ["ShaderNodeBsdfGlass", "ShaderNodeEmission", "ShaderNodeMixShader"])
+def test_none_is_black(material, kind):
+    material.diffuse_color = (*COLOUR, 1.0)
+    shade(material, kind)
+    values, [sentence] = drawn()
+    assert min(values["reflectance"]) > 0.0 and "Material 'Paint'" in sentence
+
+
+def test_a_chosen_model_makes_it_a_grain(material):
+    shade(material, "ShaderNodeBsdfGlossy")
+    material.mesograin.model = "lambert"
+    values, sentences = drawn()
+    assert values["model"] == "lambert" and values["reflectance"] == tuple(material.mesograin.reflectance)
+    assert sentences == ()

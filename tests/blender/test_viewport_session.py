@@ -1,0 +1,110 @@
+# What a viewport's session draws while changes come as fast as in a drag, without a window.
+import concurrent.futures
+import time
+
+import bpy
+import numpy as np
+import pytest
+from mesograin import export, meshes, viewport
+
+SIZE = (64, 48)
+CHANGES = 12
+
+
+@pytest.fixture
+def drag(native, blend_files, monkeypatch):
+    """drag(sample_seconds, redraw_seconds): a new reflectance for each redraw, which takes as long, or with None as
+    long as the sample under way; gives what the session returned at each redraw, and the session."""
+    bpy.ops.wm.open_mainfile(filepath=str(blend_files / "sphere.blend"))
+    grain = bpy.data.materials["Translucent"].mesograin
+    grain.model = "lambert"
+    sessions, cache = [], meshes.MeshCache()
+
+    def run(sample_seconds, redraw_seconds):
+        session = viewport.Session()
+        sessions.append(session)
+        monkeypatch.setattr(viewport, "_render", lambda view, samples: (
+            time.sleep(sample_seconds), view.render(samples), sample_seconds)[-1])
+        returned = []
+        for change in range(CHANGES):
+            grain.reflectance = (reflectance(change),) * 3
+            depsgraph = bpy.context.evaluated_depsgraph_get()
+            session.set_scene(export.read_scene(depsgraph, cache))
+            session.set_camera(export.camera_from_scene(depsgraph, *SIZE), *SIZE)
+            picture = session.advance(64)
+            returned.append(None if picture is None else picture.copy())
+            if redraw_seconds is None:
+                concurrent.futures.wait([session._task])
+            else:
+                time.sleep(redraw_seconds)
+        return returned, session
+
+    yield run
+    for session in sessions:
+        session.stop()
+
+
+def reflectance(change):
+    return 0.2 + 0.05 * change
+
+
+def brightness(picture):
+    return float(picture[..., :3].mean())
+
+
+def test_every_redraw_of_a_drag_shows_a_new_picture(drag):
+    returned, _ = drag(sample_seconds=0.08, redraw_seconds=None)
+    assert returned[0] is None, "a sample takes longer than a redraw waits"
+    shown = [brightness(picture) for picture in returned[1:]]
+    assert len(set(shown)) == CHANGES - 1
+    # Each is the picture of the change before.
+    expected = np.array([reflectance(change) for change in range(CHANGES - 1)])
+    np.testing.assert_allclose(np.array(shown) / shown[0], expected / expected[0], rtol=0.02)
+
+
+def test_a_drag_faster_than_the_samples_shows_one_for_each_sample(drag):
+    returned, _ = drag(sample_seconds=0.2, redraw_seconds=0.05)
+    shown = [picture for picture in returned if picture is not None]
+    assert shown, "changes throw away every sample under way"
+
+
+def test_after_a_drag_the_last_change_is_shown(drag):
+    returned, session = drag(sample_seconds=0.08, redraw_seconds=0.0)
+    deadline, last = time.monotonic() + 60.0, None
+    while session.busy or session.samples < 8:
+        assert time.monotonic() < deadline
+        picture = session.advance(8)
+        last = picture.copy() if picture is not None else last
+    first = next(picture for picture in returned if picture is not None)
+    assert session.samples == 8 and session.advance(8) is None
+    assert brightness(last) / brightness(first) == pytest.approx(reflectance(CHANGES - 1) / reflectance(0), rel=0.02)
+
+
+def test_a_change_gives_up_samples_that_would_only_refine(drag, native):
+    _, session = drag(sample_seconds=0.0, redraw_seconds=0.02)
+    deadline = time.monotonic() + 60.0
+    while session.samples < 4:
+        assert time.monotonic() < deadline
+        session.advance(1 << 16)
+    assert session.busy
+    width, height = SIZE
+    session.set_camera(native.Camera.look_at((0.0, 0.0, 9.0), (0.0, 0.0, 0.0), (0.0, 1.0, 0.0), 45.0), width, height)
+    assert session.samples == 0
+    while session.advance(1) is None:
+        assert time.monotonic() < deadline
+    assert session.samples == 1
+
+
+def test_an_error_of_what_was_shown_before_is_not_that_of_what_is_shown(drag, native, monkeypatch):
+    _, session = drag(sample_seconds=0.0, redraw_seconds=0.02)
+    session.advance(64)
+
+    def fail(view, samples):
+        raise native.Error("The device is gone: find it.")
+
+    monkeypatch.setattr(viewport, "_render", fail)
+    camera = native.Camera.look_at((0.0, 0.0, 9.0), (0.0, 0.0, 0.0), (0.0, 1.0, 0.0), 45.0)
+    session.set_camera(camera, *SIZE)
+    with pytest.raises(native.Error, match="The device is gone"):
+        for _ in range(3):
+            session.advance(64)

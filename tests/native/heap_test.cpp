@@ -1,0 +1,302 @@
+// Arrays of instances against the same instances drawn one by one, and the shadows that objects cast on each other
+// against geometry.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+#include <random>
+#include <utility>
+
+#include "expect_error.h"
+#include "gl/context_thread.h"
+#include "render/view.h"
+#include "scene/convexity.h"
+#include "scene/sphere.h"
+
+namespace mesograin::render {
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+
+// Closed, smooth and hollow in places.
+scene::MeshPointer bumpy(int segments = 64, int rings = 32) {
+  const scene::Mesh sphere = scene::unit_sphere(segments, rings);
+  std::vector<glm::vec3> positions = sphere.positions();
+  for (glm::vec3& p : positions) p *= 1.0F + 0.15F * std::sin(4.0F * p.x + 1.0F) * std::cos(5.0F * p.y - 3.0F * p.z);
+  return std::make_shared<scene::Mesh>(positions, std::vector<glm::vec3>(), sphere.triangles());
+}
+
+scene::MeshPointer square(float half) {
+  return std::make_shared<scene::Mesh>(
+      std::vector<glm::vec3>{{-half, -half, 0}, {half, -half, 0}, {half, half, 0}, {-half, half, 0}},
+      std::vector<glm::vec3>(4, glm::vec3(0, 0, 1)), std::vector<glm::uvec3>{{0, 1, 2}, {0, 2, 3}});
+}
+
+scene::Light sun(const glm::dvec3& to_light, double irradiance) {
+  return scene::DirectionalLight{to_light, glm::dvec3(irradiance)};
+}
+
+scene::Scene array_of(const scene::MeshPointer& mesh, const scene::Material& material, std::vector<glm::dmat4> places,
+                      std::vector<scene::Light> lights) {
+  scene::Scene scene;
+  scene.lights = std::move(lights);
+  scene.arrays.emplace_back(mesh, material, std::move(places));
+  return scene;
+}
+
+// Turned at random, of sizes between 0.7 and 1.3, on a grid of 4 x 2.
+std::vector<glm::dmat4> eight_places() {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  std::vector<glm::dmat4> places;
+  for (int i = 0; i < 8; ++i) {
+    const int row = i / 4;
+    glm::dmat4 place = glm::translate(glm::dmat4(1.0), glm::dvec3(3.0 * (i % 4) - 4.5, 3.0 * row - 1.5, 0.0));
+    const glm::dvec3 axis(unit(random) - 0.5, unit(random) - 0.5, unit(random) - 0.5);
+    place = glm::rotate(place, 2.0 * pi * unit(random), glm::normalize(axis));
+    places.push_back(glm::scale(place, glm::dvec3(0.7 + 0.6 * unit(random))));
+  }
+  return places;
+}
+
+std::vector<float> picture(const scene::Scene& scene, const scene::Camera& camera, int width, int height, int samples) {
+  View view(width, height);
+  view.set_scene(scene);
+  view.set_camera(camera);
+  view.render(samples);
+  std::vector<float> pixels(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 4);
+  view.read(pixels.data());
+  return pixels;
+}
+
+struct Difference {
+  double blocks = 0.0;  // relative L1 of blocks of 8 x 8 pixels
+  double total = 0.0;   // ratio
+};
+
+Difference difference(const std::vector<float>& image, const std::vector<float>& reference, int width, int height) {
+  Difference result;
+  double sum = 0.0;
+  double reference_sum = 0.0;
+  for (int y = 0; y < height; y += 8)
+    for (int x = 0; x < width; x += 8)
+      for (std::size_t channel = 0; channel < 3; ++channel) {
+        double block = 0.0;
+        double reference_block = 0.0;
+        for (int row = y; row < y + 8; ++row)
+          for (int column = x; column < x + 8; ++column) {
+            const auto pixel = static_cast<std::size_t>(row * width + column) * 4 + channel;
+            block += image[pixel];
+            reference_block += reference[pixel];
+          }
+        result.blocks += std::abs(block - reference_block);
+        sum += block;
+        reference_sum += reference_block;
+      }
+  result.blocks /= reference_sum;
+  result.total = sum / reference_sum;
+  return result;
+}
+
+class HeapTest : public testing::Test {
+ protected:
+  void TearDown() override { EXPECT_TRUE(gl::ContextThread::instance().take_gl_errors().empty()); }
+};
+
+void expect_array_as_one_by_one(scene::Model model, double most_in_blocks) {
+  scene::Material material;
+  material.model = model;
+  material.sigma_a = {0.05, 0.2, 0.6};
+  material.sigma_s = glm::dvec3(2.0);
+  material.roughness = 0.3;
+  const scene::MeshPointer mesh = bumpy();
+  const std::vector<scene::Light> lights = {sun({1.0, 0.3, 0.6}, 3.0), sun({-1.0, 0.3, -1.0}, 1.0)};
+  scene::Scene one_by_one{{}, lights};
+  for (const glm::dmat4& place : eight_places()) one_by_one.instances.push_back({mesh, material, place});
+  const scene::Scene array = array_of(mesh, material, eight_places(), lights);
+  const scene::Camera camera = scene::Camera::look_at({0, 0, 16}, {0, 0, 0}, {0, 1, 0}, 30.0, 2.0);
+  const Difference found =
+      difference(picture(array, camera, 256, 128, 48), picture(one_by_one, camera, 256, 128, 48), 256, 128);
+  EXPECT_LT(found.blocks, most_in_blocks);
+  EXPECT_NEAR(found.total, 1.0, 0.01);
+}
+
+TEST_F(HeapTest, AnArrayOfOpaqueGrainsIsAsOneByOne) {
+  expect_array_as_one_by_one(scene::Model::lambert, 0.01);
+  expect_array_as_one_by_one(scene::Model::model_1, 0.012);
+}
+
+// Their light maps are from directions near the light's.
+TEST_F(HeapTest, AnArrayOfTranslucentGrainsIsNearlyAsOneByOne) {
+  expect_array_as_one_by_one(scene::Model::model_2, 0.035);
+  expect_array_as_one_by_one(scene::Model::model_3, 0.035);
+}
+
+TEST_F(HeapTest, ManyEqualInstancesAreAnArrayAndLookAlike) {
+  scene::Scene scene{{}, {sun({1.0, 0.3, 1.0}, 3.0)}};
+  const scene::MeshPointer mesh = bumpy();
+  std::vector<glm::dmat4> places = eight_places();
+  places.push_back(glm::translate(glm::dmat4(1.0), glm::dvec3(0.0, 4.0, 0.0)));
+  for (const glm::dmat4& place : places) scene.instances.push_back({mesh, {}, place});
+  const scene::Scene array = array_of(mesh, {}, places, scene.lights);
+  const scene::Camera camera = scene::Camera::look_at({0, 0, 16}, {0, 0, 0}, {0, 1, 0}, 30.0, 2.0);
+  EXPECT_EQ(picture(scene, camera, 128, 64, 2), picture(array, camera, 128, 64, 2));
+}
+
+TEST_F(HeapTest, AMirroredInstanceOfAnArrayIsSeenFromOutside) {
+  const scene::MeshPointer mesh = bumpy();
+  const std::vector<scene::Light> lights = {sun({0.3, 0.2, 1.0}, 3.0)};
+  const glm::dmat4 mirrored = glm::scale(glm::dmat4(1.0), glm::dvec3(-1.0, 1.0, 1.0));
+  const scene::Camera camera = scene::Camera::look_at({0, 0, 8}, {0, 0, 0}, {0, 1, 0}, 20.0);
+  const scene::Scene alone{{{mesh, {}, mirrored}}, lights};
+  const scene::Scene array = array_of(mesh, {}, {mirrored}, lights);
+  const Difference found = difference(picture(array, camera, 64, 64, 32), picture(alone, camera, 64, 64, 32), 64, 64);
+  EXPECT_LT(found.blocks, 0.01);
+}
+
+// A ball of radius 1 high over a plane, light and view straight down but for the ball being out of the view's way.
+TEST_F(HeapTest, AShadowHasTheSizeAndPlaceOfItsObject) {
+  const auto ball = std::make_shared<scene::Mesh>(scene::unit_sphere(128, 64));
+  scene::Material material;
+  material.reflectance = glm::dvec3(1.0);
+  const glm::dvec3 to_light = glm::normalize(glm::dvec3(1.0, 0.0, 1.0));
+  for (const bool translucent : {false, true}) {
+    scene::Material of_ball = material;
+    if (translucent) of_ball.model = scene::Model::model_2;
+    const scene::Scene scene{{{square(20.0F), material, glm::dmat4(1.0)},
+                              {ball, of_ball, glm::translate(glm::dmat4(1.0), glm::dvec3(8.0, 0.0, 8.0))}},
+                             {sun(to_light, pi)}};
+    // Looks at the plane's middle, where the shadow falls: an ellipse of half axes sqrt(2) and 1.
+    const scene::Camera camera{glm::translate(glm::dmat4(1.0), glm::dvec3(0, 0, -4)),
+                               glm::ortho(-2.0, 2.0, -2.0, 2.0, 0.1, 20.0)};
+    constexpr int size = 64;
+    const std::vector<float> pixels = picture(scene, camera, size, size, 64);
+    const double lit = std::sqrt(0.5);
+    double dark = 0.0;
+    for (std::size_t i = 0; i < pixels.size(); i += 4) dark += 1.0 - pixels[i] / lit;
+    EXPECT_NEAR(dark * 16.0 / (size * size), pi * std::sqrt(2.0), 0.05) << "translucent " << translucent;
+    EXPECT_NEAR(pixels[4 * (size / 2 * size + size / 2)], 0.0, 1e-6);
+    EXPECT_NEAR(pixels[0], lit, 1e-5);
+  }
+}
+
+// A lamp over a ball: the shadow on the floor is the ball's, seen from the lamp.
+TEST_F(HeapTest, AShadowOfALampWidensWithTheDistance) {
+  const auto ball = std::make_shared<scene::Mesh>(scene::unit_sphere(128, 64));
+  scene::Material material;
+  material.reflectance = glm::dvec3(1.0);
+  scene::PointLight lamp;
+  lamp.position = {4.0, 0.0, 8.0};
+  lamp.radiant_intensity = glm::dvec3(100.0);
+  lamp.radius = 0.0;
+  // The ball on the lamp's way to the origin, a third of it away from the lamp.
+  const glm::dvec3 place = lamp.position * (2.0 / 3.0);
+  const double distance = glm::length(lamp.position - place);
+  const scene::Camera camera{glm::translate(glm::dmat4(1.0), glm::dvec3(0, 0, -2)),
+                             glm::ortho(-8.0, 8.0, -8.0, 8.0, 0.1, 20.0)};
+  constexpr int size = 64;
+  const scene::Scene open{{{square(20.0F), material, glm::dmat4(1.0)}}, {lamp}};
+  scene::Scene shaded = open;
+  shaded.instances.push_back({ball, material, glm::translate(glm::dmat4(1.0), place)});
+  const std::vector<float> without = picture(open, camera, size, size, 32);
+  const std::vector<float> with = picture(shaded, camera, size, size, 32);
+  double dark = 0.0;
+  for (std::size_t i = 0; i < with.size(); i += 4) dark += 1.0 - with[i] / without[i];
+  // A cone of half angle alpha whose axis leans by theta cuts the floor in an ellipse of this area.
+  const double leaning = lamp.position.z / glm::length(lamp.position);
+  const double sine_squared = 1.0 / (distance * distance);
+  const double area = pi * lamp.position.z * lamp.position.z * sine_squared * std::sqrt(1.0 - sine_squared) /
+                      std::pow(leaning * leaning - sine_squared, 1.5);
+  EXPECT_NEAR(dark * 256.0 / (size * size), area, 0.03 * area);
+}
+
+// Where spheres touch, neither shades itself: one under a light that no other stands in is as it is alone.
+TEST_F(HeapTest, GrainsThatTouchDoNotShadeThemselves) {
+  const auto ball = std::make_shared<scene::Mesh>(scene::unit_sphere(128, 64));
+  const std::vector<scene::Light> lights = {sun({0.0, 0.0, 1.0}, 3.0)};
+  const scene::Camera camera{glm::translate(glm::dmat4(1.0), glm::dvec3(0, 0, -8)),
+                             glm::ortho(-1.0, 1.0, -1.0, 1.0, 0.1, 20.0)};
+  const glm::dmat4 here(1.0);
+  const glm::dmat4 beside = glm::translate(here, glm::dvec3(2.0, 0.0, 0.0));
+  const glm::dmat4 below = glm::translate(here, glm::dvec3(0.0, 0.0, -2.0));
+  for (const scene::Model model : {scene::Model::lambert, scene::Model::model_2}) {
+    scene::Material material;
+    material.model = model;
+    const std::vector<float> alone = picture({{{ball, material, here}}, lights}, camera, 64, 64, 16);
+    const std::vector<float> among = picture(
+        {{{ball, material, here}, {ball, material, beside}, {ball, material, below}}, lights}, camera, 64, 64, 16);
+    const Difference found = difference(among, alone, 64, 64);
+    EXPECT_LT(found.blocks, 2e-3) << static_cast<int>(model);
+  }
+}
+
+// A hollow that faces the light is shaded by its own rim: a quarter of a bowl's bottom cannot see a low light.
+TEST_F(HeapTest, AHollowObjectShadesItself) {
+  const scene::MeshPointer mesh = bumpy();
+  EXPECT_FALSE(scene::is_convex(*mesh));
+  EXPECT_TRUE(scene::is_convex(scene::unit_sphere(32, 16)));
+  EXPECT_TRUE(scene::is_convex(*square(1.0F)));
+  // A seam whose two sides differ by rounding is closed.
+  const scene::Mesh ball = scene::unit_sphere(32, 16);
+  std::vector<glm::vec3> nearly = ball.positions();
+  for (std::size_t i = 0; i < nearly.size(); i += 3) nearly[i].y += 1e-7F;
+  std::vector<glm::uvec3> triangles = ball.triangles();
+  triangles.emplace_back(triangles[0].x, triangles[0].y, triangles[0].x);  // without area
+  EXPECT_TRUE(scene::is_convex(scene::Mesh(nearly, ball.normals(), triangles)));
+  // Two walls at a right angle; a light along the ground meets the standing one's back.
+  const auto walls = std::make_shared<scene::Mesh>(
+      std::vector<glm::vec3>{{0, -9, 0}, {9, -9, 0}, {9, 9, 0}, {0, 9, 0}, {0, -9, 9}, {0, 9, 9}},
+      std::vector<glm::vec3>(), std::vector<glm::uvec3>{{0, 1, 2}, {0, 2, 3}, {0, 3, 5}, {0, 5, 4}});
+  EXPECT_FALSE(scene::is_convex(*walls));
+  const scene::Camera camera{glm::translate(glm::dmat4(1.0), glm::dvec3(-4, 0, -20)),
+                             glm::ortho(-2.0, 2.0, -2.0, 2.0, 0.1, 40.0)};
+  const scene::Scene shaded{{{walls, {}, glm::dmat4(1.0)}}, {sun({-1.0, 0.0, 0.5}, pi)}};
+  const std::vector<float> dark = picture(shaded, camera, 16, 16, 8);
+  EXPECT_NEAR(*std::max_element(dark.begin(), dark.begin() + 1), 0.0F, 1e-6F);
+  EXPECT_NEAR(dark[4 * (8 * 16 + 8)], 0.0F, 1e-6F);
+  const scene::Scene lit{{{walls, {}, glm::dmat4(1.0)}}, {sun({1.0, 0.0, 0.5}, pi)}};
+  EXPECT_GT(picture(lit, camera, 16, 16, 8)[4 * (8 * 16 + 8)], 0.1F);
+}
+
+TEST_F(HeapTest, WhatIsSelectedIsWhatTheCameraSees) {
+  const auto ball = std::make_shared<scene::Mesh>(scene::unit_sphere(32, 16));
+  std::vector<glm::dmat4> places;
+  for (int x = 0; x < 40; ++x)
+    for (int y = 0; y < 40; ++y)
+      places.push_back(glm::translate(glm::dmat4(1.0), glm::dvec3(3.0 * x - 60.0, 3.0 * y - 60.0, 0.0)));
+  const scene::Scene everything = array_of(ball, {}, places, {sun({0.5, 0.0, 1.0}, pi)});
+  const scene::Camera close = scene::Camera::look_at({0, 0, 20}, {0, 0, 0}, {0, 1, 0}, 30.0);
+  std::vector<glm::dmat4> near_places;
+  for (const glm::dmat4& place : places)
+    if (std::max(std::abs(place[3].x), std::abs(place[3].y)) < 20.0) near_places.push_back(place);
+  const scene::Scene nearby = array_of(ball, {}, near_places, everything.lights);
+  const Difference found =
+      difference(picture(everything, close, 128, 128, 16), picture(nearby, close, 128, 128, 16), 128, 128);
+  EXPECT_LT(found.blocks, 2e-3);
+}
+
+TEST_F(HeapTest, ACancelledSampleAddsNothing) {
+  const auto ball = std::make_shared<scene::Mesh>(scene::unit_sphere(8, 4));
+  const std::vector<glm::dmat4> places(20001, glm::dmat4(1.0));
+  View view(64, 64);
+  view.set_scene(array_of(ball, {}, places, {sun({0.5, 0.0, 1.0}, pi)}));
+  view.set_camera(scene::Camera::look_at({0, 0, 8}, {0, 0, 0}, {0, 1, 0}, 30.0));
+  std::future<void> done = view.start(1000);
+  view.cancel();
+  done.get();
+  EXPECT_LT(view.samples(), 1000);
+  const int before = view.samples();
+  view.render(1);
+  EXPECT_EQ(view.samples(), before + 1);
+}
+
+TEST_F(HeapTest, AnArrayWhoseTransformCannotBeInvertedIsRefused) {
+  const auto ball = std::make_shared<scene::Mesh>(scene::unit_sphere(8, 4));
+  View view(8, 8);
+  const scene::Scene scene = array_of(ball, {}, {glm::dmat4(1.0), glm::dmat4(0.0)}, {});
+  test::expect_error([&] { view.set_scene(scene); }, "transform must be finite and invertible");
+}
+
+}  // namespace
+}  // namespace mesograin::render

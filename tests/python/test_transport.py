@@ -1,0 +1,111 @@
+"""The model `transport`: what photons and Cycles say of shapes that no sphere fits, and which meshes it takes."""
+
+import pathlib
+
+import mesograin_native as native
+import numpy
+import pytest
+from test_torus import DATA as TORUS
+from test_torus import blocks
+from test_torus import picture as torus_picture
+
+SHAPES = pathlib.Path(__file__).resolve().parents[1] / "data/shapes"
+# Three mean free paths is the radius of the sphere of equal volume.
+SIGMA_T = 2.0160829658756
+LIGHTS = {"front": (0.5, 0.5, 0.70710678), "side": (0.8, 0.6, 0.0), "back": (-0.3, 0.4, -0.8660254)}
+
+
+def salt():
+    """A cube whose edges are bevelled, with flat faces."""
+    lines = [line.split() for line in (SHAPES / "cube.obj").read_text().splitlines()]
+    places = numpy.array([line[1:4] for line in lines if line and line[0] == "v"], numpy.float32)
+    faces = [[int(corner.split("/")[0]) - 1 for corner in line[1:]] for line in lines if line and line[0] == "f"]
+    triangles = numpy.array([(face[0], face[i], face[i + 1]) for face in faces for i in range(1, len(face) - 1)])
+    corners = places[triangles]
+    normals = numpy.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals /= numpy.maximum(numpy.linalg.norm(normals, axis=1, keepdims=True), 1e-20)
+    return native.Mesh(corners.reshape(-1, 3), numpy.repeat(normals, 3, 0).astype(numpy.float32),
+                       numpy.arange(corners.size // 3, dtype=numpy.uint32).reshape(-1, 3))
+
+
+def material(scale=1.0, **parameters):
+    sigma_t = SIGMA_T * scale
+    return native.Material(**{"model": "transport", "sigma_s": (0.9 * sigma_t,) * 3, "sigma_a": (0.1 * sigma_t,) * 3,
+                              "eta": 1.3, "specular": False, **parameters})
+
+
+def picture(mesh, grain, to_light, turn=None):
+    """(96, 96), of a mesh that is turned together with its light and the camera."""
+    turn = numpy.eye(3) if turn is None else turn
+    transform = numpy.eye(4)
+    transform[:3, :3] = turn
+    view = native.View(96, 96)
+    light = native.DirectionalLight(tuple(turn @ to_light), (1.0,) * 3)
+    view.set_scene(native.Scene(instances=[native.Instance(mesh, grain, transform)], lights=[light]))
+    position, up = turn @ (0.0, 0.0, 6.5), turn @ (0.0, 1.0, 0.0)
+    view.set_camera(native.Camera.look_at(tuple(position), (0.0,) * 3, tuple(up), 45.0))
+    view.render(16)
+    return view.read()[..., 0]
+
+
+@pytest.fixture(scope="module")
+def cube():
+    mesh = salt()
+    view = native.View(8, 8)  # holds on to the transport, so that it is computed once for all tests
+    view.set_scene(native.Scene(instances=[native.Instance(mesh, material(), numpy.eye(4))], lights=[]))
+    yield mesh
+    del view
+
+
+@pytest.mark.parametrize("light, bar", [("front", 0.05), ("side", 0.06), ("back", 0.09)])
+def test_a_cube_is_as_photons_say(cube, light, bar):
+    truth = blocks(native.read_exr(str(SHAPES / f"cube_{light}.exr"))[0][..., 0])
+    ours = blocks(picture(cube, material(), numpy.array(LIGHTS[light])))
+    assert numpy.abs(ours - truth).sum() / truth.sum() < bar
+    assert ours.sum() / truth.sum() == pytest.approx(1.0, abs=0.04)
+
+
+# Light from behind grazes the whole ring, which takes more terms than are stored.
+TORUS_BARS = {"back": 0.1}
+
+
+@pytest.mark.parametrize("case", [case for case in TORUS["cases"] if case["scale"] == 4.0],
+                         ids=lambda case: case["light"])
+def test_a_torus_is_as_cycles_volume_says(case):
+    truth = numpy.array(case["blocks"])
+    ours = blocks(torus_picture("transport", case["scale"], case["to_light"]))
+    assert numpy.abs(ours - truth).sum() / truth.sum() < TORUS_BARS.get(case["light"], 0.05)
+
+
+def test_a_turned_instance_looks_the_same_and_costs_no_new_transport(cube):
+    light = numpy.array(LIGHTS["side"])
+    plain = picture(cube, material(), light)
+    sent = native.sent()["materials"]
+    turn = numpy.array([[0.36, 0.48, -0.8], [-0.8, 0.6, 0.0], [0.48, 0.64, 0.6]])
+    turned = picture(cube, material(), light, turn)
+    assert native.sent()["materials"] == sent
+    assert numpy.abs(turned - plain).sum() / plain.sum() < 0.005
+
+
+def test_colours_do_not_mix(cube):
+    light = numpy.array(LIGHTS["front"])
+    coloured = material(sigma_s=(0.9 * SIGMA_T, 0.5 * SIGMA_T, 4.0), sigma_a=(0.1 * SIGMA_T, 0.5 * SIGMA_T, 0.01))
+    grey = picture(cube, material(), light)
+    assert numpy.abs(picture(cube, coloured, light) - grey).sum() / grey.sum() < 0.05
+
+
+def test_what_is_too_thick_is_drawn_by_model_3(cube):
+    light = numpy.array(LIGHTS["front"])
+    thick = picture(cube, material(100.0), light)
+    by_model_3 = picture(cube, material(100.0, model="model_3"), light)
+    assert numpy.abs(thick - by_model_3).sum() / by_model_3.sum() < 0.01
+
+
+def test_what_it_cannot_answer_is_said():
+    places = numpy.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)], numpy.float32)
+    faces = numpy.array([(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)], numpy.uint32)
+    mesh, hole = native.Mesh(places, None, faces), native.Mesh(places, None, faces[1:])
+    with pytest.raises(native.Error, match="needs a closed mesh; this one has 3 open edges"):
+        picture(hole, material(), numpy.array(LIGHTS["front"]))
+    with pytest.raises(native.Error, match="boundary for the model transport must be dielectric or index_matched"):
+        picture(mesh, material(boundary="lambert_lambert"), numpy.array(LIGHTS["front"]))

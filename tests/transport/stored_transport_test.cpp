@@ -1,0 +1,96 @@
+// Stored transport: energy, one answer for a seed, and what a sphere's symmetry demands.
+#include "transport/stored_transport.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "scene/sphere.h"
+#include "shapes.h"
+#include "transport/octahedron.h"
+
+namespace mesograin::transport {
+namespace {
+
+constexpr Quality coarse{.nodes = 2500, .light_across = 32, .way_across = 12};
+
+/// The source function under radiance 1 from everywhere, at nodes inside the body.
+std::vector<float> under_even_light(const StoredTransport& stored) {
+  const std::array<float, octahedron_texels> angles = octahedron_solid_angles();
+  std::vector<float> sources;
+  for (std::size_t node = 0; node < stored.nodes(); ++node) {
+    if (stored.distances[node] >= 0.0F) continue;
+    double source = 0.0;
+    for (int term = 0; term < stored.terms; ++term) {
+      double lobe = 0.0;
+      for (int texel = 0; texel < octahedron_texels; ++texel)
+        lobe += angles[static_cast<std::size_t>(texel)] * stored.lobes[term * octahedron_texels + texel];
+      source += lobe * stored.sources[(term * stored.nodes() + node) * static_cast<std::size_t>(stored.channels)];
+    }
+    sources.push_back(static_cast<float>(source));
+  }
+  return sources;
+}
+
+// Light from everywhere that nothing absorbs is inside as it is outside, but for eta^2 (the furnace).
+TEST(StoredTransport, KeepsItsEnergy) {
+  for (const double eta : {1.0, 1.5})
+    for (const double mean_free_paths : {0.1, 3.0, 10.0}) {
+      const Body body(cube());
+      const StoredTransport stored =
+          compute_transport(body, {glm::dvec3(mean_free_paths * body.unit()), glm::dvec3(1.0), eta}, coarse);
+      for (const float source : under_even_light(stored))
+        EXPECT_NEAR(source / (eta * eta), 1.0, 0.015) << "eta " << eta << ", " << mean_free_paths << " to the middle";
+    }
+}
+
+TEST(StoredTransport, DependsOnTheSeedAloneNotOnThreads) {
+  const Body body(cube());
+  const StoredMedium medium{{2.0, 3.0, 4.0}, {0.9, 0.5, 0.99}, 1.3};
+  constexpr Quality quick{.nodes = 400, .light_across = 8, .way_across = 4};
+  const StoredTransport one = compute_transport(body, medium, quick, {.threads = 1});
+  const StoredTransport three = compute_transport(body, medium, quick, {.threads = 3});
+  EXPECT_EQ(one.sources, three.sources);
+  EXPECT_EQ(one.lobes, three.lobes);
+  EXPECT_EQ(one.channels, 3);
+}
+
+// A channel is the same whatever the two beside it are.
+TEST(StoredTransport, KeepsItsChannelsApart) {
+  const Body body(scene::unit_sphere(32, 16));
+  const auto green = [&](const glm::dvec3& sigma_t, const glm::dvec3& albedo) {
+    const StoredTransport stored = compute_transport(body, {sigma_t, albedo, 1.3}, coarse);
+    const std::vector<float>& lobes = stored.lobes;
+    double sum = 0.0;
+    for (std::size_t node = 0; node < stored.nodes(); ++node)
+      for (int term = 0; term < stored.terms; ++term)
+        sum += lobes[term * octahedron_texels + 5] *
+               stored.sources[(term * stored.nodes() + node) * static_cast<std::size_t>(stored.channels) +
+                              static_cast<std::size_t>(stored.channels / 2)];
+    return sum;
+  };
+  const double grey = green(glm::dvec3(3.0), glm::dvec3(0.9));
+  EXPECT_NEAR(green({1.0, 3.0, 6.0}, {0.5, 0.9, 0.99}) / grey, 1.0, 0.01);
+}
+
+TEST(StoredTransport, IsBrighterWhereTheLightComesFrom) {
+  const Body body(scene::unit_sphere(32, 16));
+  const StoredTransport stored = compute_transport(body, {glm::dvec3(3.0), glm::dvec3(0.9), 1.3}, coarse);
+  // Light from the texel nearest to +z, and the nodes nearest to both poles.
+  constexpr int up = octahedron_side / 2 * octahedron_side + octahedron_side / 2;
+  const auto source = [&](int z) {
+    const int place = (z * stored.size.y + stored.size.y / 2) * stored.size.x + stored.size.x / 2;
+    const auto node = static_cast<std::size_t>(place);
+    double sum = 0.0;
+    for (int term = 0; term < stored.terms; ++term)
+      sum += stored.lobes[term * octahedron_texels + up] * stored.sources[term * stored.nodes() + node];
+    return sum;
+  };
+  EXPECT_GT(source(stored.size.z - 2), 3.0 * source(1));
+  EXPECT_GT(source(1), 0.0);
+}
+
+}  // namespace
+}  // namespace mesograin::transport
