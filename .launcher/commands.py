@@ -11,11 +11,11 @@ import sys
 SOURCE = pathlib.Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(SOURCE / "addon"))
 
-from mesograin.baking import arguments as bake_arguments  # noqa: E402
 from mesograin.command_line.parser import Parser  # noqa: E402
-from mesograin.comparison import arguments as compare_arguments  # noqa: E402
-from mesograin.sweep import arguments as sweep_arguments  # noqa: E402
-from mesograin.trade import arguments as trade_arguments  # noqa: E402
+from mesograin.studies.baking import arguments as bake_arguments  # noqa: E402
+from mesograin.studies.comparison import arguments as compare_arguments  # noqa: E402
+from mesograin.studies.sweep import arguments as sweep_arguments  # noqa: E402
+from mesograin.studies.trade import arguments as trade_arguments  # noqa: E402
 
 PARTS = {
     "lint": "formatting, static analysis, shader validation, shell scripts, what every file must keep to",
@@ -102,7 +102,7 @@ class InBlender(Command):
     def run(self, words, place):
         chosen = self._arguments.parse(words)
         scene = [] if chosen.scene else [SOURCE / "blend_files/sphere.blend"]
-        return place.in_blender(self.name, f"addon/mesograin/{self._room}/command.py", *scene, *words)
+        return place.in_blender(self.name, f"addon/mesograin/studies/{self._room}/command.py", *scene, *words)
 
 
 class Sweep(Command):
@@ -118,7 +118,7 @@ class Sweep(Command):
         return ["blender", "lists report", "product product", *_referee(["photon"] if "photon" in asked else [])]
 
     def run(self, words, place):
-        return [place.python, SOURCE / "addon/mesograin/sweep/command.py", *words, "--blender", place.blender]
+        return [place.python, SOURCE / "addon/mesograin/studies/sweep/command.py", *words, "--blender", place.blender]
 
 
 class Render(Command):
@@ -159,7 +159,7 @@ class Bake(Command):
     def run(self, words, place):
         if words[0].endswith(".json"):
             return RENDER.run([*words, "--bake"], place)
-        return place.in_blender("bake", "addon/mesograin/baking/command.py", *words)
+        return place.in_blender("bake", "addon/mesograin/studies/baking/command.py", *words)
 
 
 class Test(Command):

@@ -11,15 +11,16 @@ bl_info = {
 }
 __version__ = ".".join(str(number) for number in bl_info["version"])
 
-# In the order of their imports: each room knows only those before it.
-ROOMS = ("compat", "smooth_normals", "native_module", "properties", "presets", "status", "meshes", "heaps", "lights",
-         "surroundings", "plain_materials", "export", "viewport", "viewport_text", "engine", "panels",
-         "reference_cache", "preferences", "side_task.settings", "side_task.session",
-         "side_task.pictures", "side_task.operators", "side_task.panel", "side_task.results",
-         "compare_panel.properties", "compare_panel.session", "compare_panel.operators", "compare_panel.panel",
-         "bake_panel.properties", "bake_panel.compared", "bake_panel.session", "bake_panel.operators",
-         "bake_panel.panel")
-# What scripts use, from the room `scripting`.
+# What there is to register, in the order of its imports: each room knows only those before it.
+ROOMS = ("compat", "native_module",
+         "scene.smooth_normals", "scene.properties", "scene.meshes", "scene.heaps", "scene.lights",
+         "scene.surroundings", "scene.plain_materials", "scene.export",
+         "engine.status", "engine.viewport", "engine.viewport_text", "engine.engine",
+         "cycles.reference_cache", "ui.presets", "ui.panels", "ui.preferences",
+         *(f"ui.side_task.{name}" for name in ("settings", "session", "pictures", "operators", "panel", "results")),
+         *(f"ui.compare_panel.{name}" for name in ("properties", "session", "operators", "panel")),
+         *(f"ui.bake_panel.{name}" for name in ("properties", "compared", "session", "operators", "panel")))
+# What scripts use, from `studies.scripting`.
 SCRIPTED = ("compare", "Comparison", "ComparisonError")
 _rooms = []
 
@@ -30,7 +31,7 @@ def __getattr__(name):
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     import importlib
 
-    return getattr(importlib.import_module(f"{__package__}.scripting"), name)
+    return getattr(importlib.import_module(f"{__package__}.studies.scripting"), name)
 
 
 def _load_rooms():

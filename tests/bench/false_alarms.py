@@ -62,7 +62,7 @@ def renders(kind, count, tell):
 
 def alarms(images, mask, groups, ours, rate):
     """How many false ones there are. groups: of indices, of which the first `ours` play our picture."""
-    from mesograin.comparison import significance
+    from mesograin.studies.comparison import significance
 
     dealt = ([images[index] for index in group] for group in groups)
     found = (significance.test(group[:ours], group[ours:], mask, rate)[0] for group in dealt)
@@ -103,7 +103,7 @@ def interval(count, trials, confidence=0.95):
 
 def measure(kind, count, tell):
     """Rows of the table."""
-    from mesograin.comparison import measure as comparison
+    from mesograin.studies.comparison import measure as comparison
 
     images, mask = renders(kind, count, tell)
     floor = comparison.compare(images[0], images[:2], mask)["noise_floor"]["relative_l1"]

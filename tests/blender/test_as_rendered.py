@@ -6,10 +6,11 @@ import pytest
 from cycles_scenes import make_sphere
 from test_export import add_cube, add_mesh_object, add_object
 
-from mesograin import as_rendered, engine, export, meshes
-from mesograin.baking import surface
-from mesograin.comparison import progress, run
 from mesograin.cycles.cache import Cache
+from mesograin.engine import engine
+from mesograin.scene import as_rendered, export, meshes
+from mesograin.studies.baking import surface
+from mesograin.studies.comparison import progress, run
 
 
 def differ():

@@ -15,8 +15,8 @@ import pytest
 from cycles_scenes import make_sphere
 
 from mesograin import native_module
-from mesograin.background import job
-from mesograin.background.launch import launch
+from mesograin.studies.background import job
+from mesograin.studies.background.launch import launch
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SUNS = [((1.0, 1.0, 1.0), 20.0)]
@@ -171,7 +171,7 @@ sys.path.insert(0, {str(tmp_path)!r})
 import bpy, repository.user_default.mesograin as mesograin
 mesograin.register()
 bpy.ops.wm.open_mainfile(filepath={str(tmp_path / "grain.blend")!r})
-from repository.user_default.mesograin.background.launch import launch
+from repository.user_default.mesograin.studies.background.launch import launch
 started = launch("compare", {str(tmp_path / "out")!r}, models=["model_1"], size=[256, 256], reference_samples=4000,
                  cache={str(tmp_path / "cache")!r})
 while started.step is None:
@@ -189,7 +189,7 @@ time.sleep(1000)
         assert said[-1], f"Blender ended too early: {said}"
         _, child, folder = said[-1].split()
         command = pathlib.Path(f"/proc/{child}/cmdline").read_bytes().decode()
-        assert str(repository / "mesograin" / "background" / "child.py") in command
+        assert str(repository / "mesograin" / "studies" / "background" / "child.py") in command
     finally:
         os.kill(parent.pid, signal.SIGKILL)
         parent.stdout.close()

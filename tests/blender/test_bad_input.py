@@ -9,8 +9,9 @@ import bpy
 import numpy as np
 import pytest
 from mathutils import Matrix
-from mesograin import compat, status
-from mesograin.baking import surface
+from mesograin import compat
+from mesograin.engine import status
+from mesograin.studies.baking import surface
 from test_export import add_camera, add_cube, add_mesh_object, add_object, add_sun
 
 

@@ -12,9 +12,9 @@ import pytest
 from cycles_scenes import depsgraph, make_sphere
 
 from mesograin import compat
-from mesograin.baking import surface
+from mesograin.studies.baking import surface
 
-COMMAND = pathlib.Path(__file__).resolve().parents[2] / "addon/mesograin/baking/command.py"
+COMMAND = pathlib.Path(__file__).resolve().parents[2] / "addon/mesograin/studies/baking/command.py"
 SUN = [((0.0, 0.0, 1.0), np.pi)]
 
 

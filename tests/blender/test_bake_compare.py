@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 from cycles_scenes import depsgraph, make_sphere
 
-from mesograin.baking import arguments, command, comparison
-from mesograin.baking.surface import PROVENANCE, BakeError, Surface
-from mesograin.comparison.progress import Progress
 from mesograin.cycles import nodes, reference, unwrapping
 from mesograin.cycles.cache import Cache
 from mesograin.cycles.unwrapping import Unwrapping
+from mesograin.studies.baking import arguments, command, comparison
+from mesograin.studies.baking.surface import PROVENANCE, BakeError, Surface
+from mesograin.studies.comparison.progress import Progress
 
 SUNS = [((1.0, 1.0, 1.0), 20.0), ((-1.0, -1.0, -1.6), 10.0)]
 

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from cycles_scenes import make_sphere
 
-from mesograin.background import job
-from mesograin.bake_panel.session import prepare, session
-from mesograin.baking.surface import PROVENANCE
+from mesograin.studies.background import job
+from mesograin.studies.baking.surface import PROVENANCE
+from mesograin.ui.bake_panel.session import prepare, session
 
 SUN = [((0.0, 0.0, 1.0), 3.0)]
 

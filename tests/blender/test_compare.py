@@ -17,11 +17,11 @@ import pytest
 from cycles_scenes import REFEREE, depsgraph, make_sphere
 
 from mesograin import native_module
-from mesograin.comparison import ours, progress, results, run, significance
 from mesograin.cycles import kinds, nodes, reference, shot
 from mesograin.cycles.cache import Cache
+from mesograin.studies.comparison import ours, progress, results, run, significance
 
-COMMAND = pathlib.Path(__file__).resolve().parents[2] / "addon/mesograin/comparison/command.py"
+COMMAND = pathlib.Path(__file__).resolve().parents[2] / "addon/mesograin/studies/comparison/command.py"
 SUNS = [((1.0, 1.0, 1.0), 20.0), ((-1.0, -1.0, -1.6), 10.0)]
 
 

@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 from cycles_scenes import make_sphere
 
-from mesograin import reference_cache, scripting
-from mesograin.compare_panel import properties
-from mesograin.compare_panel.session import folder, session
+from mesograin.cycles import reference_cache
 from mesograin.cycles.cache import DEFAULT_LIMIT
-from mesograin.side_task import pictures
+from mesograin.studies import scripting
+from mesograin.ui.compare_panel import properties
+from mesograin.ui.compare_panel.session import folder, session
+from mesograin.ui.side_task import pictures
 
 
 @pytest.fixture

@@ -9,11 +9,11 @@ from cycles_scenes import RADIUS, depsgraph, make_sphere, sphere_points, unit
 
 from test_export import read_scene
 
-from mesograin import export
-from mesograin.comparison.ours import Ours
 from mesograin.cycles import nodes, reference, shot
 from mesograin.cycles.cache import Cache
 from mesograin.cycles.stage import StageError
+from mesograin.scene import export
+from mesograin.studies.comparison.ours import Ours
 
 FRONT = [((1.0, 1.0, 1.0), 20.0)]
 

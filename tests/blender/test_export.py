@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from bpy_extras.object_utils import world_to_camera_view
 from mathutils import Euler, Matrix, Vector
-from mesograin import compat, export, meshes, smooth_normals
+from mesograin import compat
+from mesograin.scene import export, meshes, smooth_normals
 
 
 def add_object(name, data, matrix=Matrix()):

@@ -3,7 +3,8 @@ import addon_utils
 import bpy
 import numpy as np
 import pytest
-from mesograin import export, meshes, status
+from mesograin.engine import status
+from mesograin.scene import export, meshes
 
 
 def render_directly(native, width, height):

@@ -8,7 +8,7 @@ from mathutils import Euler, Matrix
 from test_export import add_camera, add_cube, add_mesh_object, add_object, add_sun, read_scene
 
 import mesograin
-from mesograin import heaps
+from mesograin.scene import heaps
 
 SIDE = 12
 

@@ -1,7 +1,8 @@
 # Material and scene properties: remembered by files and undo, set by presets, converted once to Blender units.
 import bpy
 import pytest
-from mesograin import export, presets
+from mesograin.scene import export
+from mesograin.ui import presets
 
 
 def grain_values(material, millimetres_per_unit):

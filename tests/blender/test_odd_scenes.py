@@ -11,8 +11,8 @@ from mathutils import Matrix
 from test_export import add_mesh_object, add_object
 
 from mesograin import compat
-from mesograin.comparison import progress, run
 from mesograin.cycles.cache import Cache
+from mesograin.studies.comparison import progress, run
 
 KINDS = ("diffuse", "volume_index_matched", "volume_dielectric") + ("photon",) * os.access(REFEREE, os.X_OK)
 WIDE = math.radians(30.0)

@@ -5,11 +5,14 @@ import types
 import bpy
 import numpy as np
 import pytest
-from mesograin import compat, engine, export, panels
-from mesograin.bake_panel import panel as bake_panel
-from mesograin.compare_panel import panel as compare_panel
+from mesograin import compat
+from mesograin.engine import engine
+from mesograin.scene import export
 from mesograin.schema import models, parameters
-from mesograin.side_task import results
+from mesograin.ui import panels
+from mesograin.ui.bake_panel import panel as bake_panel
+from mesograin.ui.compare_panel import panel as compare_panel
+from mesograin.ui.side_task import results
 
 # Pixels at a UI scale of 1, in a Properties editor of Blender's default layout on a screen 1920 wide, 333 across: what
 # a label left of its value gets, and one of two columns in a box.

@@ -7,7 +7,8 @@ import sys
 import bpy
 import mesograin
 import pytest
-from mesograin import compat, engine
+from mesograin import compat
+from mesograin.engine import engine
 
 PACKAGE = pathlib.Path(mesograin.__file__).parent
 

@@ -12,12 +12,12 @@ import pytest
 from cycles_scenes import REFEREE, make_sphere
 
 from mesograin import native_module
-from mesograin.comparison import ours, progress
 from mesograin.cycles import shot
 from mesograin.cycles.cache import Cache
-from mesograin.trade import measure
+from mesograin.studies.comparison import ours, progress
+from mesograin.studies.trade import measure
 
-COMMAND = pathlib.Path(__file__).resolve().parents[2] / "addon/mesograin/trade/command.py"
+COMMAND = pathlib.Path(__file__).resolve().parents[2] / "addon/mesograin/studies/trade/command.py"
 SUNS = [((1.0, 1.0, 1.0), 20.0)]
 
 

@@ -5,7 +5,8 @@ import time
 import bpy
 import numpy as np
 import pytest
-from mesograin import export, meshes, viewport
+from mesograin.engine import viewport
+from mesograin.scene import export, meshes
 
 SIZE = (64, 48)
 CHANGES = 12

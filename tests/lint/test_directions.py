@@ -38,13 +38,17 @@ def known_by_native_rooms():
 NATIVE = known_by_native_rooms()
 PHYSICS = chain("folders of native/physics")
 SHADERS = chain("shaders")
-ADDON = chain("addon/mesograin")
+ADDON = {heading.removeprefix("addon/mesograin").strip("/"): chain(heading)
+         for heading in re.findall(r"^addon/mesograin\S*$", BLOCK, re.MULTILINE)}
+"""{room, "" for the package itself: what stands right under it, in order}."""
 
 
 def test_every_room_stands_in_the_plan():
     assert {path.split("/")[1] for path in NATIVE_FILES} == set(NATIVE)
     assert {path.split("/")[1] for path in SHADER_FILES} == set(SHADERS)
-    assert {module_of(path) for path in ADDON_FILES} - {"__init__"} == set(ADDON)
+    for room, names in ADDON.items():
+        under = [path for path in ADDON_FILES if path.startswith(f"{PACKAGE}{room}/" if room else PACKAGE)]
+        assert {module_of(path, room) for path in under} - {"__init__"} == set(names), room
 
 
 @pytest.mark.parametrize("path", NATIVE_FILES)
@@ -64,13 +68,13 @@ def test_a_shader_includes_what_stands_before_it(path):
         assert SHADERS.index(room) <= own, f"{path} does not know {room}"
 
 
-def module_of(path):
-    """What it is of right under the package: a room, or a module alone."""
-    return path.removeprefix(PACKAGE).removesuffix(".py").split("/")[0]
+def module_of(path, room=""):
+    """What a file is of right under the package or a room of it: a room, or a module alone."""
+    return path.removeprefix(f"{PACKAGE}{room}/" if room else PACKAGE).removesuffix(".py").split("/")[0]
 
 
 def imported(path):
-    """The names right under the package that a file imports, at its head or inside a function."""
+    """The modules of the package that a file imports, at its head or inside a function, as lists of names under it."""
     package = path.removeprefix("addon/").split("/")[:-1]
     for node in ast.walk(ast.parse((SOURCE / path).read_text())):
         if isinstance(node, ast.ImportFrom):
@@ -81,14 +85,19 @@ def imported(path):
             targets = [alias.name.split(".") for alias in node.names]
         else:
             continue
-        yield from (target[1] for target in targets if target[0] == "mesograin" and len(target) > 1)
+        yield from (target[1:] for target in targets if target[0] == "mesograin" and len(target) > 1)
+
+
+def hold(order, name, other):
+    assert other not in order or order.index(other) <= order.index(name), f"{name} does not know {other}"
 
 
 @pytest.mark.parametrize("path", ADDON_FILES)
 def test_a_module_of_the_addon_imports_what_stands_before_it(path):
-    name = module_of(path)
-    if name == "__init__":  # the package itself registers everything
+    own = module_of(path)
+    if own == "__init__":  # the package itself registers everything
         return
     for module in imported(path):
-        if module in ADDON:
-            assert ADDON.index(module) <= ADDON.index(name), f"{name} does not know {module}"
+        hold(ADDON[""], own, module[0])
+        if module[0] == own in ADDON and len(module) > 1 and path != f"{PACKAGE}{own}/__init__.py":
+            hold(ADDON[own], module_of(path, own), module[1])

@@ -5,7 +5,7 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
-COMMAND = ROOT / "addon/mesograin/sweep/command.py"
+COMMAND = ROOT / "addon/mesograin/studies/sweep/command.py"
 
 STAND_IN = """\
 #!{python}

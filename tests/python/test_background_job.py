@@ -7,14 +7,14 @@ import time
 import pytest
 from addon_rooms import room
 
-job = room("background.job")
-protocol = room("background.protocol")
+job = room("studies.background.job")
+protocol = room("studies.background.protocol")
 
 PRELUDE = f"""
 import os, signal, subprocess, sys, time
 from pathlib import Path
-sys.path.insert(0, {str(room("background.job").__file__).rsplit("/mesograin/", 1)[0]!r})
-from mesograin.background.protocol import encode
+sys.path.insert(0, {str(room("studies.background.job").__file__).rsplit("/mesograin/", 1)[0]!r})
+from mesograin.studies.background.protocol import encode
 def send(event, **values): os.write(1, encode(event, **values))
 staging = Path(sys.argv[1])
 """

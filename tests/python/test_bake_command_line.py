@@ -8,8 +8,8 @@ from conftest import BUILD, SOURCE
 
 import mesograin_native as native
 
-arguments = room("baking.arguments")
-choices = room("baking.choices")
+arguments = room("studies.baking.arguments")
+choices = room("studies.baking.choices")
 
 
 @pytest.fixture

@@ -5,9 +5,9 @@ import io
 import pytest
 from addon_rooms import room
 
-arguments = room("comparison.arguments")
-definitions = room("comparison.definitions")
-progress = room("comparison.progress")
+arguments = room("studies.comparison.arguments")
+definitions = room("studies.comparison.definitions")
+progress = room("studies.comparison.progress")
 
 
 def test_defaults():
@@ -32,7 +32,7 @@ def test_settings():
 
 
 def test_a_sweep_knows_what_a_comparison_knows():
-    plan = room("sweep.plan")
+    plan = room("studies.sweep.plan")
     assert (plan.MODELS, plan.REFERENCES) == (arguments.MODELS, arguments.REFERENCES)
 
 

@@ -3,7 +3,7 @@
 import pytest
 from addon_rooms import room
 
-verdict = room("comparison.verdict").verdict
+verdict = room("studies.comparison.verdict").verdict
 
 
 def entry(error=0.05, corrected=0.04, noise=0.01, significance=None, **changes):

@@ -4,7 +4,7 @@ from pathlib import Path
 import pytest
 from addon_rooms import room
 
-plan = room("sweep.plan")
+plan = room("studies.sweep.plan")
 
 GOOD = """\
 title = "Optical scale"
@@ -159,7 +159,7 @@ def test_a_part_is_compared_with_the_references_that_have_it(write):
 
 
 def test_controls_are_asked_for_or_not(write):
-    run = room("sweep.run")
+    run = room("studies.sweep.run")
     plain, asked, declined = (
         plan.read(write(GOOD.replace("samples = 16", f"samples = 16\n{line}"))).cases
         for line in ("", "controls = true", "controls = false")

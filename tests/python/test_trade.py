@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 from addon_rooms import ADDON, room
 
-arguments = room("trade.arguments")
-curve = room("trade.curve")
+arguments = room("studies.trade.arguments")
+curve = room("studies.trade.curve")
 plots = room("report.plots")
 reading = room("report.reading")
 trade_plot = room("report.trade_plot")
@@ -110,7 +110,7 @@ def test_a_noisy_reference_judges_in_blocks():
 
 
 def test_every_reference_of_compare_can_be_measured_against():
-    assert arguments.REFERENCES == room("comparison.arguments").REFERENCES
+    assert arguments.REFERENCES == room("studies.comparison.arguments").REFERENCES
     assert arguments.parse(["--reference", "volume_dielectric"]).reference_samples == 1024
     assert arguments.parse(["--reference", "photon"]).models == ("model_1", "model_2", "model_3", "transport")
 

@@ -1,7 +1,7 @@
 # The Bake panel in a real window: progress, cancel and the file, while the interface stays alive.
 import bpy
 import numpy as np
-from mesograin.bake_panel.session import session
+from mesograin.ui.bake_panel.session import session
 
 
 def prepare(window, **settings):

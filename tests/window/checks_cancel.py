@@ -4,7 +4,7 @@ import subprocess
 
 import bpy
 import numpy as np
-from mesograin import status
+from mesograin.engine import status
 
 
 def press_escape():

@@ -2,9 +2,9 @@
 import bpy
 import mesograin
 import numpy as np
-from mesograin import status
-from mesograin.background import job as jobs
-from mesograin.compare_panel.session import session
+from mesograin.engine import status
+from mesograin.studies.background import job as jobs
+from mesograin.ui.compare_panel.session import session
 
 
 def prepare(window, **settings):

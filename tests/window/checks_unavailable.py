@@ -5,7 +5,8 @@ import os
 
 import bpy
 import numpy as np
-from mesograin import native_module, status
+from mesograin import native_module
+from mesograin.engine import status
 
 
 def reason():

@@ -2,11 +2,11 @@
 # picture that follows is right.
 import addon_utils
 import bpy
-from mesograin import status
-from mesograin.background import job as jobs
-from mesograin.bake_panel import session as baking
-from mesograin.compare_panel import session as comparing
+from mesograin.engine import status
 from mesograin.schema import models
+from mesograin.studies.background import job as jobs
+from mesograin.ui.bake_panel import session as baking
+from mesograin.ui.compare_panel import session as comparing
 
 ENDLESS = 1 << 16
 

@@ -5,7 +5,7 @@ import math
 import bpy
 import numpy as np
 from mathutils import Quaternion
-from mesograin import engine, status, viewport
+from mesograin.engine import engine, status, viewport
 
 
 def check_viewport_shows_what_the_native_module_renders(window):

@@ -6,7 +6,9 @@ import time
 
 import bpy
 import numpy as np
-from mesograin import engine, export, meshes, native_module, status
+from mesograin import native_module
+from mesograin.engine import engine, status
+from mesograin.scene import export, meshes
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 TIMEOUT = 60.0

@@ -6,7 +6,8 @@ import math
 import bpy
 from mathutils import Matrix
 
-from .. import compat, lights
+from .. import compat
+from ..scene import lights
 from . import nodes
 
 KIND_PROPERTIES = {

@@ -5,7 +5,8 @@ import functools
 
 import bpy
 
-from .. import compat, export
+from .. import compat
+from ..scene import export
 from . import kinds, recipes
 from .grain_values import GrainValues
 

@@ -13,7 +13,8 @@ from pathlib import Path
 
 import numpy
 
-from .. import export, lights, meshes, native_module
+from .. import native_module
+from ..scene import export, lights, meshes
 from . import shot
 from .shot import ReferenceError, Shot
 

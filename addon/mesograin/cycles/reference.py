@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy
 
-from .. import export, meshes
+from ..scene import export, meshes
 from . import kinds, nodes, photon, shot
 from .limits import limits
 from .shot import PROVENANCE, ReferenceError

@@ -10,7 +10,8 @@ from pathlib import Path
 import bpy
 import numpy
 
-from .. import export, native_module
+from .. import native_module
+from ..scene import export
 from . import fingerprint, nodes, passes, recipes, settings
 from .console import Console
 from .grain_values import GrainValues

@@ -6,7 +6,7 @@ import bpy
 import numpy
 from mathutils import Matrix
 
-from .. import export, meshes, surroundings
+from ..scene import export, meshes, surroundings
 from . import instancing, lighting, settings
 
 

@@ -1,0 +1,1 @@
+# Drawing for Blender: final renders, viewports and their words on screen.

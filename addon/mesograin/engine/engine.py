@@ -1,0 +1,284 @@
+# The render engine as Blender calls it: final renders and Rendered viewports, both through the native module.
+import concurrent.futures
+import time
+import weakref
+
+import bpy
+import numpy as np
+
+from .. import compat, native_module
+from ..scene import export
+from . import status, viewport, viewport_text
+
+# How long a final render may go without looking whether it was cancelled, and without showing how far it is.
+POLL_SECONDS = 0.05
+SHOW_SECONDS = 0.5
+
+_sessions = weakref.WeakSet()
+
+
+class MesograinRenderEngine(bpy.types.RenderEngine):
+    bl_idname = "MESOGRAIN"
+    bl_label = "Mesograin"
+    bl_use_preview = False
+    bl_use_eevee_viewport = True  # Material Preview stays what it is
+    bl_use_shading_nodes_custom = False
+
+    def __init__(self, *args, **kwargs):
+        super().__init__(*args, **kwargs)
+        self._session = None
+        self._texture = None
+        self._transparent = False  # whether the texture is
+        self._warnings = ()
+        self._error = ""  # of the viewport, one sentence
+
+    def update_render_passes(self, scene, view_layer):
+        # The compositor's Render Layers node has a socket for each pass that is registered, and for no other.
+        self.register_pass(scene, view_layer, "Combined", 4, "RGBA", "COLOR")
+
+    # Final renders
+
+    def render(self, depsgraph):
+        try:
+            self._render(depsgraph)
+        except _sentences() as error:
+            self._complain(status.RENDER, status.Status(error=str(error)))
+
+    def _render(self, depsgraph):
+        native = native_module.get()
+        target = depsgraph.scene.mesograin.samples
+        width, height = self.resolution_x, self.resolution_y
+        region = export.render_region(depsgraph.scene, width, height)
+        self.update_stats("", "Mesograin: reading the scene")
+        scene, warnings = export.scene_from_depsgraph(depsgraph)
+        view = native.View(region.width, region.height)
+        view.set_scene(scene)
+        for warning in warnings:
+            self.report({"WARNING"}, warning)
+
+        opaque = not depsgraph.scene.render.film_transparent
+        eyes = _eyes(depsgraph.scene.render)
+        for number, name in enumerate(eyes):
+            view.set_camera(self._camera(depsgraph, width, height, region, name))
+            result = self.begin_result(0, 0, region.width, region.height, layer=depsgraph.view_layer.name, view=name)
+            try:
+                for samples in self._render_samples(view, target):
+                    self._show(result, view, opaque)
+                    self.update_result(result)
+                    self.update_progress((number + samples / target) / len(eyes))
+                if view.samples:  # a cancelled render keeps what it has
+                    self._show(result, view, opaque)
+            except Exception:  # whatever it is: Blender must not be left with a result that never ends
+                self.end_result(result, cancel=True)
+                raise
+            self.end_result(result)
+        passes = tuple((timing["pass"], timing["milliseconds"]) for timing in view.timings())
+        status.put(status.RENDER, status.Status(view.samples, region.width, region.height, passes, warnings))
+
+    def _camera(self, depsgraph, width, height, region, eye):
+        """native.Camera of the eye of this name, or of the camera as it is."""
+        if not eye:
+            return export.camera_from_scene(depsgraph, width, height, self.camera_override, region)
+        self.active_view_set(eye)
+        camera = self.camera_override  # with views by camera names, that of this one
+        placed = camera and export.Eye(self.camera_model_matrix(camera), self.camera_shift_x(camera))
+        return export.camera_from_scene(depsgraph, width, height, camera, region, placed)
+
+    def _render_samples(self, view, target):
+        """Renders until `target` samples or a cancel, and yields their number whenever it is time to show them."""
+        started = shown = time.perf_counter()
+        chunk = 1
+        with concurrent.futures.ThreadPoolExecutor(max_workers=1, thread_name_prefix="mesograin-render") as worker:
+            while view.samples < target and not self.test_break():
+                chunk_started = time.perf_counter()
+                task = worker.submit(view.render, min(chunk, target - view.samples))
+                while not _finished(task):
+                    if self.test_break():
+                        view.cancel()
+                task.result()
+                now = time.perf_counter()
+                if now - chunk_started < POLL_SECONDS:
+                    chunk *= 2
+                if now - shown > SHOW_SECONDS and view.samples < target:
+                    left = (now - started) / max(view.samples, 1) * (target - view.samples)
+                    self.update_stats("", f"Sample {view.samples}/{target}, {left:.1f} s left")
+                    yield view.samples
+                    shown = time.perf_counter()
+
+    @staticmethod
+    def _show(result, view, opaque):
+        pixels = view.read()
+        if opaque:
+            pixels[..., 3] = 1.0  # premultiplied, so this is the picture over black
+        # Blender's rows begin at the bottom.
+        compat.set_pass_pixels(result.layers[0].passes["Combined"], np.ascontiguousarray(pixels[::-1]))
+
+    # Rendered viewports
+
+    def view_update(self, _context, depsgraph):
+        self._error = ""
+        try:
+            self._view_update(depsgraph)
+        except _sentences() as error:
+            self._complain(status.VIEWPORT, status.Status(error=str(error)))
+        self.tag_redraw()
+
+    def _view_update(self, depsgraph):
+        native_module.get()
+        if self._session is None or self._session.stopped:
+            self._session = viewport.Session()
+            _sessions.add(self._session)
+        if any(_replaces_geometry(update) for update in depsgraph.updates):
+            self._session.cache.forget()
+        values = export.read_scene(depsgraph, self._session.cache)
+        self._session.set_scene(values)
+        self._warnings = values.warnings
+
+    def view_draw(self, context, depsgraph):
+        try:
+            self._view_draw(context, depsgraph)
+        except _sentences() as error:
+            self._complain(status.VIEWPORT, status.Status(error=str(error)))
+        if self._error and viewport_text.is_hidden(context.space_data):
+            viewport_text.draw(context.region, self._error)
+
+    def _view_draw(self, context, depsgraph):
+        session, region, scene = self._session, context.region, depsgraph.scene
+        if session is not None and session.has_scene:
+            session.set_camera(_viewport_camera(context.region_data), region.width, region.height)
+            pixels = session.advance(scene.mesograin.viewport_samples)
+            if pixels is None and self._texture is not None and scene.render.film_transparent != self._transparent:
+                pixels = session.picture()  # at rest nothing new would come
+            if pixels is not None:
+                self._take(pixels, region, scene)
+            if session.busy or pixels is not None:  # the text line of a redraw is what was said before it
+                self.tag_redraw()
+        if self._texture is not None:
+            self._draw_texture(scene, region)
+
+    def _take(self, pixels, region, scene):
+        self._transparent = scene.render.film_transparent
+        if not self._transparent:
+            pixels[..., 3] = 1.0
+        self._texture = _texture(pixels)
+        session = self._session
+        self._error = ""
+        self.update_stats("", _line(session.samples, scene.mesograin.viewport_samples, self._warnings))
+        if status.put(status.VIEWPORT, status.Status(session.samples, region.width, region.height, session.timings(),
+                                                     self._warnings)):
+            _redraw_panels()
+
+    def _draw_texture(self, scene, region):
+        import gpu
+        from gpu_extras.presets import draw_texture_2d
+
+        gpu.state.blend_set("ALPHA_PREMULT")
+        self.bind_display_space_shader(scene)
+        # A negative height turns our top row up, without a copy.
+        draw_texture_2d(self._texture, (0, region.height), region.width, -region.height)
+        self.unbind_display_space_shader()
+        gpu.state.blend_set("NONE")
+
+    def _complain(self, kind, complaint):
+        """Puts one sentence where the artist is looking: the panel, the picture's own text line and the reports."""
+        self.update_stats("", complaint.error)
+        news = status.put(kind, complaint)
+        if news or kind == status.RENDER:
+            self.report({"ERROR"}, complaint.error)
+        if kind == status.RENDER:
+            self.error_set(complaint.error)
+            return
+        if complaint.error != self._error:  # the line above is part of the next redraw only
+            self._error = complaint.error
+            self.tag_redraw()
+        if news:
+            _redraw_panels()
+
+
+def _line(samples, target, warnings):
+    """The text over a viewport: how far it is, and what the artist has to know of it."""
+    if not warnings:
+        return f"Sample {samples}/{target}"
+    more = f" (and {len(warnings) - 1} more: Render Properties > Sampling)" if len(warnings) > 1 else ""
+    return f"Sample {samples}/{target} | {warnings[0]}{more}"
+
+
+def _redraw_panels():
+    """The panels that show what the last pictures left; nothing else redraws them after a viewport."""
+    for window in bpy.context.window_manager.windows:
+        for area in window.screen.areas:
+            if area.type == "PROPERTIES":
+                area.tag_redraw()
+
+
+def _eyes(render):
+    """The names of the views of a stereoscopic picture that are asked for; one empty name where it is not one."""
+    if not render.use_multiview:
+        return ("",)
+    views = render.stereo_views if render.views_format == "STEREO_3D" else render.views
+    return tuple(view.name for view in views if view.use)
+
+
+def _replaces_geometry(update):
+    # Blender flags geometry on a material or scene whose properties changed, too.
+    return update.is_updated_geometry and not isinstance(update.id, (bpy.types.Material, bpy.types.Scene))
+
+
+def _viewport_camera(region_data):
+    return native_module.get().Camera(np.array(region_data.view_matrix, dtype=np.float64),
+                                      np.array(region_data.window_matrix, dtype=np.float64))
+
+
+def _finished(task):
+    return bool(concurrent.futures.wait([task], timeout=POLL_SECONDS).done)
+
+
+def _texture(pixels):
+    import gpu
+
+    height, width, channels = pixels.shape
+    buffer = gpu.types.Buffer("FLOAT", height * width * channels, pixels.ravel())
+    return gpu.types.GPUTexture((width, height), format="RGBA32F", data=buffer)
+
+
+def _sentences():
+    """What may go wrong by a user's doing; each is one sentence. Anything else is a bug and may show its traceback."""
+    try:
+        return (native_module.Unavailable, native_module.get().Error)
+    except native_module.Unavailable:
+        return (native_module.Unavailable,)
+
+
+@bpy.app.handlers.persistent
+def _forget_meshes(*_arguments):
+    # Undo and redo may put other data at the same address.
+    for session in _sessions:
+        session.cache.forget()
+
+
+@bpy.app.handlers.persistent
+def _stop_sessions(*_arguments):
+    for session in list(_sessions):
+        session.stop()
+    _sessions.clear()
+    status.clear()
+
+
+HANDLERS = (("undo_post", _forget_meshes), ("redo_post", _forget_meshes), ("load_pre", _stop_sessions))
+
+
+def register():
+    bpy.utils.register_class(MesograinRenderEngine)
+    for panel in compat.borrowed_panels():
+        panel.COMPAT_ENGINES.add(MesograinRenderEngine.bl_idname)
+    for event, handler in HANDLERS:
+        getattr(bpy.app.handlers, event).append(handler)
+
+
+def unregister():
+    for event, handler in HANDLERS:
+        getattr(bpy.app.handlers, event).remove(handler)
+    _stop_sessions()
+    for panel in compat.borrowed_panels():
+        panel.COMPAT_ENGINES.discard(MesograinRenderEngine.bl_idname)
+    bpy.utils.unregister_class(MesograinRenderEngine)

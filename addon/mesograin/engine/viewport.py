@@ -1,0 +1,188 @@
+# One viewport's picture: a native view that gets better in the background while Blender keeps drawing.
+import concurrent.futures
+import time
+
+import numpy as np
+
+from .. import native_module
+from ..scene import meshes
+
+# A redraw may wait this long for samples under way: short enough for a fluid window, long enough that a fast device
+# answers a change within the same redraw.
+PATIENCE_SECONDS = 0.03
+# The display is half-float: a value beyond its largest would become Inf and blacken the viewport.
+LARGEST_DISPLAYED = 65504.0
+
+
+class Session:
+    """Owned by one engine and used from Blender's main thread; only `View.render` runs on another, without Blender's
+    data. Holds no reference into Blender."""
+
+    def __init__(self):
+        self.cache = meshes.MeshCache()
+        self.samples = 0  # in the picture last returned by `advance`; 0 after a change
+        self.stopped = False
+        self._values = None  # of the scene that was last asked for
+        self._camera = None
+        self._next_scene = self._next_camera = None  # asked for, and not yet the view's
+        self._view = None
+        self._pixels = None
+        self._kept = None  # (picture, samples) that is finished, and not yet returned
+        self._seen = False  # whether a picture of the view's scene and camera was returned
+        self._task = None
+        self._chunk = 1
+        self._target = 0
+        self._worker = concurrent.futures.ThreadPoolExecutor(max_workers=1, thread_name_prefix="mesograin-viewport")
+
+    def set_scene(self, values):
+        """Takes export.SceneValues; restarts the picture if they look different. Raises native.Error as to_native."""
+        if values == self._values:
+            return
+        self._values = None  # an error below leaves nothing that the next update could take for shown
+        self._next_scene = values.to_native()
+        self._values = values
+        self._ensure_view(1, 1)
+        self._change()
+
+    def set_camera(self, camera, width, height):
+        """Takes a native.Camera and the region's size in pixels; restarts the picture if either is new."""
+        if self._camera is not None and camera == self._camera and (width, height) == self.size:
+            return
+        self._ensure_view(width, height)
+        if (width, height) != self.size:
+            self._interrupt()  # a picture of another size is none to be shown
+            self._kept = None
+            self._view.resize(width, height)
+        self._camera = self._next_camera = camera
+        self._change()
+
+    @property
+    def size(self):
+        return self._view.width, self._view.height
+
+    @property
+    def has_scene(self):
+        return self._values is not None
+
+    def advance(self, target):
+        """Moves on towards `target` samples, for PATIENCE_SECONDS at most. Returns the picture, (height, width, 4)
+        float32 with row 0 at the top, when it is new, else None."""
+        self._target = target
+        self._keep_busy()
+        if self._task is not None:
+            concurrent.futures.wait([self._task], timeout=PATIENCE_SECONDS)
+            if self._task.done():
+                self._finish()
+        if self._kept is None:
+            return None
+        (picture, self.samples), self._kept = self._kept, None
+        return picture
+
+    def picture(self):
+        """The picture as it is, as `advance` returns it; waits for samples under way. None before the first."""
+        return self._read() if self._seen else None
+
+    def timings(self):
+        return tuple((timing["pass"], timing["milliseconds"]) for timing in self._view.timings())
+
+    @property
+    def busy(self):
+        return self._task is not None
+
+    def __del__(self):
+        # Blender lets go of an engine, and so of its session, without a call that could be relied upon.
+        self.stop()
+
+    def stop(self):
+        """Ends the work under way and frees the view; the session cannot be used afterwards."""
+        self._interrupt()
+        self._worker.shutdown()
+        self._view = self._values = self._next_scene = self._next_camera = self._kept = None
+        self.cache.forget()
+        self.stopped = True
+
+    def _ensure_view(self, width, height):
+        if self._view is None:
+            self._view = native_module.get().View(width, height)
+
+    def _change(self):
+        """Makes what was asked for the view's as soon as may be. In a drag a change comes for each redraw: were samples
+        under way always given up for it, no picture would be seen before its end. So the first picture after a change
+        is finished before the next change, and one that is finished is kept until it was drawn."""
+        if self._task is not None and self._task.done():
+            self._keep()
+        if self._task is not None and self._seen:  # which would only refine what is shown already
+            self._interrupt()
+        self._apply()
+
+    def _apply(self):
+        """Makes what was asked for the view's, if no samples are under way, and goes on."""
+        if self._task is not None:
+            return
+        if self._next_scene is not None or self._next_camera is not None:
+            if self._next_scene is not None:
+                self._view.set_scene(self._next_scene)
+            if self._next_camera is not None:
+                self._view.set_camera(self._next_camera)
+            self._next_scene = self._next_camera = None
+            self._restart()
+        self._keep_busy()
+
+    def _keep_busy(self):
+        if self._task is None and self._camera is not None and self._view.samples < self._target:
+            count = min(self._chunk, self._target - self._view.samples)
+            self._task = self._worker.submit(_render, self._view, count)
+
+    def _finish(self):
+        """Keeps the picture of the task that is done, and goes on. Raises native.Error if it failed."""
+        try:
+            self._kept = self._take()
+            self._seen = True
+        finally:
+            self._apply()
+
+    def _keep(self):
+        """As `_take`, for what a change has made old: an error in it is old, too."""
+        try:
+            self._kept = self._take()
+        except native_module.get().Error:
+            self._kept = None
+
+    def _take(self):
+        """(picture, samples) of the task that is done. Raises native.Error if it failed."""
+        task, self._task = self._task, None
+        self._adapt(task.result())
+        return self._read(), self._view.samples
+
+    def _interrupt(self):
+        if self._task is not None:
+            self._view.cancel()
+            concurrent.futures.wait([self._task])
+            self._task = None
+        self._restart()
+
+    def _restart(self):
+        self._chunk = 1
+        self.samples = 0
+        self._seen = False
+
+    def _adapt(self, seconds):
+        # A fast device does several samples between two redraws, which cost as much as many samples.
+        if seconds < PATIENCE_SECONDS / 2:
+            self._chunk *= 2
+        elif seconds > PATIENCE_SECONDS and self._chunk > 1:
+            self._chunk //= 2
+
+    def _read(self):
+        width, height = self.size
+        if self._pixels is None or self._pixels.shape[:2] != (height, width):
+            self._pixels = np.empty((height, width, 4), dtype=np.float32)
+        self._view.read(self._pixels)
+        return np.minimum(self._pixels, LARGEST_DISPLAYED, out=self._pixels)
+
+
+def _render(view, samples):
+    """Seconds that `samples` took; on the session's thread, which must not keep the session alive."""
+    started = time.perf_counter()
+    view.render(samples)
+    return time.perf_counter() - started

@@ -1,0 +1,1 @@
+# What Blender holds, as the native module wants it: copied, never borrowed.

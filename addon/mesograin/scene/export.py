@@ -1,0 +1,368 @@
+# From Blender's dependency graph to the native module's scene and camera: plain values, copied, nothing borrowed.
+import dataclasses
+import math
+import typing
+
+import numpy as np
+
+from .. import native_module
+from ..schema import parameters
+from . import heaps, lights, meshes, plain_materials, properties, surroundings
+
+
+@dataclasses.dataclass(frozen=True)
+class MaterialValues:
+    """A material as the native module takes it: coefficients per Blender unit. `name` is for messages."""
+
+    name: str
+    values: tuple  # (parameter, value) pairs
+
+    def to_native(self, native):
+        """Raises native.Error naming the material if a value is out of range, or one that its model does not know."""
+        values = dict(self.values)
+        model, profile = values["model"], values["profile"]
+        known = parameters.profiles_of(model)
+        if profile not in known:
+            raise native.Error(f"Material '{self.name}': {model} knows the profiles {', '.join(known)}; "
+                               f"got '{profile}': choose one of these.")
+        try:
+            return native.Material(**values)
+        except native.Error as error:
+            raise native.Error(f"Material '{self.name}': {error}") from error
+
+
+@dataclasses.dataclass(frozen=True)
+class InstanceValues:
+    name: str
+    mesh: object  # native.Mesh, equal by identity
+    material: MaterialValues
+    object_to_world: tuple  # 16 numbers, row-major
+    broken_uvs: bool = False  # as a meshes.MeshPart's
+
+    def to_native(self, native, material):
+        transform = np.array(self.object_to_world).reshape(4, 4)
+        return native.Instance(self.mesh, material, transform)
+
+
+@dataclasses.dataclass(frozen=True)
+class SceneValues:
+    """All that a picture depends on but its camera; two are equal if they look the same."""
+
+    instances: tuple
+    lights: tuple  # lights.SunValues and lights.PlacedLightValues
+    warnings: tuple
+    world: surroundings.WorldValues = surroundings.WorldValues()
+    heaps: tuple = ()  # heaps.HeapValues, drawn beside the instances
+
+    @property
+    def materials(self):
+        """MaterialValues of all that is drawn, each once."""
+        return tuple(dict.fromkeys(drawn.material for drawn in (*self.instances, *self.heaps)))
+
+    def with_materials(self, change):
+        """The scene with `change` of each of its MaterialValues."""
+        return dataclasses.replace(self, **{
+            field: tuple(dataclasses.replace(drawn, material=change(drawn.material)) for drawn in getattr(self, field))
+            for field in ("instances", "heaps")})
+
+    def to_native(self):
+        """The native Scene. Raises native.Error with a sentence that names the datablock at fault."""
+        native = native_module.get()
+        materials = {values: values.to_native(native) for values in self.materials}
+        instances, arrays = ([drawn.to_native(native, materials[drawn.material]) for drawn in group]
+                             for group in (self.instances, self.heaps))
+        return native.Scene(
+            instances=instances, arrays=arrays,
+            lights=[light.to_native(native) for light in self.lights], world=self.world.to_native(native))
+
+
+def scene_from_depsgraph(depsgraph, cache=None):
+    """(native.Scene, warnings) of an evaluated dependency graph; a warning is one sentence.
+    Raises native.Error if a value cannot be rendered, native_module.Unavailable without the native module."""
+    values = read_scene(depsgraph, cache or meshes.MeshCache())
+    return values.to_native(), values.warnings
+
+
+def named(kind):
+    """Blender's word for a kind of thing, such as AREA, in a sentence: with its article."""
+    return f"{'an' if kind[0] in 'AEIOU' else 'a'} {kind.lower()}"
+
+
+def is_sun(thing):
+    """Whether an object is a light that is rendered; other lights have no angle either."""
+    return thing.type == "LIGHT" and thing.data.type == "SUN"
+
+
+class Region(typing.NamedTuple):
+    """Part of a picture, in pixels from its lower left corner, as Blender counts them."""
+
+    x: int
+    y: int
+    width: int
+    height: int
+
+
+def render_region(scene, width, height):
+    """The Region of a width x height picture that the scene's render border asks for; all of it without one."""
+    render = scene.render
+    if not render.use_border:
+        return Region(0, 0, width, height)
+    # Blender multiplies in single precision and truncates, and expects exactly the size that follows.
+    left, right = (int(np.float32(edge) * np.float32(width)) for edge in (render.border_min_x, render.border_max_x))
+    lower, upper = (int(np.float32(edge) * np.float32(height)) for edge in (render.border_min_y, render.border_max_y))
+    return Region(left, lower, right - left, upper - lower)
+
+
+class Eye(typing.NamedTuple):
+    """One eye of a stereoscopic camera, in place of the camera's own."""
+
+    to_world: object  # mathutils.Matrix
+    shift_x: float  # of the lens, as a camera has it
+
+
+def camera_from_scene(depsgraph, width, height, camera=None, region=None, eye=None):
+    """native.Camera of the scene's active camera (or `camera`) for a picture of width x height pixels, or for a Region
+    of it: perspective or orthographic, with sensor fit, shift and pixel aspect as Blender has them; eye: an Eye of it.
+    Raises native.Error without a camera, or for one that has no place to look from."""
+    native = native_module.get()
+    scene = depsgraph.scene
+    camera = camera or scene.camera
+    if camera is None:
+        raise native.Error("The scene has no active camera: add one (Add > Camera) and make it active.")
+    camera = camera.evaluated_get(depsgraph)
+    render = scene.render
+    to_clip = np.array(camera.calc_matrix_camera(depsgraph, x=width, y=height, scale_x=render.pixel_aspect_x,
+                                                 scale_y=render.pixel_aspect_y), dtype=np.float64)
+    if eye is not None:
+        to_clip = _shift(eye.shift_x - camera.data.shift_x, camera.data.sensor_fit, width * render.pixel_aspect_x,
+                         height * render.pixel_aspect_y) @ to_clip
+    if region is not None:
+        to_clip = _zoom(region, width, height) @ to_clip
+    # A camera's scale does not scale its view.
+    to_world = np.array((eye.to_world if eye else camera.matrix_world).normalized(), dtype=np.float64)
+    if not np.isfinite(to_world).all() or np.linalg.det(to_world) == 0.0:
+        raise native.Error(f"Camera '{camera.name}' is scaled to nothing, or its place is no number: clear its scale "
+                           "(Object > Clear > Scale) and place it anew.")
+    try:
+        return native.Camera(np.linalg.inv(to_world), to_clip)
+    except native.Error as error:
+        raise native.Error(f"Camera '{camera.name}' has a lens that shows nothing: check its focal length or "
+                           "orthographic scale, its sensor and its clip distances.") from error
+
+
+def _shift(shift_x, sensor_fit, width, height):
+    """Clip space to clip space of a lens shifted sideways, (4, 4). width, height: of the picture, as they look. A shift
+    is a part of the side that the sensor fits, by default the longer one."""
+    fitted = height if sensor_fit == "VERTICAL" or (sensor_fit == "AUTO" and height > width) else width
+    shifted = np.eye(4)
+    shifted[0, 3] = -2.0 * shift_x * fitted / width
+    return shifted
+
+
+def _zoom(region, width, height):
+    """Clip space of the whole picture to clip space of a region of it, (4, 4)."""
+    zoom = np.eye(4)
+    for axis, (start, length, whole) in enumerate(((region.x, region.width, width),
+                                                   (region.y, region.height, height))):
+        zoom[axis, axis] = whole / length
+        zoom[axis, 3] = (whole - 2.0 * start - length) / length
+    return zoom
+
+
+def per_unit(parameter, value, millimetres_per_unit):
+    """A parameter's value as the native module takes it: coefficients in 1/mm become those per Blender unit."""
+    if parameter in ("sigma_a", "sigma_s"):
+        return tuple(channel * millimetres_per_unit for channel in value)
+    return value
+
+
+def overrides(settings, scene):
+    """{parameter: value} with coefficients in 1/mm, as a command line gives them, as {parameter: value} per Blender
+    unit of a bpy.types.Scene."""
+    unit = scene.mesograin.millimetres_per_unit
+    return {parameter: per_unit(parameter, value, unit) for parameter, value in settings.items()}
+
+
+def material_values(material, millimetres_per_unit):
+    """MaterialValues of a Blender material, or of the default grain where a slot is empty (None)."""
+    if material is None:
+        return MaterialValues("(none)", tuple(_default_parameters(millimetres_per_unit)))
+    values = dict(_parameters(material.mesograin, millimetres_per_unit))
+    if plain_materials.is_plain(material):
+        values.update(plain_materials.read(material)[0])
+    return MaterialValues(material.name_full, tuple(values.items()))
+
+
+def read_scene(depsgraph, cache):
+    """SceneValues of an evaluated dependency graph; `cache` spares reading meshes twice."""
+    reader = _Reader(depsgraph.scene.mesograin.millimetres_per_unit, cache)
+    reader.read_all(depsgraph)
+    return reader.scene_values(depsgraph.scene)
+
+
+def _parameters(grain, millimetres_per_unit):
+    for parameter in properties.MATERIAL_PARAMETERS:
+        value = per_unit(parameter, getattr(grain, parameter), millimetres_per_unit)
+        if not isinstance(value, (str, float, bool)):
+            value = tuple(value)
+        yield parameter, value
+
+
+def _default_parameters(millimetres_per_unit):
+    declared = properties.MaterialProperties.bl_rna.properties
+    default = {name: tuple(declared[name].default_array) if getattr(declared[name], "is_array", False)
+               else declared[name].default for name in properties.MATERIAL_PARAMETERS}
+    return _parameters(typing.NamedTuple("Grain", [(name, object) for name in default])(**default),
+                       millimetres_per_unit)
+
+
+class _Reader:
+    """Collects what one pass over the instances finds; complaints come once, however often an object is instanced."""
+
+    def __init__(self, millimetres_per_unit, cache):
+        self._millimetres_per_unit = millimetres_per_unit
+        self._cache = cache
+        self._materials = {}
+        self._instances = []
+        self._groups = {}  # {address of a shape: heaps.Group, or None for what is read one by one}
+        self._lights = []
+        self._warnings = {}
+
+    def read_all(self, depsgraph):
+        """Of instancers' placings there may be a million: what the shape alone tells is found once, and slices are the
+        fastest way out of a Blender matrix."""
+        groups = self._groups
+        for instance in depsgraph.object_instances:
+            if not instance.show_self:
+                continue
+            shape = instance.object
+            if not instance.is_instance:
+                self._read(shape, instance.matrix_world)
+                continue
+            data = shape.data
+            # The object may be a passing one, in which several that differ in their data follow each other.
+            key = (shape.original.as_pointer(), data and data.as_pointer())
+            if key in groups:
+                group = groups[key]
+            else:
+                group = groups[key] = self._group(shape)
+            matrix = instance.matrix_world
+            if group is None:
+                self._read(shape, matrix)
+                continue
+            extend = group.extend
+            extend(matrix[0][:])
+            extend(matrix[1][:])
+            extend(matrix[2][:])
+            extend(matrix[3][:])
+
+    def _group(self, shape):
+        """heaps.Group of a shape that can be drawn, else None."""
+        if not meshes.is_shape(shape):
+            return None
+        parts = self._cache.parts(shape)
+        if not any(part.has_area for part in parts) or any(part.broken_uvs for part in parts):
+            return None
+        return heaps.Group(shape.name, [(part.mesh, self._material(shape, part.slot)) for part in parts])
+
+    def _read(self, shape, matrix_world):
+        if meshes.is_shape(shape):
+            self._read_drawable(shape, matrix_world)
+        elif shape.type == "LIGHT":
+            self._read_light(shape, matrix_world)
+        elif shape.type == "POINTCLOUD":
+            self._read_points(shape, matrix_world)
+        elif shape.type in ("CURVES", "VOLUME"):
+            self._warn(f"Object '{shape.name}' is {named(shape.type)} object, which Mesograin does not draw: "
+                       "convert it to a mesh.")
+
+    def _read_points(self, cloud, matrix_world):
+        if len(cloud.data.points) == 0:
+            self._warn(f"Object '{cloud.name}' has no points, so nothing of it is drawn.")
+            return
+        group = heaps.Group(cloud.name, [(heaps.sphere(), self._material(cloud, 0))])
+        group.extend(heaps.point_placings(cloud.data, matrix_world))
+        self._groups[len(self._groups), cloud.name] = group
+
+    def _gather(self):
+        """Few placings become instances, which can be chosen one by one; many become heaps."""
+        found = []
+        for group in self._groups.values():
+            if group is None:
+                continue
+            values, left_out = group.values()
+            if left_out:
+                self._warn(f"{left_out} instances of '{group.name}' are scaled to nothing or have a place that is no "
+                           "number, so they are not drawn.")
+            for heap in values:
+                if len(heap) >= heaps.MANY:
+                    found.append(heap)
+                    continue
+                self._instances.extend(InstanceValues(heap.name, heap.mesh, heap.material, placing)
+                                       for placing in heap.each())
+        return tuple(found)
+
+    def scene_values(self, scene):
+        gathered = self._gather()
+        if not self._instances and not gathered:
+            self._warn("There is nothing to draw: add a mesh that is visible in renders.")
+        around, sentences = surroundings.read(scene)
+        for sentence in sentences:
+            self._warn(sentence)
+        if not self._lights and not around.shines:
+            self._warn("The scene has no light and its world is black, so everything is: add a light (Add > Light).")
+        camera = scene.camera
+        if camera is not None and camera.type == "CAMERA" and camera.data.type == "PANO":
+            self._warn(f"Camera '{camera.name}' is panoramic, which Mesograin draws as perspective.")
+        return SceneValues(tuple(self._instances), tuple(self._lights), tuple(self._warnings), around,
+                           gathered)
+
+    def _read_drawable(self, evaluated_object, matrix_world):
+        parts = self._cache.parts(evaluated_object)
+        if not parts:
+            if evaluated_object.type == "META":
+                return  # a family of metaballs is drawn with its first member
+            self._warn(f"Object '{evaluated_object.name}' has no faces, so nothing of it is drawn.")
+            return
+        if not any(part.has_area for part in parts):
+            self._warn(f"Object '{evaluated_object.name}' has faces without any area, so nothing of it is drawn: "
+                       "spread its vertices.")
+            return
+        to_world = matrix_world[0][:] + matrix_world[1][:] + matrix_world[2][:] + matrix_world[3][:]
+        if not math.isfinite(sum(to_world)):
+            self._warn(f"Object '{evaluated_object.name}' has a place, rotation or scale that is no number, so it is "
+                       "not drawn.")
+            return
+        if not meshes.has_extent(matrix_world):
+            self._warn(f"Object '{evaluated_object.name}' is scaled to nothing, so it is not drawn.")
+            return
+        for part in parts:
+            self._instances.append(InstanceValues(evaluated_object.name, part.mesh,
+                                                  self._material(evaluated_object, part.slot), to_world,
+                                                  part.broken_uvs))
+
+    def _material(self, evaluated_object, slot):
+        slots = evaluated_object.material_slots
+        # Faces may name a slot that is gone; Blender then shows the last one.
+        material = slots[min(slot, len(slots) - 1)].material if slots else None
+        key = material and material.name_full
+        if key not in self._materials:
+            self._materials[key] = material_values(material, self._millimetres_per_unit)
+            if material is not None and plain_materials.is_plain(material):
+                for sentence in plain_materials.read(material)[1]:
+                    self._warn(sentence)
+        return self._materials[key]
+
+    def _read_light(self, evaluated_object, matrix_world):
+        if not math.isfinite(sum(sum(row) for row in matrix_world)):
+            self._warn(f"Light '{evaluated_object.name}' has a place, rotation or scale that is no number, so it is "
+                       "left out.")
+            return
+        values, sentences = lights.read(evaluated_object, matrix_world)
+        for sentence in sentences:
+            self._warn(sentence)
+        if values is not None:
+            self._lights.append(values)
+
+    def _warn(self, sentence):
+        self._warnings.setdefault(sentence)

@@ -1,0 +1,151 @@
+# Blender's lights as the native module takes them: Cycles' units, copied, nothing borrowed.
+import dataclasses
+import math
+
+from .. import compat
+
+
+@dataclasses.dataclass(frozen=True)
+class SunValues:
+    name: str
+    direction_to_light: tuple
+    irradiance: tuple
+    angle: float
+
+    def to_native(self, native):
+        return _made(self.name, native, native.DirectionalLight, direction_to_light=self.direction_to_light,
+                     irradiance=self.irradiance, angle=self.angle)
+
+
+@dataclasses.dataclass(frozen=True)
+class PlacedLightValues:
+    """A light that has a place. kind: PointLight, SpotLight or AreaLight; values: (parameter, value) pairs."""
+
+    name: str
+    kind: str
+    values: tuple
+
+    def to_native(self, native):
+        return _made(self.name, native, getattr(native, self.kind), **dict(self.values))
+
+
+def _made(name, native, kind, **values):
+    try:
+        return kind(**values)
+    except native.Error as error:
+        raise native.Error(f"Light '{name}': {error}") from error
+
+
+def read(evaluated_object, matrix_world):
+    """(SunValues or PlacedLightValues or None, sentences about what is left out) of an object that is a light."""
+    light, name = evaluated_object.data, evaluated_object.name
+    factor, sentences = _emission_of_nodes(light, name)
+    power = [own * node for own, node in zip(_power(light), factor)]
+    return _READERS[light.type](light, name, power, matrix_world), sentences
+
+
+def energy_and_colour(light):
+    """(strength, colour) of a light without nodes, exposure or temperature that is as bright as this."""
+    power = [own * node for own, node in zip(_power(light), _emission_of_nodes(light, light.name)[0])]
+    strongest = max(power)
+    if strongest <= 0.0:
+        return 0.0, (1.0, 1.0, 1.0)
+    return strongest, tuple(channel / strongest for channel in power)
+
+
+def _power(light):
+    """Linear RGB: W, of a sun W/m^2."""
+    strength = light.energy * 2.0 ** getattr(light, "exposure", 0.0)
+    colour = [channel * strength for channel in light.color]
+    if getattr(light, "use_temperature", False):
+        colour = [channel * tint for channel, tint in zip(colour, light.temperature_color)]
+    return colour
+
+
+def _emission_of_nodes(light, name):
+    """(colour times strength of a light's Emission node, sentences); from Blender 5 on every light has one."""
+    white = (1.0, 1.0, 1.0)
+    if not compat.uses_nodes(light):
+        return white, ()
+    output = light.node_tree.get_output_node("CYCLES")
+    links = output.inputs["Surface"].links if output else ()
+    if not links:
+        return (0.0, 0.0, 0.0), ()
+    node = links[0].from_node
+    if node.type != "EMISSION":
+        return white, (f"Light '{name}' has the node '{node.name}', which is left out: its own colour and strength are "
+                       "rendered.",)
+    colour, strength = node.inputs["Color"], node.inputs["Strength"]
+    if colour.is_linked or strength.is_linked:
+        textured = " and ".join(socket.name.lower() for socket in (colour, strength) if socket.is_linked)
+        sentences = (f"Light '{name}' has nodes that vary its {textured}, which are left out.",)
+    else:
+        sentences = ()
+    factor = 1.0 if strength.is_linked else strength.default_value
+    tint = white if colour.is_linked else colour.default_value[:3]
+    return tuple(factor * channel for channel in tint), sentences
+
+
+def _times(power, factor):
+    return tuple(channel * factor for channel in power)
+
+
+def _sun(light, name, power, matrix_world):
+    # A sun shines along its -z axis, and its strength is irradiance already.
+    direction = matrix_world.to_3x3().col[2].normalized()
+    angle = min(light.angle, math.pi)
+    if not getattr(light, "normalize", True) and angle > 0.0:
+        power = _times(power, math.pi * math.sin(0.5 * angle) ** 2)
+    return SunValues(name, tuple(direction), tuple(power), angle)
+
+
+def _ball(light, power, matrix_world):
+    """What point lights and spots have in common."""
+    radius = light.shadow_soft_size
+    per_watt = 1.0 / (4.0 * math.pi)
+    if not getattr(light, "normalize", True):
+        per_watt = radius * radius if radius > 0.0 else 1.0 / math.pi
+    # Cycles' soft falloff came as a choice; before 4.0 there was nothing else.
+    soft = getattr(light, "use_soft_falloff", not compat.has_even_lights())
+    return {"position": tuple(matrix_world.translation), "radiant_intensity": _times(power, per_watt),
+            "radius": radius, "shape": "disc" if soft else "sphere"}
+
+
+def _point(light, name, power, matrix_world):
+    return PlacedLightValues(name, "PointLight", tuple(_ball(light, power, matrix_world).items()))
+
+
+def _spot(light, name, power, matrix_world):
+    values = _ball(light, power, matrix_world)
+    axes = matrix_world.to_3x3().col
+    values.update(axis=tuple(-axes[2].normalized()), angle=min(light.spot_size, math.pi), blend=light.spot_blend)
+    if not compat.has_even_lights():
+        values["cosine"] = True
+    else:
+        # The object's scale stretches the cone's cross-section.
+        length = axes[2].length
+        values.update(wide_x=tuple(axes[0] / length), wide_y=tuple(axes[1] / length))
+    return PlacedLightValues(name, "SpotLight", tuple(values.items()))
+
+
+def _area(light, name, power, matrix_world):
+    if hasattr(light, "cycles") and light.cycles.is_portal:
+        return None  # it only guides Cycles' rays into a room
+    axes = matrix_world.to_3x3().col
+    size_y = light.size_y if light.shape in ("RECTANGLE", "ELLIPSE") else light.size
+    half_x, half_y = 0.5 * light.size * axes[0], 0.5 * size_y * axes[1]
+    if half_x.cross(half_y).dot(axes[2]) < 0.0:
+        half_y = -half_y  # it shines along -z, mirrored or not
+    ellipse = light.shape in ("DISK", "ELLIPSE")
+    area = 4.0 * half_x.length * half_y.length * (0.25 * math.pi if ellipse else 1.0)
+    if area == 0.0:
+        return None
+    per_watt = 1.0 / math.pi if compat.has_even_lights() else 0.25
+    if getattr(light, "normalize", True):
+        per_watt /= area
+    return PlacedLightValues(name, "AreaLight", (
+        ("position", tuple(matrix_world.translation)), ("half_x", tuple(half_x)), ("half_y", tuple(half_y)),
+        ("radiance", _times(power, per_watt)), ("ellipse", ellipse), ("spread", min(light.spread, math.pi))))
+
+
+_READERS = {"SUN": _sun, "POINT": _point, "SPOT": _spot, "AREA": _area}

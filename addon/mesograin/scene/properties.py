@@ -1,0 +1,68 @@
+# What a file remembers: the grain of each material and the render settings of each scene.
+import bpy
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, FloatVectorProperty, IntProperty, PointerProperty
+
+from ..schema import parameters
+
+MATERIAL_PARAMETERS = tuple(parameters.PARAMETERS)
+
+
+def choices(name):
+    """The items of a choice. Numbered as the schema has them, so that files keep their meaning when one is added."""
+    return tuple((choice.name, choice.label, choice.sentence, number)
+                 for number, choice in enumerate(parameters.PARAMETERS[name].choices))
+
+
+# Blender tags nothing when a script sets a value of ours; an update function does, and redraws follow.
+def _tag(properties, _context):
+    properties.id_data.update_tag()
+
+
+def _property(parameter):
+    """The Blender property of a parameter of the schema."""
+    common = {"name": parameter.label, "default": parameter.default, "description": parameter.describe("mm"),
+              "update": _tag}
+    if parameter.kind == "switch":
+        return BoolProperty(**common)
+    if parameter.kind == "choice":
+        return EnumProperty(items=choices(parameter.name), **common)
+    limits = {"min": parameter.least, "max": parameter.most, "precision": parameter.precision}
+    for name, value in (("soft_min", parameter.soft_least), ("soft_max", parameter.soft_most)):
+        if value is not None:
+            limits[name] = value
+    if parameter.kind == "rgb":
+        return FloatVectorProperty(size=3, **limits, **common)
+    return FloatProperty(**limits, **common)
+
+
+class MaterialProperties(bpy.types.PropertyGroup):
+    """`material.mesograin`: one grain material, in the units and names of the native module but for 1/mm."""
+
+    __annotations__ = {name: _property(parameter) for name, parameter in parameters.PARAMETERS.items()}
+
+
+class SceneProperties(bpy.types.PropertyGroup):
+    """`scene.mesograin`: how finely to render, and how long a Blender unit is."""
+
+    samples: IntProperty(name="Render samples", default=64, min=1, max=1 << 20, soft_max=4096, update=_tag,
+                         description="Samples of each pixel in a final render")
+    viewport_samples: IntProperty(name="Viewport samples", default=64, min=1, max=1 << 20, soft_max=4096, update=_tag,
+                                  description="Samples of each pixel after which the viewport rests")
+    millimetres_per_unit: FloatProperty(
+        name="Millimetres per unit", default=1.0, min=1e-6, max=1e9, soft_min=0.001, soft_max=1000.0, precision=4,
+        update=_tag, description="Length of one Blender unit in mm; coefficients in 1/mm are multiplied by it")
+
+
+_register_classes, _unregister_classes = bpy.utils.register_classes_factory((MaterialProperties, SceneProperties))
+
+
+def register():
+    _register_classes()
+    bpy.types.Material.mesograin = PointerProperty(type=MaterialProperties)
+    bpy.types.Scene.mesograin = PointerProperty(type=SceneProperties)
+
+
+def unregister():
+    del bpy.types.Scene.mesograin
+    del bpy.types.Material.mesograin
+    _unregister_classes()

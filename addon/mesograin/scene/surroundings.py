@@ -1,0 +1,170 @@
+# Blender's world as the native module takes it: a colour, or an image of the surroundings with a rotation.
+import dataclasses
+import hashlib
+import weakref
+
+import numpy as np
+from mathutils import Euler, Matrix
+
+from .. import compat, native_module
+
+STRAIGHT = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
+
+
+@dataclasses.dataclass(frozen=True)
+class WorldValues:
+    """radiance: linear RGB, multiplies the image. image: native.Surroundings, equal by identity, or None; image_name,
+    image_digest: of Blender's image. rotation: from the world's directions to the image's, 9 numbers, row by row.
+    seen: in the picture."""
+
+    radiance: tuple = (0.0, 0.0, 0.0)
+    image: object = None
+    image_name: str = ""
+    image_digest: str = ""
+    rotation: tuple = STRAIGHT
+    seen: bool = False
+
+    @property
+    def shines(self):
+        return any(self.radiance)
+
+    def to_native(self, native):
+        rotation = np.array(self.rotation).reshape(3, 3)
+        return native.World(radiance=self.radiance, image=self.image, rotation=rotation, seen=self.seen)
+
+
+def read(scene):
+    """(WorldValues, sentences about what is left out) of a scene's world."""
+    world = scene.world
+    if world is None:
+        return WorldValues(), ()
+    values, sentences = _read(world)
+    # Where nothing shines the picture is black, whether the world is drawn or not.
+    return dataclasses.replace(values, seen=values.shines and not scene.render.film_transparent), sentences
+
+
+def _read(world):
+    if not compat.uses_nodes(world):
+        return WorldValues(tuple(world.color)), ()
+    output = world.node_tree.get_output_node("CYCLES")
+    links = output.inputs["Surface"].links if output else ()
+    if not links:
+        return WorldValues(), ()
+    background = links[0].from_node
+    if background.type != "BACKGROUND":
+        return _in_viewport_colour(world, background)
+    strength = _constant(background.inputs["Strength"])
+    if strength is None:
+        return _in_viewport_colour(world, background.inputs["Strength"].links[0].from_node)
+    colour = _constant(background.inputs["Color"])
+    if colour is not None:
+        return WorldValues(tuple(strength * channel for channel in colour[:3])), ()
+    texture = background.inputs["Color"].links[0].from_node
+    if texture.type != "TEX_ENVIRONMENT" or texture.projection != "EQUIRECTANGULAR":
+        return _in_viewport_colour(world, texture)
+    return _read_image(world, texture, strength)
+
+
+def _in_viewport_colour(world, node):
+    """For nodes that only Cycles can evaluate."""
+    return WorldValues(tuple(world.color)), (
+        f"World '{world.name}' has the node '{node.name}', which Mesograin cannot read: it is drawn in its viewport "
+        "colour. Use a colour or an equirectangular environment image.",)
+
+
+def _constant(socket):
+    """What an input is if nothing varies it, else None."""
+    if not socket.is_linked:
+        return socket.default_value
+    link = socket.links[0]
+    return link.from_socket.default_value if link.from_node.type in ("RGB", "VALUE") else None
+
+
+def _read_image(world, texture, strength):
+    image = texture.image
+    if image is None:
+        return WorldValues(), (f"World '{world.name}' has an environment texture without an image, so it is black.",)
+    rotation, sentences = _rotation(world, texture)
+    surroundings = _surroundings(image)
+    if surroundings is None:
+        return WorldValues(), (f"World '{world.name}' is black: its image '{image.name}' cannot be loaded.",)
+    return WorldValues((strength,) * 3, surroundings, image.name, _digests[surroundings], rotation), sentences
+
+
+def _rotation(world, texture):
+    """(world to image, row by row, sentences): what a Mapping node before the texture turns."""
+    links = texture.inputs["Vector"].links
+    node = links[0].from_node if links else None
+    if node is not None and node.type == "MAPPING":
+        matrix, plain = _of_mapping(node)
+        before = node.inputs["Vector"].links
+        plain = plain and (not before or _is_direction(before[0]))
+        if plain:
+            return matrix, ()
+        return matrix, (f"World '{world.name}': of its Mapping node only a constant rotation of the generated "
+                        "coordinates is rendered.",)
+    if node is None or _is_direction(links[0]):
+        return STRAIGHT, ()
+    return STRAIGHT, (f"World '{world.name}' has the node '{node.name}' before its image, which is left out.",)
+
+
+def _is_direction(link):
+    return link.from_node.type == "TEX_COORD" and link.from_socket.name == "Generated"
+
+
+def _of_mapping(node):
+    """(rotation, row by row, whether that is all the node does)."""
+    rotation, scale = node.inputs["Rotation"], node.inputs["Scale"]
+    location = node.inputs.get("Location")
+    matrix = Matrix.Identity(3) if rotation.is_linked else Euler(rotation.default_value, "XYZ").to_matrix()
+    if node.vector_type == "TEXTURE":
+        matrix = matrix.transposed()
+    moved = location is not None and node.vector_type in ("POINT", "TEXTURE") and (
+        location.is_linked or any(location.default_value))
+    plain = not (rotation.is_linked or scale.is_linked or moved) and tuple(scale.default_value) == (1.0, 1.0, 1.0)
+    return tuple(number for row in matrix for number in row), plain
+
+
+# An image is read once, as long as anybody holds it; equal pixels are one native.Surroundings, wherever they come from.
+_by_image = weakref.WeakValueDictionary()
+_by_content = weakref.WeakValueDictionary()
+_digests = weakref.WeakKeyDictionary()
+
+
+def _surroundings(image):
+    """native.Surroundings of a bpy.types.Image, or None if it has no pixels."""
+    image = image.original
+    width, height = image.size
+    if width == 0 or height == 0 or image.channels == 0:
+        return None
+    # What is painted may change at any time and has no number that says so.
+    key = None if image.is_dirty else (image.name_full, image.filepath, width, height, image.source,
+                                       image.colorspace_settings.name, tuple(getattr(image, "generated_color", ())))
+    found = key and _by_image.get(key)
+    if found is None:
+        found = _made(_linear_pixels(image, width, height))
+        if key:
+            _by_image[key] = found
+    return found
+
+
+def _made(pixels):
+    digest = hashlib.blake2b(pixels, digest_size=16).hexdigest()
+    found = _by_content.get(digest)
+    if found is None:
+        found = native_module.get().Surroundings(pixels)
+        _by_content[digest] = found
+        _digests[found] = digest
+    return found
+
+
+def _linear_pixels(image, width, height):
+    """(h, w, 3) float32, row 0 at the top; what is no light is black."""
+    pixels = np.empty(width * height * image.channels, dtype=np.float32)
+    image.pixels.foreach_get(pixels)
+    pixels = pixels.reshape(height, width, image.channels)[::-1]
+    colours = pixels[..., :3] if image.channels >= 3 else np.repeat(pixels[..., :1], 3, axis=2)
+    if not image.is_float and image.colorspace_settings.name == "sRGB":
+        colours = np.where(colours <= 0.04045, colours / 12.92, ((colours + 0.055) / 1.055) ** 2.4)
+    colours = np.nan_to_num(colours, nan=0.0, posinf=3e38, neginf=0.0).clip(min=0.0)
+    return np.ascontiguousarray(colours, dtype=np.float32)

@@ -1,0 +1,1 @@
+# What is done with both renderers: comparisons, bakes, error against time, sweeps, here or in a Blender beside.

@@ -1,0 +1,90 @@
+# Our side of a case: the scene with a model and a boundary of the comparison's choosing, rendered and timed.
+"""See `Ours`. The user's properties are read, never written."""
+
+import dataclasses
+import statistics
+
+from ... import native_module
+from ...scene import export, lights, meshes
+
+
+SEEDS = 4
+"""Our picture is the mean of this many parts of independent noise, whose spread tells how far it is sampled out."""
+
+
+class Ours:
+    """One evaluated scene and views of it, ready for any number of models.
+
+    depsgraph: evaluated. size: (width, height) in pixels. overrides: {parameter: value} for every material,
+    coefficients per scene unit. parts: of independent noise that a picture consists of, at most.
+    Raises native.Error with a sentence if the scene has no camera or cannot be drawn.
+    """
+
+    def __init__(self, depsgraph, size, overrides, parts=SEEDS):
+        native = native_module.get()
+        self._overrides = overrides
+        scene = export.read_scene(depsgraph, meshes.MeshCache())
+        # What is behind the grains is no part of a comparison: alpha tells where they are.
+        self._scene = dataclasses.replace(scene, world=dataclasses.replace(scene.world, seen=False))
+        self._views = self._all_views = [native.View(*size, seed=seed) for seed in range(parts)]
+        self._camera = export.camera_from_scene(depsgraph, *size)
+        self.warnings = scene.warnings
+
+    def parameters(self, chosen):
+        """{material name: {parameter: value}} as a case renders them. chosen: {parameter: value} of the case."""
+        return {material.name: dict(self._material(material, chosen).values) for material in self._scene.materials}
+
+    def _material(self, material, chosen):
+        values = {**dict(material.values), **self._overrides, **chosen}
+        return export.MaterialValues(material.name, tuple(values.items()))
+
+    @property
+    def samples(self):
+        """How many samples a pixel there are, over all parts."""
+        return sum(view.samples for view in self._views)
+
+    def suns(self, least_sun=0.0):
+        """[(direction to the light, full angle in radians, irradiance)] as `begin` takes them, the strongest first."""
+        suns = [light for light in self._lights(least_sun) if isinstance(light, lights.SunValues)]
+        strongest = sorted(suns, key=lambda light: -sum(light.irradiance))
+        return [(light.direction_to_light, light.angle, light.irradiance) for light in strongest]
+
+    def _lights(self, least_sun):
+        return tuple(
+            dataclasses.replace(light, angle=max(light.angle, least_sun)) if isinstance(light, lights.SunValues)
+            else light for light in self._scene.lights
+        )
+
+    def begin(self, chosen, least_sun=0.0, taps=None):
+        """Starts a picture without samples. chosen: the case's choice of parameters. least_sun: radians; narrower suns
+        are widened to this. taps: of model 3, for each sample; None as they were."""
+        changed = self._scene.with_materials(lambda material: self._material(material, chosen))
+        scene = dataclasses.replace(changed, lights=self._lights(least_sun)).to_native()
+        self._views = self._all_views
+        for view in self._views:
+            if taps:
+                view.set_taps(taps)
+            view.set_scene(scene)
+            view.set_camera(self._camera)
+
+    def refine(self, samples):
+        """The picture with at least so many samples a pixel in all, as parts of independent noise, as many samples in
+        each, whose mean it is: a list of (h, w, 4) float32."""
+        self._views = self._all_views[:samples]
+        share = -(-samples // len(self._views))
+        for view in self._views:
+            view.render(share - view.samples)
+        return [view.read() for view in self._views]
+
+    def time_frames(self, frames):
+        """(median milliseconds of a frame of one sample, {pass: median milliseconds}), the light maps being there."""
+        totals, passes = [], {}
+        view = self._views[0]
+        for _ in range(frames):
+            view.set_camera(self._camera)
+            view.render(1)
+            timings = view.timings()
+            totals.append(sum(timing["milliseconds"] for timing in timings))
+            for timing in timings:
+                passes.setdefault(timing["pass"], []).append(timing["milliseconds"])
+        return statistics.median(totals), {name: statistics.median(times) for name, times in passes.items()}

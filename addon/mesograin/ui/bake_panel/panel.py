@@ -1,0 +1,65 @@
+# The Bake panel, among the render properties.
+import bpy
+
+from ...cycles import reference_cache
+from .. import panels
+from ..side_task import panel as side_task
+from ..side_task import results
+from . import operators
+from .session import session
+
+
+def draw_settings(layout, context):
+    asked = context.scene.mesograin_bake
+    layout.use_property_split = True
+    layout.use_property_decorate = False
+    column = layout.column(align=True)
+    column.prop(asked, "width", text="Texels X")
+    column.prop(asked, "height", text="Y")
+    layout.prop(asked, "samples")
+    layout.prop(asked, "view_from")
+    layout.prop(asked, "margin")
+    layout.prop(asked, "half")
+    layout.prop(asked, "out")
+    layout.prop(asked, "compare")
+    if asked.compare:
+        layout.prop(asked, "reference")
+        layout.prop(asked, "reference_samples")
+        reference_cache.draw(layout)
+
+
+def draw_bake(layout, context):
+    """The button, or how far the bake is; then what came of the last one."""
+    bake = session.task
+    active = context.view_layer.objects.active
+    compare = context.scene.mesograin_bake.compare
+    what = f"{active.name} to EXR" if active is not None else "to EXR"
+    label = f"Bake {what} and with Cycles" if compare else f"Bake {what}"
+    side_task.draw_task(layout, context, session, operators.MESOGRAIN_OT_bake, operators.MESOGRAIN_OT_cancel_bake,
+                        "Blender is starting" if compare else "the first sample", bake.detail if bake else "",
+                        text=label, icon="RENDER_STILL")
+    if bake is None:
+        return
+    if bake.error:
+        panels.draw_sentence(layout, context, bake.error)
+    elif bake.cancelled:
+        layout.label(text="Cancelled; nothing was written.", icon="INFO")
+    elif bake.finished and not bake.running:
+        panels.draw_sentence(layout, context, bake.summary, icon="CHECKMARK")
+    for sentence in bake.sentences:
+        panels.draw_sentence(layout, context, sentence)
+    if bake.results is not None:
+        ours = "Mesograin", results.seconds(bake.results["our_seconds"])
+        results.draw(layout.box(), context, bake.entry, ours, operators.MESOGRAIN_OT_show_bake)
+
+
+class MESOGRAIN_PT_bake(panels.MesograinPanel, bpy.types.Panel):
+    bl_label = "Bake to EXR"
+    bl_context = "render"
+
+    def draw(self, context):
+        side_task.draw_settings(self.layout, context, session, draw_settings)
+        draw_bake(self.layout, context)
+
+
+register, unregister = bpy.utils.register_classes_factory((MESOGRAIN_PT_bake,))

@@ -1,0 +1,208 @@
+# What the artist sees in the Properties editor: the grain of a material, the sun, render settings and complaints.
+import textwrap
+
+import bpy
+
+from .. import native_module
+from ..engine import engine, status
+from ..scene import export, plain_materials
+from ..schema import models, parameters
+from . import presets
+
+ENGINES = {engine.MesograinRenderEngine.bl_idname}
+# At a UI scale of 1, in pixels: the average width of a character, and what margins and an icon take of a panel's width.
+CHARACTER_WIDTH = 6.5
+MARGINS = 95
+MEDIUM = ("sigma_s", "sigma_a", "scale", "g", "profile")
+REFRACTING = ("dielectric", "lambert_refracted")
+SURFACE = {"boundary": (), "eta": REFRACTING, "roughness": REFRACTING, "masking": REFRACTING,
+           "specular": ("dielectric",)}
+"""A grain's parameters as they are grouped; of the surface's, the boundaries for which they count."""
+
+
+def draw_sentence(layout, context, sentence, icon="ERROR"):
+    """A sentence of any length, wrapped to the region's width."""
+    pixels = context.region.width if context.region else 300
+    columns = max(8, int((pixels / context.preferences.system.ui_scale - MARGINS) / CHARACTER_WIDTH))
+    column = layout.column(align=True)
+    column.scale_y = 0.8
+    for line, text in enumerate(textwrap.wrap(sentence, columns)):
+        column.label(text=text, icon="BLANK1" if line and icon != "NONE" else icon)
+
+
+def draw_native_problem(layout, context):
+    """The native module's problem, if it has one; tells whether it has."""
+    problem = native_module.problem()
+    if problem:
+        draw_sentence(layout, context, problem)
+    return problem is not None
+
+
+class MesograinPanel:
+    """Shown in the Properties editor while Mesograin is the scene's render engine."""
+
+    bl_space_type = "PROPERTIES"
+    bl_region_type = "WINDOW"
+    COMPAT_ENGINES = ENGINES
+
+    @classmethod
+    def poll(cls, context):
+        return context.engine in cls.COMPAT_ENGINES
+
+
+class MESOGRAIN_PT_material(MesograinPanel, bpy.types.Panel):
+    bl_label = "Grain"
+    bl_context = "material"
+
+    @classmethod
+    def poll(cls, context):
+        return context.material is not None and super().poll(context)
+
+    def draw_header_preset(self, _context):
+        self.layout.menu(presets.MESOGRAIN_MT_presets.bl_idname, text="", icon="PRESET")
+
+    def draw(self, context):
+        layout, grain = self.layout, context.material.mesograin
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        if not draw_native_problem(layout, context):
+            self._draw_material_problem(context)
+        layout.prop(grain, "model")
+        if plain_materials.is_plain(context.material):
+            draw_sentence(layout, context, "No grain yet: it is drawn as its nodes say. Choose a model to make it one.",
+                          icon="INFO")
+        takes = models.MODELS[grain.model].parameters
+        if "sigma_s" in takes:
+            self._draw_medium(context, grain)
+        for name in takes:
+            if name not in (*MEDIUM, *SURFACE):
+                layout.prop(grain, name)
+        self._draw_surface(grain, takes)
+
+    def _draw_material_problem(self, context):
+        native = native_module.get()
+        try:
+            export.material_values(context.material, context.scene.mesograin.millimetres_per_unit).to_native(native)
+        except native.Error as error:
+            draw_sentence(self.layout, context, str(error))
+
+    def _draw_medium(self, context, grain):
+        layout = self.layout
+        layout.prop(grain, "sigma_s", text="sigma_s")
+        layout.prop(grain, "sigma_a", text="sigma_a")
+        layout.prop(grain, "scale")
+        layout.prop(grain, "g")
+        row = layout.row(heading="Profile")
+        row.menu(MESOGRAIN_MT_profiles.bl_idname, text=_profile_label(grain))
+        column = layout.column()
+        column.active = False
+        sigma_t = [(sigma_s + sigma_a) * grain.scale for sigma_s, sigma_a in zip(grain.sigma_s, grain.sigma_a)]
+        paths = ", ".join(f"{1.0 / value:.3g}" if value > 0.0 else "endless" for value in sigma_t)
+        draw_sentence(column, context, f"sigma per mm; mean free path {paths} mm", icon="NONE")
+
+    def _draw_surface(self, grain, takes):
+        for name, boundaries in SURFACE.items():
+            if name in takes:
+                row = self.layout.row()
+                row.active = name == "boundary" or "boundary" not in takes or grain.boundary in boundaries
+                row.prop(grain, name)
+
+
+class MESOGRAIN_MT_profiles(bpy.types.Menu):
+    bl_idname = "MESOGRAIN_MT_profiles"
+    bl_label = "Profile"
+    bl_description = "The theory that answers for multiple scattering, of those that the model knows"
+
+    def draw(self, context):
+        grain = context.material.mesograin
+        for profile in parameters.profiles_of(grain.model):
+            self.layout.prop_enum(grain, "profile", profile)
+
+
+def _profile_label(grain):
+    choices = parameters.PARAMETERS["profile"].choices
+    return next(choice.label for choice in choices if choice.name == grain.profile)
+
+
+class MESOGRAIN_PT_light(MesograinPanel, bpy.types.Panel):
+    bl_label = "Light"
+    bl_context = "data"
+
+    @classmethod
+    def poll(cls, context):
+        return context.light is not None and super().poll(context)
+
+    def draw(self, context):
+        layout, light = self.layout, context.light
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        layout.prop(light, "type")
+        layout.prop(light, "color")
+        layout.prop(light, "energy", text="Irradiance" if light.type == "SUN" else "Power")
+        for name in LIGHT_PROPERTIES[light.type]:
+            if hasattr(light, name):
+                layout.prop(light, name)
+        if light.type == "AREA" and light.shape in ("RECTANGLE", "ELLIPSE"):
+            layout.prop(light, "size_y")
+
+
+LIGHT_PROPERTIES = {
+    "SUN": ("angle",),
+    "POINT": ("shadow_soft_size", "use_soft_falloff"),
+    "SPOT": ("shadow_soft_size", "use_soft_falloff", "spot_size", "spot_blend"),
+    "AREA": ("shape", "size", "spread"),
+}
+"""What a light has beside its colour and strength, where this Blender has it."""
+
+
+class MESOGRAIN_PT_sampling(MesograinPanel, bpy.types.Panel):
+    bl_label = "Sampling"
+    bl_context = "render"
+
+    def draw(self, context):
+        layout, settings = self.layout, context.scene.mesograin
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        if not draw_native_problem(layout, context):
+            for sentence in status.complaints():
+                draw_sentence(layout, context, sentence)
+        column = layout.column(align=True)
+        column.prop(settings, "samples", text="Render")
+        column.prop(settings, "viewport_samples", text="Viewport")
+        layout.prop(settings, "millimetres_per_unit", text="mm per Unit")
+        layout.prop(context.scene.render, "film_transparent", text="Transparent Film")
+
+
+class MESOGRAIN_PT_statistics(MesograinPanel, bpy.types.Panel):
+    bl_label = "Device and Timings"
+    bl_context = "render"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        if draw_native_problem(self.layout, context):
+            return
+        self._draw_device(context)
+        for kind, title in ((status.RENDER, "Last render"), (status.VIEWPORT, "Viewport")):
+            latest = status.get(kind)
+            if latest is not None and latest.samples:
+                self._draw_picture(title, latest)
+
+    def _draw_device(self, context):
+        native = native_module.get()
+        try:
+            info = native.device_info()
+        except native.Error as error:
+            draw_sentence(self.layout, context, str(error))
+            return
+        kind = "hardware" if info["hardware"] else "software"
+        draw_sentence(self.layout, context, f"{info['renderer']} ({kind}), OpenGL {info['version']}", icon="DESKTOP")
+
+    def _draw_picture(self, title, latest):
+        column = self.layout.column(align=True)
+        column.label(text=f"{title}: {latest.width} x {latest.height}, {latest.samples} samples")
+        for name, milliseconds in latest.passes:
+            column.label(text=f"{name}: {milliseconds:.2f} ms", icon="BLANK1")
+
+
+register, unregister = bpy.utils.register_classes_factory(
+    (MESOGRAIN_MT_profiles, MESOGRAIN_PT_material, MESOGRAIN_PT_light, MESOGRAIN_PT_sampling, MESOGRAIN_PT_statistics))

@@ -1,0 +1,32 @@
+# How a long task is shown: its settings, the button that starts it or how far it is, and why there is none.
+from ... import compat
+from ...studies.comparison.progress import duration
+from .. import panels
+
+
+def draw_settings(layout, context, session, draw):
+    """`draw(layout, context)`, greyed while the task runs; in its place the native module's problem, if it has one."""
+    if not panels.draw_native_problem(layout, context):
+        column = layout.column()
+        column.enabled = not session.running
+        draw(column, context)
+
+
+def draw_task(layout, context, session, start, cancel, before_first_step, detail="", **button):
+    """The button of the operator `start`, or how far the task is, with `detail` on a line of its own and `cancel`'s
+    button; then what went wrong. before_first_step: what is said while nobody knows how long it takes. button: of
+    `UILayout.operator`."""
+    if session.running:
+        left = session.task.seconds_left
+        column = layout.column(align=True)
+        compat.draw_progress(column, context.window_manager, session.progress,
+                             f"about {duration(left)} left" if left is not None else before_first_step)
+        if detail:
+            column.label(text=detail)
+        layout.operator(cancel.bl_idname, icon="CANCEL")
+    else:
+        row = layout.row()
+        row.scale_y = 1.4
+        row.operator(start.bl_idname, **button)
+    if session.error:
+        panels.draw_sentence(layout, context, session.error)

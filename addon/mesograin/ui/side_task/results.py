@@ -1,0 +1,50 @@
+# How a comparison's result is shown in a panel: its numbers, the verdict, a button for each picture.
+from ...schema.models import MODELS
+from ...studies.comparison.progress import duration
+from ...studies.comparison.significance import NO_DIFFERENCE
+from ...studies.comparison.verdict import verdict
+from .. import panels
+from . import pictures
+
+
+def draw_title(box, entry):
+    """What was compared."""
+    box.label(text=f"{MODELS[entry['model']].label} against {entry['reference_title']}")
+
+
+def draw(box, context, entry, ours, button, **properties):
+    """entry: as a case of results.json, `name` and `files` included. ours: (title, text), what our side took.
+    button: the operator that shows a picture, with `properties`."""
+    draw_title(box, entry)
+    grid = box.grid_flow(row_major=True, columns=2, even_columns=True, align=True)
+    for title, value in _numbers(entry, ours):
+        grid.label(text=title)
+        grid.label(text=value)
+    test = entry["significance"]
+    same = test is not None and test["verdict"] == NO_DIFFERENCE
+    words = verdict(entry)
+    panels.draw_sentence(box, context, words[:1].upper() + words[1:], icon="CHECKMARK" if same else "INFO")
+    row = box.row(align=True)
+    for picture in pictures.pictures_of(entry):
+        made = row.operator(button.bl_idname, text=pictures.BUTTONS[picture][0])
+        made.picture = picture
+        for name, value in properties.items():
+            setattr(made, name, value)
+
+
+def seconds(number):
+    """'870 ms', '41 s', '3 min 05 s'."""
+    return duration(number) if number >= 1.0 else f"{1000.0 * number:.0f} ms"
+
+
+def _numbers(entry, ours):
+    """(title, value) pairs. The definitions are in the file of the results."""
+    # Short enough for half a panel of Blender's default width.
+    yield "Relative L1", _share(entry["metrics"]["relative_l1"])
+    yield "Noise floor", _share(entry["noise_floor"]["relative_l1"])
+    yield ours
+    yield "Cycles", seconds(entry["reference_seconds"])
+
+
+def _share(value):
+    return "none" if value is None else f"{value:.2%}"
