@@ -42,9 +42,21 @@ py::dict device_info() {
   return result;
 }
 
-// Waits without the GIL, but looks for Ctrl-C often enough that it seems immediate.
+// Python hears of Ctrl-C on its main thread alone.
+bool on_main_thread() {
+  const py::module_ threading = py::module_::import("threading");
+  return threading.attr("current_thread")().is(threading.attr("main_thread")());
+}
+
+// Waits without the GIL, but looks for Ctrl-C often enough that it seems immediate. On another thread it does not look:
+// each look is Python running beside Blender's main thread, which Blender before Python 3.12 does not always survive.
 void render(render::View& view, int samples) {
-  std::future<void> done = view.start(samples);
+  std::future<double> done = view.start(samples);
+  if (!on_main_thread()) {
+    const py::gil_scoped_release release;
+    done.get();
+    return;
+  }
   constexpr auto patience = std::chrono::milliseconds(20);
   for (;;) {
     {
@@ -61,6 +73,26 @@ void render(render::View& view, int samples) {
   if (PyErr_Occurred() != nullptr) throw py::error_already_set();
   done.get();
 }
+
+// Samples under way, for a caller who has something else to do. The work is the device thread's: no thread of Python's
+// waits for it.
+class Rendering {
+ public:
+  Rendering(render::View& view, int samples) : seconds_(view.start(samples)) {}
+
+  bool wait(std::optional<double> seconds) const {
+    if (!seconds) {
+      seconds_.wait();
+      return true;
+    }
+    return seconds_.wait_for(std::chrono::duration<double>(*seconds)) == std::future_status::ready;
+  }
+  bool done() const { return wait(0.0); }
+  double result() const { return seconds_.get(); }
+
+ private:
+  std::shared_future<double> seconds_;
+};
 
 Pixels read(render::View& view, std::optional<Pixels> out) {
   const auto height = static_cast<py::ssize_t>(view.height());
@@ -138,6 +170,12 @@ void bind_view(py::module_& module) {
              "Frees the device; views made before can no longer be used. Done by itself when Python ends.");
 
   using Release = py::call_guard<py::gil_scoped_release>;
+  py::class_<Rendering>(module, "Rendering", "Samples that View.start() began and the device's thread draws.")
+      .def_property_readonly("done", &Rendering::done, "Whether they are drawn, cancelled or failed.")
+      .def("wait", &Rendering::wait, py::arg("seconds") = py::none(), Release(),
+           "Waits for their end, if `seconds` is given at most so long; whether it has come.")
+      .def("result", &Rendering::result, Release(),
+           "Waits for their end; the seconds that they took. Raises Error as View.render() does.");
   py::class_<render::View>(
       module, "View",
       "An image of a scene, through a camera or unwrapped, that gets better with every sample (box pixel filter, "
@@ -166,7 +204,11 @@ void bind_view(py::module_& module) {
            "texel is covered.")
       .def("render", &render, py::arg("samples") = 1,
            "Adds samples to the mean. Ctrl-C or cancel() ends it after the sample under way.")
-      .def("cancel", &render::View::cancel, "Ends a render() under way in another thread after its current sample.")
+      .def(
+          "start", [](render::View& view, int samples) { return Rendering(view, samples); }, py::arg("samples") = 1,
+          Release(), "As render(), without waiting: gives the Rendering under way.")
+      .def("cancel", &render::View::cancel,
+           "Ends a render() of another thread, or what start() began, amid its current sample.")
       .def_property_readonly("samples", &render::View::samples, "Samples in the mean so far.")
       .def_property_readonly("width", &render::View::width)
       .def_property_readonly("height", &render::View::height)

@@ -1,6 +1,7 @@
 // Posts a view's calls to its frame on the context's thread.
 #include "render/view.h"
 
+#include <chrono>
 #include <map>
 #include <utility>
 
@@ -84,10 +85,11 @@ void View::set_taps(int taps) {
 
 void View::render(int samples) { start(samples).get(); }
 
-std::future<void> View::start(int samples) {
+std::future<double> View::start(int samples) {
   if (samples < 1) throw Error("A view needs at least one sample to render; got {}.", samples);
   *cancelled_ = false;
   return gl::ContextThread::instance().post([id = id_, samples, done = samples_, cancelled = cancelled_] {
+    const auto started = std::chrono::steady_clock::now();
     Frame& target = frame(id);
     const auto go_on = [&] { return !*cancelled; };
     for (int i = 0; i < samples && go_on(); ++i) {
@@ -96,6 +98,7 @@ std::future<void> View::start(int samples) {
       target.finish();
       ++*done;
     }
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   });
 }
 

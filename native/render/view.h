@@ -47,8 +47,9 @@ class View {
   /// Adds `samples` to the mean and returns when they are drawn.
   void render(int samples);
 
-  /// As render(), without waiting; the future is ready when the samples are drawn or were cancelled.
-  std::future<void> start(int samples);
+  /// As render(), without waiting; the future is ready when the samples are drawn or were cancelled, and holds the
+  /// seconds that they took.
+  std::future<double> start(int samples);
 
   /// Ends the start() or render() under way after its current sample; without one it does nothing.
   void cancel();

@@ -1,5 +1,4 @@
 # What a viewport's session draws while changes come as fast as in a drag, without a window.
-import concurrent.futures
 import time
 
 import bpy
@@ -10,6 +9,26 @@ from mesograin.scene import export, meshes
 
 SIZE = (64, 48)
 CHANGES = 12
+
+
+class Slow:
+    """A native.Rendering that takes at least so long."""
+
+    def __init__(self, task, seconds):
+        self._task, self._seconds, self._end = task, seconds, time.monotonic() + seconds
+
+    @property
+    def done(self):
+        return self.wait(0.0)
+
+    def wait(self, seconds=None):
+        left = max(self._end - time.monotonic(), 0.0)
+        time.sleep(left if seconds is None else min(left, seconds))
+        return time.monotonic() >= self._end and self._task.wait(seconds)
+
+    def result(self):
+        self._task.result()
+        return self._seconds
 
 
 @pytest.fixture
@@ -24,8 +43,7 @@ def drag(native, blend_files, monkeypatch):
     def run(sample_seconds, redraw_seconds):
         session = viewport.Session()
         sessions.append(session)
-        monkeypatch.setattr(viewport, "_render", lambda view, samples: (
-            time.sleep(sample_seconds), view.render(samples), sample_seconds)[-1])
+        monkeypatch.setattr(viewport, "_start", lambda view, samples: Slow(view.start(samples), sample_seconds))
         returned = []
         for change in range(CHANGES):
             grain.reflectance = (reflectance(change),) * 3
@@ -35,7 +53,7 @@ def drag(native, blend_files, monkeypatch):
             picture = session.advance(64)
             returned.append(None if picture is None else picture.copy())
             if redraw_seconds is None:
-                concurrent.futures.wait([session._task])
+                session._task.wait()
             else:
                 time.sleep(redraw_seconds)
         return returned, session

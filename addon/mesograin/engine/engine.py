@@ -1,5 +1,4 @@
 # The render engine as Blender calls it: final renders and Rendered viewports, both through the native module.
-import concurrent.futures
 import time
 import weakref
 
@@ -88,22 +87,21 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
         """Renders until `target` samples or a cancel, and yields their number whenever it is time to show them."""
         started = shown = time.perf_counter()
         chunk = 1
-        with concurrent.futures.ThreadPoolExecutor(max_workers=1, thread_name_prefix="mesograin-render") as worker:
-            while view.samples < target and not self.test_break():
-                chunk_started = time.perf_counter()
-                task = worker.submit(view.render, min(chunk, target - view.samples))
-                while not _finished(task):
-                    if self.test_break():
-                        view.cancel()
-                task.result()
-                now = time.perf_counter()
-                if now - chunk_started < POLL_SECONDS:
-                    chunk *= 2
-                if now - shown > SHOW_SECONDS and view.samples < target:
-                    left = (now - started) / max(view.samples, 1) * (target - view.samples)
-                    self.update_stats("", f"Sample {view.samples}/{target}, {left:.1f} s left")
-                    yield view.samples
-                    shown = time.perf_counter()
+        while view.samples < target and not self.test_break():
+            chunk_started = time.perf_counter()
+            task = view.start(min(chunk, target - view.samples))
+            while not task.wait(POLL_SECONDS):
+                if self.test_break():
+                    view.cancel()
+            task.result()
+            now = time.perf_counter()
+            if now - chunk_started < POLL_SECONDS:
+                chunk *= 2
+            if now - shown > SHOW_SECONDS and view.samples < target:
+                left = (now - started) / max(view.samples, 1) * (target - view.samples)
+                self.update_stats("", f"Sample {view.samples}/{target}, {left:.1f} s left")
+                yield view.samples
+                shown = time.perf_counter()
 
     @staticmethod
     def _show(result, view, opaque):
@@ -227,10 +225,6 @@ def _replaces_geometry(update):
 def _viewport_camera(region_data):
     return native_module.get().Camera(np.array(region_data.view_matrix, dtype=np.float64),
                                       np.array(region_data.window_matrix, dtype=np.float64))
-
-
-def _finished(task):
-    return bool(concurrent.futures.wait([task], timeout=POLL_SECONDS).done)
 
 
 def _texture(pixels):

@@ -1,7 +1,4 @@
 # One viewport's picture: a native view that gets better in the background while Blender keeps drawing.
-import concurrent.futures
-import time
-
 import numpy as np
 
 from .. import native_module
@@ -15,8 +12,9 @@ LARGEST_DISPLAYED = 65504.0
 
 
 class Session:
-    """Owned by one engine and used from Blender's main thread; only `View.render` runs on another, without Blender's
-    data. Holds no reference into Blender."""
+    """Owned by one engine and used from Blender's main thread. Samples are drawn on the native module's thread. One of
+    Python's would crash Blender now and then: before Python 3.12 its operators take another thread's hold of the
+    interpreter for their own. Holds no reference into Blender."""
 
     def __init__(self):
         self.cache = meshes.MeshCache()
@@ -32,7 +30,6 @@ class Session:
         self._task = None
         self._chunk = 1
         self._target = 0
-        self._worker = concurrent.futures.ThreadPoolExecutor(max_workers=1, thread_name_prefix="mesograin-viewport")
 
     def set_scene(self, values):
         """Takes export.SceneValues; restarts the picture if they look different. Raises native.Error as to_native."""
@@ -70,8 +67,7 @@ class Session:
         self._target = target
         self._keep_busy()
         if self._task is not None:
-            concurrent.futures.wait([self._task], timeout=PATIENCE_SECONDS)
-            if self._task.done():
+            if self._task.wait(PATIENCE_SECONDS):
                 self._finish()
         if self._kept is None:
             return None
@@ -96,7 +92,6 @@ class Session:
     def stop(self):
         """Ends the work under way and frees the view; the session cannot be used afterwards."""
         self._interrupt()
-        self._worker.shutdown()
         self._view = self._values = self._next_scene = self._next_camera = self._kept = None
         self.cache.forget()
         self.stopped = True
@@ -109,7 +104,7 @@ class Session:
         """Makes what was asked for the view's as soon as may be. In a drag a change comes for each redraw: were samples
         under way always given up for it, no picture would be seen before its end. So the first picture after a change
         is finished before the next change, and one that is finished is kept until it was drawn."""
-        if self._task is not None and self._task.done():
+        if self._task is not None and self._task.done:
             self._keep()
         if self._task is not None and self._seen:  # which would only refine what is shown already
             self._interrupt()
@@ -131,7 +126,7 @@ class Session:
     def _keep_busy(self):
         if self._task is None and self._camera is not None and self._view.samples < self._target:
             count = min(self._chunk, self._target - self._view.samples)
-            self._task = self._worker.submit(_render, self._view, count)
+            self._task = _start(self._view, count)
 
     def _finish(self):
         """Keeps the picture of the task that is done, and goes on. Raises native.Error if it failed."""
@@ -157,7 +152,7 @@ class Session:
     def _interrupt(self):
         if self._task is not None:
             self._view.cancel()
-            concurrent.futures.wait([self._task])
+            self._task.wait()
             self._task = None
         self._restart()
 
@@ -181,8 +176,5 @@ class Session:
         return np.minimum(self._pixels, LARGEST_DISPLAYED, out=self._pixels)
 
 
-def _render(view, samples):
-    """Seconds that `samples` took; on the session's thread, which must not keep the session alive."""
-    started = time.perf_counter()
-    view.render(samples)
-    return time.perf_counter() - started
+def _start(view, samples):
+    return view.start(samples)
