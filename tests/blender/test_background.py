@@ -147,7 +147,7 @@ def test_a_failing_case_is_recorded_and_a_failing_job_says_why(sphere, start, tm
 
 def test_cancel_ends_cycles_at_once(sphere, start, tmp_path):
     started = start(models=["model_1"], size=[256, 256], reference_samples=4000)
-    until(lambda: started.step is not None)
+    until(lambda: started.look() or started.step is not None)
     time.sleep(1.0)  # into Cycles' own work
     asked = time.monotonic()
     started.cancel()
@@ -175,6 +175,7 @@ from repository.user_default.mesograin.studies.background.launch import launch
 started = launch("compare", {str(tmp_path / "out")!r}, models=["model_1"], size=[256, 256], reference_samples=4000,
                  cache={str(tmp_path / "cache")!r})
 while started.step is None:
+    started.look()
     time.sleep(0.05)
 time.sleep(1.0)
 print("up", started._process.pid, started.folder, flush=True)

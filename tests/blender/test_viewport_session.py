@@ -1,4 +1,5 @@
 # What a viewport's session draws while changes come as fast as in a drag, without a window.
+import threading
 import time
 
 import bpy
@@ -118,12 +119,22 @@ def test_an_error_of_what_was_shown_before_is_not_that_of_what_is_shown(drag, na
     _, session = drag(sample_seconds=0.0, redraw_seconds=0.02)
     session.advance(64)
 
-    def fail(view, samples):
-        raise native.Error("The device is gone: find it.")
+    class Failed(Slow):
+        def result(self):
+            super().result()
+            raise native.Error("The device is gone: find it.")
 
-    monkeypatch.setattr(viewport, "_render", fail)
+    monkeypatch.setattr(viewport, "_start", lambda view, samples: Failed(view.start(samples), 0.0))
     camera = native.Camera.look_at((0.0, 0.0, 9.0), (0.0, 0.0, 0.0), (0.0, 1.0, 0.0), 45.0)
     session.set_camera(camera, *SIZE)
     with pytest.raises(native.Error, match="The device is gone"):
         for _ in range(3):
             session.advance(64)
+    session.stop()
+
+
+def test_no_thread_of_python_draws(drag):
+    # One beside an operator that looks something up in an overridden context crashes Blender before Python 3.12.
+    before = set(threading.enumerate())
+    _, session = drag(sample_seconds=0.05, redraw_seconds=0.0)
+    assert session.busy and set(threading.enumerate()) == before

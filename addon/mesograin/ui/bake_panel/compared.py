@@ -82,8 +82,12 @@ class ComparedBake:
         """Ends it at once, without a file; references that were rendered stay in the cache."""
         self._job.cancel()
 
+    def look(self):
+        """As background.job.Job."""
+        return self._job.look()
+
     def let_go(self):
-        """After a cancel: the process ends by itself, and nobody waits for it."""
+        """After a cancel: the process is looked after until its end, and nobody waits for it."""
 
     def wait(self):
         self._job.wait()

@@ -70,6 +70,10 @@ class Bake:
         """Ends it soon, without a file."""
         self.surface.cancel()
 
+    def look(self):
+        """Whether the thread, which goes on by itself, has ended."""
+        return not self._thread.is_alive()
+
     def wait(self):
         self._thread.join()
 

@@ -11,7 +11,8 @@ class Session:
     """What a kind of task must say for itself: how it starts, and what follows its end.
 
     progress: the name, on the window manager, of how much is done. shown_in: the types of areas that show it.
-    A task has `cancel()`, `running`, `fraction` (0 to 1) and `seconds_left` (None while unknown).
+    A task has `cancel()`, `running`, `fraction` (0 to 1), `seconds_left` (None while unknown) and `look()`, by which it
+    goes on and says whether nothing of it is left.
     """
 
     def __init__(self, progress, shown_in):
@@ -21,6 +22,8 @@ class Session:
         self.error = ""
         """Why there is none, or nothing came of it, one sentence."""
         self._shown_in = shown_in
+        self._under_way = None  # the task, until its end was told
+        self._leaving = []  # tasks whose end was told or that are forgotten, and that still have to clean up
         # One object each: what is unregistered must be what was registered, and a method is a new one at each look.
         self.poll = self._look
         self._forget_handler = _handler(self.forget)
@@ -43,7 +46,9 @@ class Session:
     def start(self, context):
         """Starts what the scene asks for beside the artist. Raises as `launch`."""
         self.task, self.error = self.launch(context), ""
-        bpy.app.timers.register(self.poll, first_interval=POLL_SECONDS)
+        self._under_way = self.task
+        if not bpy.app.timers.is_registered(self.poll):
+            bpy.app.timers.register(self.poll, first_interval=POLL_SECONDS, persistent=True)
 
     @property
     def running(self):
@@ -63,7 +68,9 @@ class Session:
         """Another file is another scene: what came of the last one's task is none of its own."""
         if self.task is not None:
             self.task.cancel()
-        self.task, self.error = None, ""
+        if self._under_way is not None:
+            self._leaving.append(self._under_way)
+        self.task, self._under_way, self.error = None, None, ""
 
     def redraw(self):
         for window in bpy.context.window_manager.windows:
@@ -86,17 +93,24 @@ class Session:
         delattr(bpy.types.WindowManager, self.progress)
 
     def _look(self):
-        """The timer: redraws what has news, and ends when the task does."""
-        if self.task is None:
-            return None
-        running = self.running  # asked first: news that come between would else be lost
+        """The timer: looks after tasks, until there are none."""
+        self._leaving = [task for task in self._leaving if not task.look()]
+        if self._under_way is not None:
+            self._look_at_task()
+        return POLL_SECONDS if self._under_way is not None or self._leaving else None
+
+    def _look_at_task(self):
+        """Redraws if it has news, and tells of its end."""
+        over = self.task.look()
         if self.has_news():
             self.redraw()
-        if running:
-            return POLL_SECONDS
+        if self.running:
+            return
+        self._under_way = None
+        if not over:
+            self._leaving.append(self.task)
         self.finish()
         self.redraw()
-        return None
 
 
 def _handler(forget):
