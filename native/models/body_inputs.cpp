@@ -23,10 +23,10 @@ namespace {
 
 constexpr int cosine_count = 33;
 
-// Radii from an eighth of the grain's to its double, two to an octave; the shader's look_up_body says the same.
+// Two to an octave.
 constexpr int radius_count = 9;
 
-double table_radius(int row) { return std::exp2(0.5 * row - 3.0); }
+double table_radius(int row) { return body_radius(row / (radius_count - 1.0)); }
 
 // Below 0, what a body keeps of the half-space's light, less 1; above 0, the exitance it has beyond the half-space's.
 double difference(double body, double half_space) {
@@ -124,10 +124,8 @@ Answer answer(const BodyMedium& medium, const BodySurface& surface, const Sphere
 
 std::vector<double> body_cosines() {
   std::vector<double> cosines;
-  for (int i = 0; i < cosine_count; ++i) {
-    const double u = 2.0 * i / (cosine_count - 1.0) - 1.0;
-    cosines.push_back(u * std::abs(u));
-  }
+  cosines.reserve(cosine_count);
+  for (int i = 0; i < cosine_count; ++i) cosines.push_back(body_cosine(i / (cosine_count - 1.0)));
   return cosines;
 }
 

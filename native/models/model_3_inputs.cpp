@@ -78,7 +78,7 @@ void add_kernel(const std::array<BodyMedium, 3>& media, const BodySurface& surfa
   inputs.tables["kernel"] = tables.profile;
   inputs.tables["kernel_inverse"] = tables.inverse;
   inputs.uniforms["sampling.inverse_shortest"] = static_cast<float>(1.0 / tables.shortest);
-  inputs.uniforms["sampling.columns_per_octave"] = static_cast<float>(std::log(2.0) / tables.step);
+  inputs.uniforms["sampling.columns_per_octave"] = static_cast<float>(tables.columns_per_octave());
   inputs.uniforms["sampling.turn"] = static_cast<float>(turn_in_mean_free_paths / thickest);
   inputs.uniforms["sampling.largest_depth"] = static_cast<float>(tables.largest_depth);
   if (profile != Profile::half_space) add_planar_body(channels, surface, resolution, inputs);

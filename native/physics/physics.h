@@ -24,20 +24,25 @@ using glm::clamp;
 using glm::cross;
 using glm::dot;
 using glm::exp;
+using glm::exp2;
 using glm::log;
+using glm::log2;
 using glm::max;
 using glm::min;
+using glm::sign;
 using glm::sqrt;
 
 #define pure [[nodiscard]] inline
 #define OUT(type) type&
 
+#include "physics/curved_edge.glsl"
 #include "physics/dielectric.glsl"
 #include "physics/elementary.glsl"
 #include "physics/fresnel.glsl"
 #include "physics/ggx.glsl"
 #include "physics/half_space.glsl"
 #include "physics/henyey_greenstein.glsl"
+#include "physics/tables.glsl"
 
 #undef pure
 #undef OUT

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "gl/framebuffer.h"
+#include "physics/physics.h"
 
 namespace mesograin::render {
 
@@ -28,7 +29,6 @@ namespace {
 // Of a texel's width: what the curved surface may rise above what is drawn.
 constexpr double rise_in_texels = 0.125;
 
-// As edge_rise in shaders/passes/curved_surface.glsl.
 double largest_edge_rise(const scene::Mesh& mesh, const glm::dmat4& object_to_grain) {
   const glm::dmat3 linear(object_to_grain);
   const glm::dmat3 normal_to_grain = glm::transpose(glm::inverse(linear));
@@ -42,7 +42,7 @@ double largest_edge_rise(const scene::Mesh& mesh, const glm::dmat4& object_to_gr
     }
     for (int a = 0; a < 3; ++a) {
       const int b = (a + 1) % 3;
-      largest = std::max(largest, 0.125 * std::abs(glm::dot(normals[b] - normals[a], positions[b] - positions[a])));
+      largest = std::max(largest, physics::edge_rise(positions[a], normals[a], positions[b], normals[b]));
     }
   }
   return largest;

@@ -12,6 +12,7 @@
 #include "physics/fresnel.glsl"
 #include "physics/half_space.glsl"
 #include "physics/henyey_greenstein.glsl"
+#include "physics/tables.glsl"
 // A file is pasted once, where it is met first: what this one includes must stand above, outside the condition.
 #ifndef PLANAR_PROFILE
 #include "models/half_space_light.glsl"
@@ -30,9 +31,9 @@ struct Body {
   float clear;   // what light passes through nearly unhindered, in scene units
   float eta;
   float exit_slope;
-  float exit_factor;  // diffused light leaves as factor (1 + slope mu') times the transmittance, mu' inside
+  float exit_factor;   // diffused light leaves as factor (1 + slope mu') times the transmittance, mu' inside
   vec3 decay_squared;  // of light far from where it entered, per reduced mean free path
-  float even_factor;  // light that is even inside leaves as factor times the transmittance
+  float even_factor;   // light that is even inside leaves as factor times the transmittance
 };
 uniform Body body;
 
@@ -92,8 +93,7 @@ BodyFit fit_body(SurfacePoint point, Outwards outwards, LightSample light, Light
 }
 
 vec4 look_up_body(sampler2D table, BodyFit fit) {
-  // The terminator is where light changes fastest; radii go from an eighth of the grain's to its double, evenly in the logarithm.
-  vec2 coordinate = vec2(0.5 + 0.5 * sign(fit.cosine) * sqrt(min(abs(fit.cosine), 1.0)), (log2(fit.radius) + 3.0) * 0.25);
+  vec2 coordinate = vec2(body_column(fit.cosine), body_row(fit.radius));
   vec2 size = vec2(textureSize(table, 0));
   return texture(table, (coordinate * (size - 1.0) + 0.5) / size);
 }
@@ -123,7 +123,5 @@ Spectrum flowing_lobe(BodyFit fit, SurfacePoint point, LightSample light, Spectr
 }
 
 // Where the body has less light than the half-space, the half-space's is dimmed; where it has more, the rest leaves by `lobe`.
-vec3 corrected(vec3 half_space, vec3 difference, vec3 lobe) {
-  return half_space * (1.0 + min(difference, 0.0)) + max(difference, 0.0) * lobe;
-}
+vec3 corrected(vec3 half_space, vec3 difference, vec3 lobe) { return half_space * (1.0 + min(difference, 0.0)) + max(difference, 0.0) * lobe; }
 #endif

@@ -74,16 +74,14 @@ HalfSpaceLight half_space_light(SurfacePoint point, Outwards outwards, LightSamp
   result.multiple += transmittance * material.diffuse * irradiance;
 #endif
 #if defined(MULTIPLE_TABLE) || defined(SINGLE_SCATTERING)
-  float factor =
-      half_space_factor(mu_i_refracted, mu_o_refracted, transmittance, material.inverse_eta_squared);
+  float factor = half_space_factor(mu_i_refracted, mu_o_refracted, transmittance, material.inverse_eta_squared);
 #ifdef MULTIPLE_TABLE
   result.multiple += factor * scattered.rgb * irradiance;
 #endif
 #ifdef SINGLE_SCATTERING
   float versine = refracted_versine(light.to_light, mu_i, mu_i_refracted, point.to_viewer, mu_o, mu_o_refracted, point.normal,
                                     material.inverse_eta_squared, material.sign_g);
-  result.single = factor * material.albedo *
-                  henyey_greenstein(versine, material.absolute_g, material.one_minus_absolute_g) * irradiance;
+  result.single = factor * material.albedo * henyey_greenstein(versine, material.absolute_g, material.one_minus_absolute_g) * irradiance;
 #endif
 #endif
 #endif

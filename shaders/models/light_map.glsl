@@ -77,9 +77,7 @@ LightFrame light_frame(LightSample light) {
 #endif
 }
 
-vec3 to_light_space(LightFrame frame, vec3 vector) {
-  return vec3(dot(frame.x_axis, vector), dot(frame.y_axis, vector), dot(frame.z_axis, vector));
-}
+vec3 to_light_space(LightFrame frame, vec3 vector) { return vec3(dot(frame.x_axis, vector), dot(frame.y_axis, vector), dot(frame.z_axis, vector)); }
 
 float light_map_texel_width(LightFrame frame) { return frame.texel_width; }
 

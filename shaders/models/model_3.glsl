@@ -16,6 +16,7 @@
 #include "physics/elementary.glsl"
 #include "physics/fresnel.glsl"
 #include "physics/henyey_greenstein.glsl"
+#include "physics/tables.glsl"
 
 #ifdef SINGLE_MARCHED
 struct Single {
@@ -51,8 +52,24 @@ uniform sampler2D kernel;
 uniform sampler2D kernel_inverse;
 
 uniform Spectrum beyond_sphere;  // how much counts of what is gathered beyond the sphere that fits; see physics::share_beyond_sphere
-uniform int taps;  // for one pixel and sample, over all lights
-uniform float grain_reach;  // no point of the grain is farther than this from the origin, in scene units
+uniform int taps;                // for one pixel and sample, over all lights
+uniform float grain_reach;       // no point of the grain is farther than this from the origin, in scene units
+
+// A point of the grain as a light sees it: in light space, over the grain's radius.
+struct Seen {
+  LightFrame frame;
+  int map;
+  BodyFit fit;
+  vec3 position;
+  vec3 fit_normal;  // of the sphere that fits
+};
+
+// Points of the low-discrepancy sequence: how many, from which on, and what turns them.
+struct Draws {
+  int count;
+  uint first;
+  uvec2 offset;
+};
 
 #ifdef SINGLE_MARCHED
 vec4 at_nodes(sampler2D table, vec2 coordinate) {
@@ -63,7 +80,7 @@ vec4 at_nodes(sampler2D table, vec2 coordinate) {
 
 vec4 kernel_at(float distance, float mu) {
   vec2 size = vec2(textureSize(kernel, 0));
-  float column = log2(1.0 + distance * sampling.inverse_shortest) * sampling.columns_per_octave;
+  float column = kernel_column(distance, sampling.inverse_shortest, sampling.columns_per_octave);
   return texture(kernel, (vec2(column, mu * (size.y - 1.0)) + 0.5) / size);
 }
 
@@ -88,8 +105,8 @@ const float MOST_A_SAMPLE_COUNTS = 64.0;
 // would find its own light too far away. `from_axis`: how far the place lies from the sphere's axis along the light; `cosine`: of its normal.
 float is_sphere(LightFrame frame, LightMapTexel mapped, float height, float from_axis, float radius, float cosine) {
   float texel = light_map_texel_width(frame) / body.radius;
-  float apart = mapped.lit ? abs(height - mapped.position.z / body.radius) / (light_map_tolerance(frame, cosine) / body.radius)
-                           : (radius - from_axis) / texel;
+  float apart =
+      mapped.lit ? abs(height - mapped.position.z / body.radius) / (light_map_tolerance(frame, cosine) / body.radius) : (radius - from_axis) / texel;
   return 1.0 - smoothstep(1.0, 2.0, apart);
 }
 
@@ -98,16 +115,19 @@ struct Gathered {
   Spectrum sphere;  // the same of the sphere that fits
 };
 
-Gathered gather(LightFrame frame, int map, BodyFit fit, vec3 position, vec3 normal, int count, uint first, uvec2 offset) {
+Gathered gather(Seen seen, Draws draws) {
+  LightFrame frame = seen.frame;
+  vec3 position = seen.position;
+  vec3 normal = seen.fit_normal;
   // Distances are drawn as for a plane that faces the light, half as high above as the lit surface: no lit point of a sphere is nearer than
   // that plane's, so no sample weighs more than it should.
-  float height = 0.5 * fit.above / body.radius;
+  float height = 0.5 * seen.fit.above / body.radius;
 
   // How the surface looks from the light: narrower by |cosine| across its tilt, and bent as on the sphere.
   float tilt = length(normal.xy);
   vec2 across = tilt > 1e-4 ? normal.xy / tilt : vec2(1.0, 0.0);
   float narrowest = max(abs(normal.z), 0.05);
-  float radius = fit.radius;
+  float radius = seen.fit.radius;
   vec3 centre = position - radius * normal;
   // A sphere turns within tan(angle/2) of its radius, an edge at once: light knows no difference within a few mean free paths.
   float turn = min(radius * tilt / (1.0 + narrowest), sampling.turn) + 1e-6;
@@ -123,7 +143,7 @@ Gathered gather(LightFrame frame, int map, BodyFit fit, vec3 position, vec3 norm
   Gathered sum = Gathered(Spectrum(0.0), Spectrum(0.0));
   int i = 0;
   do {
-    vec2 random = low_discrepancy(first + uint(i), offset);
+    vec2 random = low_discrepancy(draws.first + uint(i), draws.offset);
     // The driver's log errs near 1, where it only moves a sample by a thousandth of its small distance.
     float depth = depth_here - log(1.0 - random.x * within);
     vec2 drawn = texelFetch(kernel_inverse, ivec2(int(sqrt(min(depth * shares, last_share * last_share)) + 0.5), 0), 0).xy;
@@ -138,7 +158,7 @@ Gathered gather(LightFrame frame, int map, BodyFit fit, vec3 position, vec3 norm
 
     vec2 from_axis = place - centre.xy;
     float height_squared = radius * radius - dot(from_axis, from_axis);
-    LightMapTexel entry = light_map_at(frame, map, place * body.radius);
+    LightMapTexel entry = light_map_at(frame, seen.map, place * body.radius);
     float entry_height = entry.position.z / body.radius;
     float cosine = entry.normal.z;
     float lit = entry.lit ? 1.0 : 0.0;
@@ -159,8 +179,8 @@ Gathered gather(LightFrame frame, int map, BodyFit fit, vec3 position, vec3 norm
       lit *= light_reaches_entry(frame, body.radius * vec3(place, entry_height));
       sum.grain += lit * min(weight * SPECTRUM(kernel_at(apart, cosine)), Spectrum(MOST_A_SAMPLE_COUNTS));
     }
-  } while (++i < count);
-  float share = exp(-depth_here) * within / float(max(count, 1));
+  } while (++i < draws.count);
+  float share = exp(-depth_here) * within / float(max(draws.count, 1));
   return Gathered(share * sum.grain, share * sum.sphere);
 }
 
@@ -186,8 +206,8 @@ vec3 on_the_grain(Gathered gathered, vec3 sphere, float lobe, float radius) {
 #ifdef SINGLE_MARCHED
 // Where the light that reaches a point inside the grain came in.
 struct Entry {
-  float lit;     // 0 or 1; between them where the map can't tell
-  float above;   // how far above the point, over the grain's radius
+  float lit;    // 0 or 1; between them where the map can't tell
+  float above;  // how far above the point, over the grain's radius
   vec3 normal;
 };
 
@@ -211,20 +231,22 @@ Entry entry_above(LightMapTexel mapped, LightFrame frame, vec3 point, vec3 centr
 }
 
 // Radiance inside, just below the surface, per irradiance: light that was scattered once on the view ray's way through the grain.
-vec3 single_scattering(LightFrame frame, int map, BodyFit fit, vec3 position, vec3 normal, vec3 fit_normal, vec3 to_viewer, int count, uint first, uvec2 offset) {
-  float mu_o_refracted = fit.mu_o_refracted;
-  vec3 inwards = (fit.mu_o * normal - to_viewer) / body.eta - mu_o_refracted * normal;
+// `inwards`: the refracted view ray, light space.
+vec3 single_scattering(Seen seen, vec3 inwards, Draws draws) {
+  LightFrame frame = seen.frame;
+  BodyFit fit = seen.fit;
+  vec3 position = seen.position;
 
   // No farther than through the ball that holds the grain. Rounding may leave a point on the silhouette outside, which has no way at all.
   float reach = grain_reach / body.radius;
   float along = dot(position, inwards);
-  vec3 centre = position - fit.radius * fit_normal;
+  vec3 centre = position - fit.radius * seen.fit_normal;
   float longest = max(sqrt(max(along * along + reach * reach - dot(position, position), 0.0)) - along, 0.0);
 
   // How fast the light's way in grows along the view ray where that begins: as below a plane that is tilted like the entry above the point,
   // or, where light grazes it, like a sphere a mean free path below the surface.
   float mu_i = refracted_cosine(abs(fit.cosine), body.eta);
-  float tilted = mu_o_refracted - (fit.cosine < 0.0 ? 2.0 * mu_i * inwards.z : 0.0);
+  float tilted = fit.mu_o_refracted - (fit.cosine < 0.0 ? 2.0 * mu_i * inwards.z : 0.0);
   Spectrum sigma_t = SPECTRUM(single.sigma_t);
   Spectrum steepness = mu_i + sqrt(mu_i * mu_i + 2.0 / max(sigma_t * fit.radius, Spectrum(1e-6)));
   Spectrum rate = max(sigma_t * (1.0 + 2.0 * tilted / steepness), Spectrum(0.0));
@@ -237,17 +259,17 @@ vec3 single_scattering(LightFrame frame, int map, BodyFit fit, vec3 position, ve
   vec3 mean_way = longest * vec3(mean_attenuation(thickness.r), mean_attenuation(thickness.g), mean_attenuation(thickness.b));
 #endif
 
-  float shift = low_discrepancy(first, offset).x;
+  float shift = low_discrepancy(draws.first, draws.offset).x;
   Spectrum sum = Spectrum(0.0);
   Spectrum plane = Spectrum(0.0);
   int i = 0;
   do {
-    float random = min((float(i) + shift) / float(count), LARGEST_BELOW_ONE);
+    float random = min((float(i) + shift) / float(draws.count), LARGEST_BELOW_ONE);
 #ifdef GREY
     vec2 chosen = vec2(rate, mean_way);
 #else
     // One channel's distribution at a time, the mean of all three as the density.
-    float channel = 3.0 * low_discrepancy(first + uint(i), offset).y;
+    float channel = 3.0 * low_discrepancy(draws.first + uint(i), draws.offset).y;
     vec2 chosen = channel < 1.0 ? vec2(rate.r, mean_way.r) : channel < 2.0 ? vec2(rate.g, mean_way.g) : vec2(rate.b, mean_way.b);
 #endif
     float t = attenuated_distance(random, chosen.x, longest, chosen.y);
@@ -261,7 +283,7 @@ vec3 single_scattering(LightFrame frame, int map, BodyFit fit, vec3 position, ve
     Spectrum drawn = on_plane / density;
     plane += drawn;
     vec3 point = position + t * inwards;
-    Entry entry = entry_above(light_map_at(frame, map, point.xy * body.radius), frame, point, centre, fit.radius);
+    Entry entry = entry_above(light_map_at(frame, seen.map, point.xy * body.radius), frame, point, centre, fit.radius);
     if (entry.lit == 0.0) continue;
     float above = entry.above;
     float lit = entry.lit * light_reaches_entry(frame, body.radius * (point + vec3(0.0, 0.0, above)));
@@ -272,20 +294,20 @@ vec3 single_scattering(LightFrame frame, int map, BodyFit fit, vec3 position, ve
     float z = entry.normal.z - depth;
     vec3 lighting = at_nodes(refracted_light, vec2(min(tilt * inversesqrt(max((1.0 - z) * (1.0 + z), 1e-8)), 1.0), 0.5 + 0.5 * z)).rgb;
     float way_in = lighting.y * depth + max(above - depth, 0.0);
-    vec3 direction = vec3(lighting.z * (tilt > 1e-6 ? entry.normal.xy / tilt : vec2(1.0, 0.0)),
-                          -sqrt(max((1.0 - lighting.z) * (1.0 + lighting.z), 0.0)));
+    vec3 direction =
+        vec3(lighting.z * (tilt > 1e-6 ? entry.normal.xy / tilt : vec2(1.0, 0.0)), -sqrt(max((1.0 - lighting.z) * (1.0 + lighting.z), 0.0)));
     vec3 turn = direction + single.sign_g * inwards;
     float phase = henyey_greenstein(0.5 * dot(turn, turn), single.absolute_g, single.one_minus_absolute_g);
 #ifdef FORWARD_PEAK
     // Light that has met the peak before is scattered by the rest alone.
-    Spectrum scattered = mix(Spectrum(single.rest * henyey_greenstein(0.5 * dot(turn, turn), single.rest_g, 1.0 - single.rest_g)),
-                             Spectrum(phase), exp(-SPECTRUM(single.peak) * way_in));
+    Spectrum scattered = mix(Spectrum(single.rest * henyey_greenstein(0.5 * dot(turn, turn), single.rest_g, 1.0 - single.rest_g)), Spectrum(phase),
+                             exp(-SPECTRUM(single.peak) * way_in));
 #else
     float scattered = phase;
 #endif
     // Where the light's way in hardly grows, far samples are too rare for what they find; each may count as many, but not as any number.
     sum += lit * lighting.x * scattered * drawn * min(exp(rate * t - sigma_t * (t + way_in)), Spectrum(MOST_A_SAMPLE_COUNTS));
-  } while (++i < count);
+  } while (++i < draws.count);
   // What the lit plane's own integral says the samples should have found.
   return single.sigma_s * sum * mean_way / max(plane, Spectrum(1e-30));
 }
@@ -319,11 +341,13 @@ vec3 evaluate_model(SurfacePoint point, Outwards outwards, LightSample light) {
 #endif
   float tilt = sqrt(max((1.0 - fit.cosine) * (1.0 + fit.cosine), 0.0));
   vec3 fit_normal = vec3(normal.xy * (tilt * inversesqrt(max(dot(normal.xy, normal.xy), 1e-12))), fit.cosine);
-  Gathered gathered = gather(frame, light.map, fit, position, fit_normal, multiple_share, uint(sample_index * multiple_share), offset.xy);
+  Seen seen = Seen(frame, light.map, fit, position, fit_normal);
+  Gathered gathered = gather(seen, Draws(multiple_share, uint(sample_index * multiple_share), offset.xy));
   vec3 radiance = on_the_grain(gathered, sphere, lobe, fit.radius);
 #ifdef SINGLE_MARCHED
   vec3 to_viewer = to_light_space(frame, point.to_viewer);
-  vec3 inside = single_scattering(frame, light.map, fit, position, normal, fit_normal, to_viewer, single_share, uint(sample_index * single_share), offset.zw);
+  vec3 inwards = (fit.mu_o * normal - to_viewer) / body.eta - fit.mu_o_refracted * normal;
+  vec3 inside = single_scattering(seen, inwards, Draws(single_share, uint(sample_index * single_share), offset.zw));
   radiance += fit.transmittance / (body.eta * body.eta) * inside;
 #endif
   radiance *= light.irradiance;

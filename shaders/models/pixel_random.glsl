@@ -17,12 +17,6 @@ uvec4 pcg4d(uvec4 v) {
   return v;
 }
 
-// In [0, 1)^4; `stream` tells apart several uses in one pixel.
-vec4 pixel_random(int stream) {
-  uvec4 bits = pcg4d(uvec4(uvec2(gl_FragCoord.xy), uint(sample_index), uint(stream)));
-  return vec4(bits >> 8u) * (1.0 / 16777216.0);
-}
-
 // Two coordinates of point `index` of the R2 sequence (Roberts 2018) from `offset`, exact for any index.
 vec2 low_discrepancy(uint index, uvec2 offset) {
   uvec2 bits = uvec2(3242174889u, 2447445414u) * index + offset;

@@ -11,14 +11,14 @@
 #include "physics/fresnel.glsl"
 
 struct Stored {
-  vec3 x_axis;        // of the body, in the prototype's
+  vec3 x_axis;  // of the body, in the prototype's
   vec3 y_axis;
   vec3 z_axis;
-  vec3 lower;         // the first node; lengths are in units of the body
+  vec3 lower;  // the first node; lengths are in units of the body
   vec3 nodes_a_unit;
   vec3 last_node;
   vec3 sigma_t;
-  float units;        // of the body, a scene unit
+  float units;  // of the body, a scene unit
   float eta;
 };
 uniform Stored stored;
@@ -61,7 +61,8 @@ vec3 outwards_at(vec3 place) {
   vec3 step = 0.5 / stored.nodes_a_unit;
   vec3 gradient = vec3(distance_at(place + vec3(step.x, 0.0, 0.0)) - distance_at(place - vec3(step.x, 0.0, 0.0)),
                        distance_at(place + vec3(0.0, step.y, 0.0)) - distance_at(place - vec3(0.0, step.y, 0.0)),
-                       distance_at(place + vec3(0.0, 0.0, step.z)) - distance_at(place - vec3(0.0, 0.0, step.z))) / step;
+                       distance_at(place + vec3(0.0, 0.0, step.z)) - distance_at(place - vec3(0.0, 0.0, step.z))) /
+                  step;
   return gradient * inversesqrt(max(dot(gradient, gradient), 1e-12));
 }
 

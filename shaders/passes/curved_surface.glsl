@@ -11,8 +11,3 @@ vec3 on_curved_surface(vec3 position, vec3 normal, float plane_offset) {
   float rise = 0.5 * (plane_offset - dot(position, normal));
   return position + normal * (rise / max(dot(normal, normal), 0.25));
 }
-
-// How far the curved surface rises above the middle of the edge between two corners; as above, up to the normal's length.
-float edge_rise(vec3 position_a, vec3 normal_a, vec3 position_b, vec3 normal_b) {
-  return 0.125 * abs(dot(normal_b - normal_a, position_b - position_a));
-}

@@ -3,7 +3,8 @@
 in Corner {
   vec3 position;
   vec3 normal;
-} corner;
+}
+corner;
 
 out vec4 texel;
 

@@ -1,18 +1,22 @@
 // How finely a triangle of a light map is drawn: until its flat pieces are the curved surface for all that a texel can tell.
 
 #include "passes/curved_surface.glsl"
+#include "physics/prelude.glsl"
+#include "physics/curved_edge.glsl"
 
 layout(vertices = 3) out;
 
 in Corner {
   vec3 position;
   vec3 normal;
-} corners[];
+}
+corners[];
 
 out Corner {
   vec3 position;
   vec3 normal;
-} patch_corners[];
+}
+patch_corners[];
 
 uniform float largest_rise;  // of a piece above its flat triangle, in scene units
 

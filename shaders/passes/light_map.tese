@@ -7,12 +7,14 @@ layout(triangles, equal_spacing, ccw) in;
 in Corner {
   vec3 position;
   vec3 normal;
-} patch_corners[];
+}
+patch_corners[];
 
 out Corner {
   vec3 position;
   vec3 normal;
-} corner;
+}
+corner;
 
 uniform mat4 light_to_clip;
 

@@ -10,7 +10,8 @@ uniform mat4 light_to_clip;
 out Corner {
   vec3 position;
   vec3 normal;
-} corner;
+}
+corner;
 
 void main() {
   corner.position = (object_to_light * vec4(position, 1.0)).xyz;

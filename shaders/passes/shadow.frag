@@ -7,6 +7,4 @@ uniform vec4 eye;  // as in shadows.glsl
 
 out vec2 nearest;
 
-void main() {
-  nearest = vec2(eye.w > 0.0 ? -distance(from_anchor, eye.xyz) : dot(from_anchor, eye.xyz), mark);
-}
+void main() { nearest = vec2(eye.w > 0.0 ? -distance(from_anchor, eye.xyz) : dot(from_anchor, eye.xyz), mark); }

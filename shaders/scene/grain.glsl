@@ -8,8 +8,8 @@
 #endif
 
 int grain_instance;
-vec3 grain_place;         // the origin of grain space, in the world's axes, from the place amid the scene
-float grain_unit = 1.0;   // of grain space, in the scene's
+vec3 grain_place;        // the origin of grain space, in the world's axes, from the place amid the scene
+float grain_unit = 1.0;  // of grain space, in the scene's
 
 #if defined(INSTANCED) && defined(LIGHT_MAPS)
 // Of the grain that the material's tables were made for. An instance is a little larger or smaller: grain space is stretched until it is as

@@ -124,7 +124,8 @@ TEST(KernelTables, DrawNothingMoreRarelyThanItIsMet) {
       for (int k = 0; k < tables.inverse.width; ++k) {
         const glm::dvec4 drawn(tables.inverse.texels[static_cast<std::size_t>(k)]);
         ASSERT_GT(drawn.y, 0.0) << radius << ' ' << g << ' ' << k;
-        const int first = static_cast<int>(std::ceil(std::log1p(drawn.x / tables.shortest) / tables.step));
+        const int first =
+            static_cast<int>(std::ceil(kernel_column(drawn.x, 1.0 / tables.shortest, tables.columns_per_octave())));
         for (int i = 0; i < tables.profile.height; ++i)
           for (int j = std::min(first, width - 1); j < width; ++j)
             ASSERT_LT(tables.profile.texels[static_cast<std::size_t>(i * width + j)].r / drawn.y, 8.0)

@@ -22,7 +22,8 @@ constexpr double cylinder_radius = 2.0 / 3.0;
 
 glm::dvec3 kernel_at(const KernelTables& tables, double distance, double cosine) {
   const Table& profile = tables.profile;
-  const double column = std::clamp(std::log1p(distance / tables.shortest) / tables.step, 0.0, profile.width - 1.0);
+  const double column =
+      std::clamp(kernel_column(distance, 1.0 / tables.shortest, tables.columns_per_octave()), 0.0, profile.width - 1.0);
   const double row = std::clamp(cosine, 0.0, 1.0) * (profile.height - 1);
   const int left = std::min(static_cast<int>(column), profile.width - 2);
   const int lower = std::min(static_cast<int>(row), profile.height - 2);
@@ -48,7 +49,7 @@ glm::dvec3 gathered_on_sphere(const KernelTables& tables) {
 
 // The same on the cylinder, as far along its axis as the kernel reaches.
 glm::dvec3 gathered_on_cylinder(const KernelTables& tables) {
-  const double reach = tables.shortest * std::expm1((tables.profile.width - 1) * tables.step);
+  const double reach = kernel_distance(tables.profile.width - 1, tables.shortest, tables.columns_per_octave());
   glm::dvec3 sum(0.0);
   for (const QuadratureNode& around : gauss_legendre(48))
     for (const QuadratureNode& along : gauss_legendre(48)) {

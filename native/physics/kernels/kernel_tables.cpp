@@ -92,7 +92,8 @@ KernelTables kernel_tables(const std::array<const SurfaceKernel*, 3>& kernels, c
 
   std::vector<double> distances;
   distances.reserve(static_cast<std::size_t>(distance_count));
-  for (int j = 0; j < distance_count; ++j) distances.push_back(resolution * std::expm1(j * tables.step));
+  for (int j = 0; j < distance_count; ++j)
+    distances.push_back(kernel_distance(j, resolution, tables.columns_per_octave()));
 
   const double least =
       by_cosine && surface.eta > 1.0 ? std::max(refracted_cosine(0.0, surface.eta), least_cosine) : least_cosine;

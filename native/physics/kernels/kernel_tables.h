@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include "physics/body/body_medium.h"
@@ -22,6 +23,8 @@ struct KernelTables {
   double shortest = 0.0;
   double step = 0.0;
   double largest_depth = 0.0;
+
+  [[nodiscard]] double columns_per_octave() const { return std::log(2.0) / step; }
 };
 
 /// `kernels` for red, green and blue; `resolution` is the distance that must be told from none, all in grain radii.
