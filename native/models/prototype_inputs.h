@@ -5,6 +5,7 @@
 
 #include "models/material_inputs.h"
 #include "scene/mesh.h"
+#include "transport/works.h"
 
 namespace mesograin::models {
 
@@ -17,14 +18,17 @@ struct TurnAndStretch {
 /// The polar decomposition (Higham, "Computing the polar decomposition - with applications", 1986).
 TurnAndStretch turn_and_stretch(const glm::dmat3& linear);
 
-/// A prototype's inputs, and the model that they are for.
-struct Prototype {
+/// What is to be computed of a prototype's transport.
+transport::Order transport_order(const scene::Material& material, scene::MeshPointer mesh, const glm::dmat3& stretch);
+
+/// The inputs of the material's own model, once the transport is known. Throws Error as material_inputs does.
+MaterialInputs prototype_inputs(const scene::Material& material, const transport::StoredTransport& stored);
+
+/// The model, and its inputs, that draws what no transport is known of.
+struct StandIn {
   scene::Model model;
   MaterialInputs inputs;
 };
-
-/// Computed once for each prototype; takes seconds. What is too thick for the stored grid is left to model 3. Throws
-/// Error as material_inputs does, and if the mesh is not closed, crosses itself or encloses no volume.
-Prototype prototype_inputs(const scene::Material& material, const scene::Mesh& mesh, const glm::dmat3& stretch);
+StandIn stand_in(const scene::Material& material, double grain_radius);
 
 }  // namespace mesograin::models

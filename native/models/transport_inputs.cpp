@@ -18,16 +18,13 @@ using transport::StoredTransport;
 
 constexpr int terms_a_texel = 4;
 
-// Mean free paths between nodes beyond which the light just below the surface is not resolved.
-constexpr double widest_spacing = 1.5;
-
 // The medium that is similar to the material's and scatters isotropically (van de Hulst 1980, section 14.1.3).
-transport::StoredMedium stored_medium(const scene::Material& material, double unit) {
+transport::StoredMedium stored_medium(const scene::Material& material) {
   const glm::dvec3 sigma_s = material.scale * (1.0 - material.g) * material.sigma_s;
   transport::StoredMedium medium;
-  medium.sigma_t = (material.scale * material.sigma_a + sigma_s) * unit;
+  medium.sigma_t = material.scale * material.sigma_a + sigma_s;
   for (int channel = 0; channel < 3; ++channel)
-    medium.albedo[channel] = sigma_s[channel] > 0.0 ? sigma_s[channel] * unit / medium.sigma_t[channel] : 0.0;
+    medium.albedo[channel] = sigma_s[channel] > 0.0 ? sigma_s[channel] / medium.sigma_t[channel] : 0.0;
   medium.eta = material.boundary == scene::Boundary::dielectric ? material.eta : 1.0;
   return medium;
 }
@@ -108,7 +105,7 @@ MaterialInputs transport_inputs(const scene::Material& material, double /*grain_
   if (material.boundary == scene::Boundary::lambert_lambert || material.boundary == scene::Boundary::lambert_refracted)
     throw Error("boundary for the model transport must be dielectric or index_matched; got '{}'.",
                 scene::name_of(material.boundary));
-  const transport::StoredMedium medium = stored_medium(material, 1.0);
+  const transport::StoredMedium medium = stored_medium(material);
   MaterialInputs inputs;
   if (medium.eta != 1.0) inputs.defines.emplace_back("REFRACTION");
   if (medium.grey()) inputs.defines.emplace_back("GREY");
@@ -117,31 +114,30 @@ MaterialInputs transport_inputs(const scene::Material& material, double /*grain_
   return inputs;
 }
 
-Prototype prototype_inputs(const scene::Material& material, const scene::Mesh& mesh, const glm::dmat3& stretch) {
+transport::Order transport_order(const scene::Material& material, scene::MeshPointer mesh, const glm::dmat3& stretch) {
+  return {std::move(mesh), stretch, stored_medium(material)};
+}
+
+MaterialInputs prototype_inputs(const scene::Material& material, const StoredTransport& stored) {
   MaterialInputs inputs = material_inputs(material);
-  const transport::Body body(mesh, stretch);
-  const transport::StoredMedium medium = stored_medium(material, body.unit());
-  const double densest = std::max({medium.sigma_t.r, medium.sigma_t.g, medium.sigma_t.b});
-  if (densest * transport::node_spacing(body, {}) > widest_spacing) {
-    scene::Material thick = material;
-    thick.model = scene::Model::model_3;
-    const double radius = mesh.equivalent_radius() * std::cbrt(std::abs(glm::determinant(stretch)));
-    return {thick.model, material_inputs(thick, radius)};
-  }
-  const StoredTransport stored = transport::compute_transport(body, medium);
-  const glm::dmat3 axes = glm::transpose(body.axes());
-  inputs.uniforms["stored.x_axis"] = glm::vec3(axes[0]);
-  inputs.uniforms["stored.y_axis"] = glm::vec3(axes[1]);
-  inputs.uniforms["stored.z_axis"] = glm::vec3(axes[2]);
+  inputs.uniforms["stored.x_axis"] = stored.axes[0];
+  inputs.uniforms["stored.y_axis"] = stored.axes[1];
+  inputs.uniforms["stored.z_axis"] = stored.axes[2];
   inputs.uniforms["stored.lower"] = stored.lower;
   inputs.uniforms["stored.nodes_a_unit"] = 1.0F / stored.spacing;
   inputs.uniforms["stored.last_node"] = glm::vec3(stored.size - 1);
   inputs.uniforms["stored.units"] = static_cast<float>(1.0 / stored.unit);
-  inputs.uniforms["stored.sigma_t"] = glm::vec3(medium.sigma_t);
+  inputs.uniforms["stored.sigma_t"] = glm::vec3(stored.unit * stored_medium(material).sigma_t);
   inputs.tables["lobes"] = lobes_table(stored);
   inputs.volumes["sources"] = sources_volume(stored);
   inputs.volumes["distances"] = {stored.size.x, stored.size.y, stored.size.z, 1, stored.distances};
-  return {material.model, std::move(inputs)};
+  return inputs;
+}
+
+StandIn stand_in(const scene::Material& material, double grain_radius) {
+  scene::Material other = material;
+  other.model = scene::Model::model_3;
+  return {other.model, material_inputs(other, grain_radius)};
 }
 
 }  // namespace mesograin::models

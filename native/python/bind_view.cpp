@@ -180,7 +180,11 @@ void bind_view(py::module_& module) {
       module, "View",
       "An image of a scene, through a camera or unwrapped, that gets better with every sample (box pixel filter, "
       "one pixel wide). Many views share one device and what was sent to it.")
-      .def(py::init<int, int, std::uint32_t>(), py::arg("width"), py::arg("height"), py::arg("seed") = 0, Release())
+      .def(py::init<int, int, std::uint32_t, bool>(), py::arg("width"), py::arg("height"), py::arg("seed") = 0,
+           py::arg("patient") = true, Release(),
+           "Light's transport in meshes takes seconds to compute, in the background. A patient view draws nothing "
+           "before "
+           "it is known; another draws what is known, and take_news() tells when it is more.")
       .def("resize", &render::View::resize, py::arg("width"), py::arg("height"), Release(),
            "Reallocates the targets and nothing else.")
       .def("set_scene", &render::View::set_scene, py::arg("scene"), Release(),
@@ -202,6 +206,13 @@ void bind_view(py::module_& module) {
            "than once, by the first of which the texel is baked, 'triangles_outside': that reach out of [0, 1]^2, "
            "where they are cut off, 'warnings': sentences about both}. Raises Error if nothing is being baked or no "
            "texel is covered.")
+      .def("take_news", &render::View::take_news, Release(),
+           "Takes in what has become known of light's transport since; if anything has, restarts the accumulation. "
+           "Returns whether it did.")
+      .def_property_readonly("preparing", &render::View::preparing,
+                             "The share that is done of what the scene's picture waits for; None if all is known.")
+      .def_property_readonly("warnings", &render::View::warnings,
+                             "One sentence for each thing that is not drawn by the model asked for.")
       .def("render", &render, py::arg("samples") = 1,
            "Adds samples to the mean. Ctrl-C or cancel() ends it after the sample under way.")
       .def(

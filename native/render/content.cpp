@@ -107,8 +107,34 @@ Content::Content(DeviceCache& cache, const scene::Scene& scene, Content before,
     bounds_.include(glm::dvec3(ball), ball.w);
     over_ground_.include(glm::dvec3(ball), ball.w);
   }
-  shadows_ = in_arrays + draws_.size() > 1 ||
+  find_shadows();
+}
+
+void Content::find_shadows() {
+  shadows_ = (instances_ ? instances_->count() : 0) + draws_.size() > 1 ||
              std::any_of(draws_.begin(), draws_.end(), [this](const Draw& draw) { return shades_itself(draw); });
+}
+
+void Content::take_news() {
+  for (Draw& draw : draws_)
+    if (!draw.material->light_maps()) draw.light_maps.reset();
+  find_shadows();
+}
+
+int Content::version() const {
+  int sum = 0;
+  for (const Draw& draw : draws_) sum += draw.material->version();
+  return sum;
+}
+
+std::vector<std::shared_ptr<const transport::Computation>> Content::computations(const DeviceCache& cache) const {
+  std::vector<std::shared_ptr<const transport::Computation>> found;
+  for (const Draw& draw : draws_) {
+    std::shared_ptr<const transport::Computation> computation = cache.computation(*draw.material);
+    if (computation && std::find(found.begin(), found.end(), computation) == found.end())
+      found.push_back(std::move(computation));
+  }
+  return found;
 }
 
 void Content::tell_objects() {

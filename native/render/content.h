@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <glm/vec3.hpp>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -24,6 +25,15 @@ class Content {
 
   std::vector<Draw>& draws() { return draws_; }
   const std::vector<Draw>& draws() const { return draws_; }
+
+  /// Has draws go without what their materials need no more.
+  void take_news();
+
+  /// Sum of the versions of all materials.
+  int version() const;
+
+  /// What materials wait for, each once.
+  std::vector<std::shared_ptr<const transport::Computation>> computations(const DeviceCache& cache) const;
 
   /// Null if there are no arrays.
   Instances* instances() { return instances_ ? &*instances_ : nullptr; }
@@ -60,6 +70,7 @@ class Content {
 
  private:
   void tell_objects();
+  void find_shadows();
 
   std::vector<Draw> draws_;
   std::optional<Instances> instances_;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 #include <utility>
 
 #include "models/prototype_inputs.h"
@@ -22,6 +23,12 @@ bool is_same(const glm::dmat3& a, const glm::dmat3& b) {
     size += glm::dot(a[i], a[i]);
   }
   return difference <= 1e-12 * size;
+}
+
+// The radius that stands for all within half a percent.
+double typical(double grain_radius) {
+  constexpr double radii_an_octave = 64.0;
+  return std::exp2(std::round(std::log2(grain_radius) * radii_an_octave) / radii_an_octave);
 }
 
 }  // namespace
@@ -42,6 +49,12 @@ DeviceMaterial::DeviceMaterial(scene::Model model, models::MaterialInputs inputs
     texture.upload(volume.channels == 1 ? GL_RED : GL_RGBA, volume.texels.data());
     volumes_.emplace(name, std::move(texture));
   }
+}
+
+void DeviceMaterial::become(scene::Model model, models::MaterialInputs inputs) {
+  const int version = version_ + 1;
+  *this = DeviceMaterial(model, std::move(inputs));
+  version_ = version;
 }
 
 void DeviceMaterial::bind(const gl::Program& program) const {
@@ -83,10 +96,7 @@ bool DeviceCache::convex(const scene::MeshPointer& mesh) {
 }
 
 std::shared_ptr<DeviceMaterial> DeviceCache::material(const scene::Material& material, double grain_radius) {
-  constexpr double radii_an_octave = 64.0;
-  const double radius = scene::traits_of(material.model).grain_radius
-                            ? std::exp2(std::round(std::log2(grain_radius) * radii_an_octave) / radii_an_octave)
-                            : 1.0;
+  const double radius = scene::traits_of(material.model).grain_radius ? typical(grain_radius) : 1.0;
   for (const MaterialEntry& entry : materials_)
     if (entry.source == material && entry.grain_radius == radius) return entry.device;
   materials_.push_back({material, radius, send(material.model, models::material_inputs(material, radius))});
@@ -97,15 +107,44 @@ std::shared_ptr<DeviceMaterial> DeviceCache::material(const scene::Material& mat
                                                       const glm::dmat3& stretch) {
   for (const PrototypeEntry& entry : prototypes_)
     if (entry.source == material && entry.mesh.lock() == mesh && is_same(entry.stretch, stretch)) return entry.device;
-  models::Prototype prototype = models::prototype_inputs(material, *mesh, stretch);
-  prototypes_.push_back({material, mesh, stretch, send(prototype.model, std::move(prototype.inputs))});
+  models::material_inputs(material);  // throws for what the model cannot answer
+  const double radius = mesh->equivalent_radius() * std::cbrt(std::abs(glm::determinant(stretch)));
+  models::StandIn stand_in = models::stand_in(material, typical(std::max(radius, 1e-30)));
+  prototypes_.push_back({material, mesh, stretch,
+                         transport::Works::instance().ask(models::transport_order(material, mesh, stretch)), 0,
+                         send(stand_in.model, std::move(stand_in.inputs))});
+  take_news(prototypes_.back());
   return prototypes_.back().device;
+}
+
+void DeviceCache::take_news() {
+  for (PrototypeEntry& entry : prototypes_) take_news(entry);
+}
+
+void DeviceCache::take_news(PrototypeEntry& entry) {
+  const transport::News news = entry.computation->news();
+  if (news.number == entry.news) return;
+  entry.news = news.number;
+  if (!news.stored) return;
+  models::MaterialInputs inputs = models::prototype_inputs(entry.source, *news.stored);
+  count(inputs);
+  entry.device->become(entry.source.model, std::move(inputs));
+}
+
+std::shared_ptr<const transport::Computation> DeviceCache::computation(const DeviceMaterial& material) const {
+  for (const PrototypeEntry& entry : prototypes_)
+    if (entry.device.get() == &material) return entry.computation;
+  return nullptr;
+}
+
+void DeviceCache::count(const models::MaterialInputs& inputs) {
+  for (const auto& [name, table] : inputs.tables) sent_.bytes += table.texels.size() * sizeof(glm::vec4);
+  for (const auto& [name, volume] : inputs.volumes) sent_.bytes += volume.texels.size() * 2;
 }
 
 std::shared_ptr<DeviceMaterial> DeviceCache::send(scene::Model model, models::MaterialInputs inputs) {
   ++sent_.materials;
-  for (const auto& [name, table] : inputs.tables) sent_.bytes += table.texels.size() * sizeof(glm::vec4);
-  for (const auto& [name, volume] : inputs.volumes) sent_.bytes += volume.texels.size() * 2;
+  count(inputs);
   return std::make_shared<DeviceMaterial>(model, std::move(inputs));
 }
 

@@ -16,6 +16,7 @@
 #include "models/material_inputs.h"
 #include "render/details.h"
 #include "scene/scene.h"
+#include "transport/works.h"
 
 namespace mesograin::render {
 
@@ -38,6 +39,12 @@ class DeviceMaterial {
   /// Whether its model reads light maps.
   bool light_maps() const { return light_maps_; }
 
+  /// Grows when it becomes another.
+  int version() const { return version_; }
+
+  /// From now on it is this one, wherever it is used.
+  void become(scene::Model model, models::MaterialInputs inputs);
+
   /// Sets every uniform and binds every table on one of its programs.
   void bind(const gl::Program& program) const;
 
@@ -48,6 +55,7 @@ class DeviceMaterial {
   std::map<std::string, gl::Texture> tables_;
   std::map<std::string, gl::Volume> volumes_;
   bool light_maps_;
+  int version_ = 0;
 };
 
 /// Counts of what was sent to the device since it started.
@@ -72,9 +80,16 @@ class DeviceCache {
   /// `grain_radius` as in models::material_inputs; materials are shared by grains within half a percent.
   std::shared_ptr<DeviceMaterial> material(const scene::Material& material, double grain_radius);
 
-  /// For a model that depends on the mesh, which `stretch` stretches; see models::prototype_inputs.
+  /// For a model that depends on the mesh, which `stretch` stretches. Until its transport is known, and where none can
+  /// be, it is one that stands in for it.
   std::shared_ptr<DeviceMaterial> material(const scene::Material& material, const scene::MeshPointer& mesh,
                                            const glm::dmat3& stretch);
+
+  /// Has materials whose transport is better known by now become those.
+  void take_news();
+
+  /// What a material waits for; null if it is no prototype's.
+  std::shared_ptr<const transport::Computation> computation(const DeviceMaterial& material) const;
 
   /// The program that shades with a material; compiled on first use.
   const gl::Program& shading(const DeviceMaterial& material, const Shading& shading);
@@ -115,9 +130,13 @@ class DeviceCache {
     scene::Material source;
     std::weak_ptr<const scene::Mesh> mesh;
     glm::dmat3 stretch;
+    std::shared_ptr<const transport::Computation> computation;
+    int news = 0;  // taken in
     std::shared_ptr<DeviceMaterial> device;
   };
 
+  void take_news(PrototypeEntry& entry);
+  void count(const models::MaterialInputs& inputs);
   std::shared_ptr<DeviceMaterial> send(scene::Model model, models::MaterialInputs inputs);
 
   const gl::Program& program(const std::string& name, const std::vector<gl::Stage>& stages);

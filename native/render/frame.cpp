@@ -67,6 +67,7 @@ void Frame::resize(int width, int height) {
 
 void Frame::set_scene(scene::Scene scene) {
   content_ = std::make_unique<Content>(cache_, scene, std::move(*content_));
+  version_ = content_->version();
   lighting_.set(scene);
   scene_ = std::move(scene);
   baked_.clear();
@@ -94,13 +95,13 @@ void Frame::set_bake(const Bake& bake) {
       throw Error("Baking needs UVs, and the mesh of instance {} has none: unwrap it first.", instance);
   }
   content_ = std::make_unique<Content>(cache_, scene_, std::move(*content_), bake.instances);
+  version_ = content_->version();
   baked_.clear();
   receivers_.clear();
   selection_.reset();
   for (const std::size_t instance : bake.instances) {
     const std::size_t index = content_->draw_of(instance);
-    const Draw& draw = content_->draws()[index];
-    baked_.push_back({index, &cache_.shading(*draw.material, shading(*draw.material, true, false))});
+    baked_.push_back(index);
     receivers_.grains.push_back(content_->receiver(content_->number(index)).ball);
   }
   bake_ = bake.view_from;
@@ -120,8 +121,8 @@ UvUse Frame::uv_use() {
   program.set("jitter", glm::vec2(0.0F));
   UvUse use;
   const auto outside = [](const glm::vec2& uv) { return glm::any(glm::notEqual(uv, glm::clamp(uv, 0.0F, 1.0F))); };
-  for (const Baked& baked : baked_) {
-    const Draw& draw = content_->draws()[baked.draw];
+  for (const std::size_t baked : baked_) {
+    const Draw& draw = content_->draws()[baked];
     draw.mesh->draw();
     const std::vector<glm::vec2>& uvs = draw.source->uvs();
     for (const glm::uvec3& triangle : draw.source->triangles())
@@ -134,6 +135,15 @@ UvUse Frame::uv_use() {
     if (count.x > 1.0F) ++use.overlapping;
   }
   return use;
+}
+
+bool Frame::take_news() {
+  cache_.take_news();
+  if (content_->version() == version_) return false;
+  version_ = content_->version();
+  content_->take_news();
+  samples_ = 0;
+  return true;
 }
 
 void Frame::set_taps(int taps) {
@@ -185,7 +195,7 @@ bool Frame::update_light_maps(const GoOn& go_on) {
   };
   if (bake_)
     return std::all_of(baked_.begin(), baked_.end(),
-                       [&](const Baked& baked) { return update(content_->draws()[baked.draw]); });
+                       [&](std::size_t baked) { return update(content_->draws()[baked]); });
   for (Draw& draw : content_->draws())
     if (!update(draw)) return false;
 
@@ -318,16 +328,16 @@ void Frame::shade_surfaces(std::size_t first) {
 void Frame::shade_unwrapped(const glm::vec2& jitter) {
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_LESS);
-  for (const Baked& baked : baked_) {
-    const Draw& draw = content_->draws()[baked.draw];
-    const gl::Program& program = *baked.program;
+  for (const std::size_t baked : baked_) {
+    const Draw& draw = content_->draws()[baked];
+    const gl::Program& program = cache_.shading(*draw.material, shading(*draw.material, true, false));
     draw.material->bind(program);
     set_common(program);
     set_draw(program, draw);
     const glm::dmat4 object_to_grain = draw.object_to_grain();
     program.set("jitter", jitter);
     program.set("from_camera", static_cast<int>(bake_ == ViewFrom::active_camera));
-    program.set("instance", static_cast<int>(content_->number(baked.draw)));
+    program.set("instance", static_cast<int>(content_->number(baked)));
     program.set("object_to_grain", glm::mat4(object_to_grain));
     program.set("normal_to_grain", glm::mat3(glm::transpose(glm::inverse(glm::dmat3(object_to_grain)))));
     draw.mesh->draw();

@@ -56,6 +56,15 @@ class Frame {
   /// is false.
   bool add_sample(const GoOn& go_on);
 
+  /// Takes in what has become known since the scene was set; if anything has, the samples begin anew. Returns whether
+  /// they did.
+  bool take_news();
+
+  /// What the scene's materials wait for.
+  std::vector<std::shared_ptr<const transport::Computation>> computations() const {
+    return content_->computations(cache_);
+  }
+
   /// Waits until the device has drawn what was asked for.
   void finish() const;
 
@@ -78,11 +87,6 @@ class Frame {
     gl::Framebuffer surfaces;
     gl::Framebuffer shade;
     gl::Framebuffer accumulate;
-  };
-  /// What is drawn of an instance that is baked.
-  struct Baked {
-    std::size_t draw;
-    const gl::Program* program;
   };
 
   bool update_light_maps(const GoOn& go_on);
@@ -123,6 +127,7 @@ class Frame {
   int height_;
   std::uint32_t seed_;
   int samples_ = 0;
+  int version_ = 0;  // of the content, as it was last drawn
   scene::Camera camera_;
   std::optional<ViewFrom> bake_;
   Lighting lighting_;
@@ -132,7 +137,7 @@ class Frame {
   std::optional<gl::Buffer> device_randoms_;
   scene::Scene scene_;
   std::unique_ptr<Content> content_ = std::make_unique<Content>();
-  std::vector<Baked> baked_;
+  std::vector<std::size_t> baked_;              // draws
   std::unique_ptr<DeviceSelection> selection_;  // for the camera; null if not known yet or without instances
   Receivers receivers_;                         // empty if not known yet
   ShadowMaps shadow_maps_;

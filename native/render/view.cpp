@@ -1,6 +1,7 @@
 // Posts a view's calls to its frame on the context's thread.
 #include "render/view.h"
 
+#include <algorithm>
 #include <chrono>
 #include <map>
 #include <utility>
@@ -33,7 +34,8 @@ std::uint64_t next_id() {
 
 }  // namespace
 
-View::View(int width, int height, std::uint32_t seed) : id_(next_id()), width_(width), height_(height) {
+View::View(int width, int height, std::uint32_t seed, bool patient)
+    : id_(next_id()), width_(width), height_(height), patient_(patient) {
   gl::ContextThread::instance().run([&] {
     Device& here = device();
     here.frames.try_emplace(id_, here.cache, width, height, seed);
@@ -58,7 +60,10 @@ void View::resize(int width, int height) {
 
 void View::set_scene(scene::Scene scene) {
   validate(scene);
-  gl::ContextThread::instance().run([&] { frame(id_).set_scene(std::move(scene)); });
+  computations_ = gl::ContextThread::instance().run([&] {
+    frame(id_).set_scene(std::move(scene));
+    return frame(id_).computations();
+  });
   *samples_ = 0;
 }
 
@@ -83,15 +88,45 @@ void View::set_taps(int taps) {
   *samples_ = 0;
 }
 
+bool View::take_news() {
+  const bool news = gl::ContextThread::instance().run([&] { return frame(id_).take_news(); });
+  if (news) *samples_ = 0;
+  return news;
+}
+
+std::optional<double> View::preparing() const {
+  double sum = 0.0;
+  bool final = true;
+  for (const auto& computation : computations_) {
+    const bool known = computation->news().final;
+    sum += known ? 1.0 : computation->progress();
+    final = final && known;
+  }
+  if (final) return std::nullopt;
+  return sum / static_cast<double>(computations_.size());
+}
+
+std::vector<std::string> View::warnings() const {
+  std::vector<std::string> sentences;
+  for (const auto& computation : computations_) {
+    const std::string unsuitable = computation->news().unsuitable;
+    if (unsuitable.empty()) continue;
+    const std::string sentence = unsuitable + " It is drawn by model_3.";
+    if (std::find(sentences.begin(), sentences.end(), sentence) == sentences.end()) sentences.push_back(sentence);
+  }
+  return sentences;
+}
+
 void View::render(int samples) { start(samples).get(); }
 
 std::future<double> View::start(int samples) {
   if (samples < 1) throw Error("A view needs at least one sample to render; got {}.", samples);
   *cancelled_ = false;
-  return gl::ContextThread::instance().post([id = id_, samples, done = samples_, cancelled = cancelled_] {
+  const auto draw = [id = id_, samples, done = samples_, cancelled = cancelled_, patient = patient_] {
     const auto started = std::chrono::steady_clock::now();
     Frame& target = frame(id);
     const auto go_on = [&] { return !*cancelled; };
+    if (patient && target.take_news()) *done = 0;
     for (int i = 0; i < samples && go_on(); ++i) {
       if (!target.add_sample(go_on)) break;
       // Without this the driver would queue samples faster than it draws them, and cancelling would come too late.
@@ -99,6 +134,15 @@ std::future<double> View::start(int samples) {
       ++*done;
     }
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+  };
+  if (!patient_ || !preparing()) return gl::ContextThread::instance().post(draw);
+  // The context's thread goes on drawing for others meanwhile.
+  return std::async(std::launch::async, [draw, computations = computations_, cancelled = cancelled_] {
+    constexpr std::chrono::milliseconds patience(20);
+    for (const auto& computation : computations)
+      while (!computation->wait(patience))
+        if (*cancelled) return 0.0;
+    return gl::ContextThread::instance().run(draw);
   });
 }
 

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <future>
 #include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "gl/egl_context.h"
@@ -19,7 +21,9 @@ namespace mesograin::render {
 /// Every call posts to the context's thread. Throws Error for what cannot be drawn, always before anything changes.
 class View {
  public:
-  View(int width, int height, std::uint32_t seed = 0);
+  /// Light's transport in meshes is computed for seconds, elsewhere. A patient view draws nothing before it is known;
+  /// another draws what is known, and take_news() tells when it is more.
+  View(int width, int height, std::uint32_t seed = 0, bool patient = true);
   ~View();
   View(const View&) = delete;
   View& operator=(const View&) = delete;
@@ -43,6 +47,16 @@ class View {
   /// How many light map samples model 3 takes for one pixel and sample, over all lights (default 16). Restarts the
   /// accumulation. Throws Error unless it is in [1, 65536].
   void set_taps(int taps);
+
+  /// Takes in what has become known of the scene since; if anything has, restarts the accumulation. Returns whether it
+  /// did.
+  bool take_news();
+
+  /// The share that is done of what the scene's picture waits for; nothing if all is known.
+  std::optional<double> preparing() const;
+
+  /// One sentence for each thing that is not drawn by the model asked for.
+  std::vector<std::string> warnings() const;
 
   /// Adds `samples` to the mean and returns when they are drawn.
   void render(int samples);
@@ -74,6 +88,8 @@ class View {
   std::uint64_t id_;
   int width_;
   int height_;
+  bool patient_;
+  std::vector<std::shared_ptr<const transport::Computation>> computations_;
   std::shared_ptr<std::atomic<int>> samples_ = std::make_shared<std::atomic<int>>(0);
   std::shared_ptr<std::atomic<bool>> cancelled_ = std::make_shared<std::atomic<bool>>(false);
 };

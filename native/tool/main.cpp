@@ -102,6 +102,7 @@ void run(const Options& options) {
   while (done.wait_for(std::chrono::milliseconds(50)) != std::future_status::ready)
     if (!options.quiet) progress.show(view.samples());
   done.get();
+  for (const std::string& warning : view.warnings()) fmt::print(stderr, "mesograin-render: {}\n", warning);
   const double seconds = progress.seconds();
 
   image::Image picture{.width = file.width, .height = file.height, .channels = 4, .pixels = {}};

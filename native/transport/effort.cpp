@@ -9,8 +9,16 @@
 
 namespace mesograin::transport {
 
-void run_pieces(const Effort& effort, std::size_t pieces, const std::function<void(std::size_t)>& work,
-                double first_share, double last_share) {
+Effort part_of(const Effort& effort, double first, double last) {
+  Effort part = effort;
+  if (effort.progress)
+    part.progress = [progress = effort.progress, first, last](double share) {
+      progress(first + (last - first) * share);
+    };
+  return part;
+}
+
+void run_pieces(const Effort& effort, std::size_t pieces, const std::function<void(std::size_t)>& work) {
   std::atomic<std::size_t> next{0};
   std::atomic<bool> failed{false};
   std::mutex mutex;  // of `done`, `failure` and calls of `progress`
@@ -23,8 +31,7 @@ void run_pieces(const Effort& effort, std::size_t pieces, const std::function<vo
         work(piece);
         const std::lock_guard lock(mutex);
         ++done;
-        const double share = static_cast<double>(done) / static_cast<double>(pieces);
-        if (effort.progress) effort.progress(first_share + (last_share - first_share) * share);
+        if (effort.progress) effort.progress(static_cast<double>(done) / static_cast<double>(pieces));
       }
     } catch (...) {
       const std::lock_guard lock(mutex);

@@ -15,12 +15,13 @@ struct Effort {
   std::function<void(double)> progress = {};  ///< called now and then, from any one thread, with the share that is done
 };
 
+/// For a part of some work: its progress is that from `first` to `last` of the whole.
+Effort part_of(const Effort& effort, double first, double last);
+
 /// Thrown where `Effort::stop` was set.
 struct Stopped {};
 
-/// Calls work(0) to work(pieces - 1), in any order and side by side; what it throws first is thrown on. `first_share`
-/// and `last_share` say which part of the whole these pieces are, for `progress`.
-void run_pieces(const Effort& effort, std::size_t pieces, const std::function<void(std::size_t)>& work,
-                double first_share = 0.0, double last_share = 1.0);
+/// Calls work(0) to work(pieces - 1), in any order and side by side; what it throws first is thrown on.
+void run_pieces(const Effort& effort, std::size_t pieces, const std::function<void(std::size_t)>& work);
 
 }  // namespace mesograin::transport

@@ -51,6 +51,7 @@ Lights solve_multiple(const Exchange& exchange, double albedo, const Lights& uns
       tolerance * tolerance * products(unscattered, unscattered).array().max(1e-30F).matrix();
   for (int step = 0; step < most_steps; ++step) {
     if ((products(residual, residual).array() <= enough.array()).all()) break;
+    if (effort.progress) effort.progress(step / (step + 8.0));
     const Lights moved = removed(exchange, a, direction, effort);
     const Eigen::RowVectorXf alpha = ratios(rho, products(shadow, moved));
     light += scaled(direction, alpha);

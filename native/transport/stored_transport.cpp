@@ -4,6 +4,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <glm/matrix.hpp>
 
 #include "transport/exchange.h"
 #include "transport/grid.h"
@@ -63,7 +64,7 @@ double node_spacing(const Body& body, const Quality& quality) {
 
 StoredTransport compute_transport(const Body& body, const StoredMedium& medium, const Quality& quality,
                                   const Effort& effort) {
-  const Grid grid(body, quality.nodes);
+  const Grid grid(body, quality.nodes, part_of(effort, 0.0, 0.1));
   std::vector<double> extinctions;
   std::array<std::size_t, 3> extinction_of{};
   const int channels = medium.grey() ? 1 : 3;
@@ -72,9 +73,10 @@ StoredTransport compute_transport(const Body& body, const StoredMedium& medium, 
     extinction_of[static_cast<std::size_t>(channel)] = static_cast<std::size_t>(found - extinctions.begin());
     if (found == extinctions.end()) extinctions.push_back(medium.sigma_t[channel]);
   }
-  const auto entered = unscattered_light(body, grid, medium.eta, extinctions, quality.light_across, effort);
+  const auto entered =
+      unscattered_light(body, grid, medium.eta, extinctions, quality.light_across, part_of(effort, 0.1, 0.4));
   const std::vector<Exchange> exchanges =
-      trace_exchange(body, grid, medium.eta, extinctions, quality.way_across, effort);
+      trace_exchange(body, grid, medium.eta, extinctions, quality.way_across, part_of(effort, 0.4, 0.8));
 
   // One set of lobes for all channels.
   const auto nodes = static_cast<Eigen::Index>(grid.places().size());
@@ -96,7 +98,9 @@ StoredTransport compute_transport(const Body& body, const StoredMedium& medium, 
   for (int channel = 0; channel < channels; ++channel) {
     const std::size_t e = extinction_of[static_cast<std::size_t>(channel)];
     const Lights unscattered = terms.amounts.middleRows(channel * nodes, nodes);
-    const Lights light = solve_multiple(exchanges[e], medium.albedo[channel], unscattered, effort);
+    const Lights light =
+        solve_multiple(exchanges[e], medium.albedo[channel], unscattered,
+                       part_of(effort, 0.8 + 0.2 * channel / channels, 0.8 + 0.2 * (channel + 1) / channels));
     terms.amounts.middleRows(channel * nodes, nodes) = static_cast<float>(medium.albedo[channel]) * light;
     for (Eigen::Index node = 0; node < nodes; ++node) {
       // What is deep is seen little.
@@ -107,8 +111,16 @@ StoredTransport compute_transport(const Body& body, const StoredMedium& medium, 
   const int kept = medium.grey() ? grey_terms : coloured_terms;
   terms = fewer_terms(terms, weights, kept);
 
-  StoredTransport stored{grid.size(), grid.lower(), grid.spacing(), body.unit(), kept, channels, grid.distances(), {},
-                         {}};
+  StoredTransport stored{.size = grid.size(),
+                         .lower = grid.lower(),
+                         .spacing = grid.spacing(),
+                         .unit = body.unit(),
+                         .axes = glm::mat3(glm::transpose(body.axes())),
+                         .terms = kept,
+                         .channels = channels,
+                         .distances = grid.distances(),
+                         .sources = {},
+                         .lobes = {}};
   stored.sources.resize(static_cast<std::size_t>(kept * channels) * stored.nodes(), 0.0F);
   for (int term = 0; term < kept; ++term)
     for (std::size_t node = 0; node < stored.nodes(); ++node) {

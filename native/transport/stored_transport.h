@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 #include <vector>
 
@@ -34,6 +35,7 @@ struct StoredTransport {
   glm::vec3 lower{0.0F};         ///< the first node, in the body's space
   glm::vec3 spacing{1.0F};       ///< between nodes
   double unit = 1.0;             ///< scene units a unit of the body
+  glm::mat3 axes{1.0F};          ///< the body's axes in the stretched mesh's
   int terms = 0;                 ///< products that are summed
   int channels = 3;              ///< 1 for a grey medium
   std::vector<float> distances;  ///< from the surface at every node, negative inside; x runs fastest

@@ -138,3 +138,31 @@ def test_no_thread_of_python_draws(drag):
     before = set(threading.enumerate())
     _, session = drag(sample_seconds=0.05, redraw_seconds=0.0)
     assert session.busy and set(threading.enumerate()) == before
+
+
+def test_transport_is_waited_for_by_nobody_and_comes_into_the_picture(native, blend_files):
+    bpy.ops.wm.open_mainfile(filepath=str(blend_files / "sphere.blend"))
+    grain = bpy.data.materials["Translucent"].mesograin
+    grain.model = "transport"
+    grain.scale = 0.0613  # as no other test has it, nor the cache
+    session, shown = viewport.Session(), []
+    try:
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        started = time.monotonic()
+        session.set_scene(export.read_scene(depsgraph, meshes.MeshCache()))
+        assert time.monotonic() - started < 2.0, "computing it takes longer"
+        session.set_camera(export.camera_from_scene(depsgraph, *SIZE), *SIZE)
+        while (not shown or session.busy) and time.monotonic() - started < 300.0:
+            picture = session.advance(4)
+            if picture is not None:
+                shown.append(picture.copy())
+        assert not session.busy and session.samples == 4 and session.warnings == ()
+        steps = [np.abs(after - before).mean() for before, after in zip(shown, shown[1:])]
+        assert len(shown) > 4 and max(steps[2:]) < 0.1 * brightness(shown[-1])
+        view = native.View(*SIZE)
+        view.set_scene(export.scene_from_depsgraph(depsgraph)[0])
+        view.set_camera(export.camera_from_scene(depsgraph, *SIZE))
+        view.render(4)
+        np.testing.assert_allclose(shown[-1], view.read(), atol=1e-5)
+    finally:
+        session.stop()

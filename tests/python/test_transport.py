@@ -1,6 +1,8 @@
 """The model `transport`: what photons and Cycles say of shapes that no sphere fits, and which meshes it takes."""
 
 import pathlib
+import threading
+import time
 
 import mesograin_native as native
 import numpy
@@ -101,11 +103,84 @@ def test_what_is_too_thick_is_drawn_by_model_3(cube):
     assert numpy.abs(thick - by_model_3).sum() / by_model_3.sum() < 0.01
 
 
-def test_what_it_cannot_answer_is_said():
+def corner():
     places = numpy.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)], numpy.float32)
-    faces = numpy.array([(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)], numpy.uint32)
-    mesh, hole = native.Mesh(places, None, faces), native.Mesh(places, None, faces[1:])
-    with pytest.raises(native.Error, match="needs a closed mesh; this one has 3 open edges"):
-        picture(hole, material(), numpy.array(LIGHTS["front"]))
+    return places, numpy.array([(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)], numpy.uint32)
+
+
+def crossing():
+    """Two tetrahedra through each other."""
+    places, faces = corner()
+    return numpy.concatenate([places, 0.5 - places]), numpy.concatenate([faces, (faces + 4)[:, ::-1]])
+
+
+def flat():
+    places, faces = corner()
+    return places * (1, 1, 0), faces
+
+
+def hole():
+    places, faces = corner()
+    return places, faces[1:]
+
+
+@pytest.mark.parametrize("shape, sentence", [(hole, "needs a closed mesh; this one has 3 open edges"),
+                                             (crossing, "needs a mesh that does not cross itself"),
+                                             (flat, "needs a mesh that encloses a volume")])
+def test_what_is_no_closed_mesh_is_said_and_drawn_by_model_3(shape, sentence):
+    places, faces = shape()
+    mesh = native.Mesh(numpy.ascontiguousarray(places, numpy.float32), None, numpy.ascontiguousarray(faces))
+    pictures, said = [], []
+    for model in ("transport", "model_3"):
+        view = show(native.View(32, 32), mesh, material(model=model))
+        view.render(2)
+        pictures.append(view.read())
+        said.append(view.warnings)
+    assert len(said[0]) == 1 and sentence in said[0][0] and said[0][0].endswith("It is drawn by model_3.")
+    assert said[1] == []
+    numpy.testing.assert_allclose(pictures[0], pictures[1], atol=1e-6)
+
+
+def test_what_it_cannot_answer_is_said(cube):
     with pytest.raises(native.Error, match="boundary for the model transport must be dielectric or index_matched"):
-        picture(mesh, material(boundary="lambert_lambert"), numpy.array(LIGHTS["front"]))
+        picture(cube, material(boundary="lambert_lambert"), numpy.array(LIGHTS["front"]))
+
+
+def show(view, mesh, grain):
+    light = native.DirectionalLight(LIGHTS["front"], (1.0,) * 3)
+    view.set_scene(native.Scene(instances=[native.Instance(mesh, grain, numpy.eye(4))], lights=[light]))
+    view.set_camera(native.Camera.look_at((0.0, 0.0, 6.5), (0.0,) * 3, (0.0, 1.0, 0.0), 45.0))
+    return view
+
+
+def brightness(view):
+    view.render(2)
+    return view.read()[..., 0].sum()
+
+
+def test_an_impatient_view_draws_at_once_and_better_later(cube):
+    view = show(native.View(32, 32, patient=False), cube, material(eta=1.31))
+    first = brightness(view)
+    assert view.preparing is not None, "it was known before"
+    seen, deadline = [], time.monotonic() + 120.0
+    while time.monotonic() < deadline:
+        done = view.preparing is None
+        if view.take_news():
+            assert view.samples == 0
+            seen.append(brightness(view))
+        if done:
+            break
+        time.sleep(0.02)
+    assert len(seen) == 2, "first a coarse answer, then the final one"
+    assert view.take_news() is False and view.samples == 2
+    assert seen[0] == pytest.approx(seen[1], rel=0.06)
+    assert first == pytest.approx(seen[1], rel=0.3)
+    assert brightness(show(native.View(32, 32), cube, material(eta=1.31))) == pytest.approx(seen[1], rel=1e-5)
+
+
+def test_a_render_that_waits_can_be_cancelled(cube):
+    view = show(native.View(32, 32), cube, material(eta=1.32))
+    threading.Timer(0.2, view.cancel).start()
+    started = time.monotonic()
+    view.render(4)
+    assert view.samples == 0 and time.monotonic() - started < 5.0

@@ -71,8 +71,11 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
                 self.end_result(result, cancel=True)
                 raise
             self.end_result(result)
+        for warning in view.warnings:
+            self.report({"WARNING"}, warning)
         passes = tuple((timing["pass"], timing["milliseconds"]) for timing in view.timings())
-        status.put(status.RENDER, status.Status(view.samples, region.width, region.height, passes, warnings))
+        status.put(status.RENDER, status.Status(view.samples, region.width, region.height, passes,
+                                                (*warnings, *view.warnings)))
 
     def _camera(self, depsgraph, width, height, region, eye):
         """native.Camera of the eye of this name, or of the camera as it is."""
@@ -93,6 +96,8 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
             while not task.wait(POLL_SECONDS):
                 if self.test_break():
                     view.cancel()
+                if view.preparing is not None:
+                    self.update_stats("", _preparing(view.preparing))
             task.result()
             now = time.perf_counter()
             if now - chunk_started < POLL_SECONDS:
@@ -161,9 +166,12 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
         self._texture = _texture(pixels)
         session = self._session
         self._error = ""
-        self.update_stats("", _line(session.samples, scene.mesograin.viewport_samples, self._warnings))
+        warnings = (*self._warnings, *session.warnings)
+        line = _line(session.samples, scene.mesograin.viewport_samples, warnings)
+        share = session.preparing
+        self.update_stats("", line if share is None else f"{_preparing(share)} | {line}")
         if status.put(status.VIEWPORT, status.Status(session.samples, region.width, region.height, session.timings(),
-                                                     self._warnings)):
+                                                     warnings)):
             _redraw_panels()
 
     def _draw_texture(self, scene, region):
@@ -191,6 +199,10 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
             self.tag_redraw()
         if news:
             _redraw_panels()
+
+
+def _preparing(share):
+    return f"Light's transport in the grain: {share or 0.0:.0%}"
 
 
 def _line(samples, target, warnings):

@@ -1,4 +1,6 @@
 # One viewport's picture: a native view that gets better in the background while Blender keeps drawing.
+import time
+
 import numpy as np
 
 from .. import native_module
@@ -9,6 +11,8 @@ from ..scene import meshes
 PATIENCE_SECONDS = 0.03
 # The display is half-float: a value beyond its largest would become Inf and blacken the viewport.
 LARGEST_DISPLAYED = 65504.0
+# What a better answer changes in the picture comes over this long.
+FADE_SECONDS = 0.3
 
 
 class Session:
@@ -28,6 +32,8 @@ class Session:
         self._kept = None  # (picture, samples) that is finished, and not yet returned
         self._seen = False  # whether a picture of the view's scene and camera was returned
         self._task = None
+        self._preparing = False  # whether more may become known of what the view draws
+        self._fade = None  # (picture before that, when the other's first was read)
         self._chunk = 1
         self._target = 0
 
@@ -69,6 +75,10 @@ class Session:
         if self._task is not None:
             if self._task.wait(PATIENCE_SECONDS):
                 self._finish()
+        elif self._fade:
+            self._kept = self._read(), self._view.samples
+        elif self._preparing:
+            time.sleep(PATIENCE_SECONDS)
         if self._kept is None:
             return None
         (picture, self.samples), self._kept = self._kept, None
@@ -83,7 +93,17 @@ class Session:
 
     @property
     def busy(self):
-        return self._task is not None
+        return self._task is not None or self._preparing or self._fade is not None
+
+    @property
+    def preparing(self):
+        """The share that is done of what will make the picture better; None if there is nothing."""
+        return self._view.preparing
+
+    @property
+    def warnings(self):
+        """Sentences on what is not drawn by the model asked for."""
+        return tuple(self._view.warnings)
 
     def __del__(self):
         # Blender lets go of an engine, and so of its session, without a call that could be relied upon.
@@ -98,7 +118,7 @@ class Session:
 
     def _ensure_view(self, width, height):
         if self._view is None:
-            self._view = native_module.get().View(width, height)
+            self._view = native_module.get().View(width, height, patient=False)
 
     def _change(self):
         """Makes what was asked for the view's as soon as may be. In a drag a change comes for each redraw: were samples
@@ -120,10 +140,17 @@ class Session:
             if self._next_camera is not None:
                 self._view.set_camera(self._next_camera)
             self._next_scene = self._next_camera = None
+            self._preparing = True
             self._restart()
         self._keep_busy()
 
     def _keep_busy(self):
+        if self._task is None and self._preparing:
+            self._preparing = self._view.preparing is not None  # asked first, so that the last news is not missed
+            if self._view.take_news():
+                before = self._pixels.copy() if self._seen else None
+                self._restart()
+                self._fade = None if before is None else (before, None)
         if self._task is None and self._camera is not None and self._view.samples < self._target:
             count = min(self._chunk, self._target - self._view.samples)
             self._task = _start(self._view, count)
@@ -157,6 +184,7 @@ class Session:
         self._restart()
 
     def _restart(self):
+        self._fade = None
         self._chunk = 1
         self.samples = 0
         self._seen = False
@@ -173,7 +201,19 @@ class Session:
         if self._pixels is None or self._pixels.shape[:2] != (height, width):
             self._pixels = np.empty((height, width, 4), dtype=np.float32)
         self._view.read(self._pixels)
-        return np.minimum(self._pixels, LARGEST_DISPLAYED, out=self._pixels)
+        np.minimum(self._pixels, LARGEST_DISPLAYED, out=self._pixels)
+        if self._fade:
+            self._fade_over()
+        return self._pixels
+
+    def _fade_over(self):
+        before, started = self._fade
+        now = time.perf_counter()
+        share = 0.0 if started is None else (now - started) / FADE_SECONDS
+        self._fade = (before, now if started is None else started) if share < 1.0 else None
+        if self._fade:
+            self._pixels *= share
+            self._pixels += (1.0 - share) * before
 
 
 def _start(view, samples):

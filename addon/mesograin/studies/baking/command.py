@@ -49,6 +49,8 @@ def _bake_shown(chosen, depsgraph, progress):
     progress.begin()
     ours.render(chosen.samples, progress.update)
     progress.end()
+    for warning in ours.drawn_otherwise:
+        progress.say(f"bake: {warning}")
     progress.close()
     surface.write(chosen.output, ours.texture(chosen.margin), ours.provenance(chosen.margin),
                   chosen.half)

@@ -77,6 +77,11 @@ class Surface:
                 share *= 2
         return not self._cancelled
 
+    @property
+    def drawn_otherwise(self):
+        """One sentence for each thing in the texture that the model asked for did not draw; known after `render`."""
+        return self._views[0].warnings
+
     def cancel(self):
         """Ends `render` after its current sample; from any thread."""
         self._cancelled = True

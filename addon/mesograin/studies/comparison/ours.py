@@ -76,6 +76,11 @@ class Ours:
             view.render(share - view.samples)
         return [view.read() for view in self._views]
 
+    @property
+    def drawn_otherwise(self):
+        """One sentence for each thing in the last picture that the model asked for did not draw."""
+        return self._views[0].warnings
+
     def time_frames(self, frames):
         """(median milliseconds of a frame of one sample, {pass: median milliseconds}), the light maps being there."""
         totals, passes = [], {}

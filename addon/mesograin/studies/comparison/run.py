@@ -103,6 +103,8 @@ class _Comparison:
         left = self.progress.steps_left
         try:
             entry.update(self._measure(case, chosen))
+            for sentence in self.ours.drawn_otherwise:
+                self.progress.say(f"{case.name}: {sentence}")
         except (reference.ReferenceError, StageError, native.Error, RuntimeError, MemoryError, ValueError) as error:
             entry["status"] = "failed"
             entry["error"] = " ".join(str(error).split()) or type(error).__name__

@@ -1,0 +1,89 @@
+// Where prototypes' transport is computed: on a thread of its own, coarsely first, given up when nobody waits any more,
+// and not at all if it was computed before.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <cstddef>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "scene/mesh.h"
+#include "transport/stored_transport.h"
+#include "transport/transport_cache.h"
+
+namespace mesograin::transport {
+
+/// What is to be computed. `medium` is per scene unit here.
+struct Order {
+  scene::MeshPointer mesh;
+  glm::dmat3 stretch{1.0};
+  StoredMedium medium;
+};
+
+/// What is known so far.
+struct News {
+  int number = 0;                                 ///< grows with everything new
+  std::shared_ptr<const StoredTransport> stored;  ///< the best so far, or null
+  std::string unsuitable;  ///< one sentence, if this mesh or medium is nothing for stored transport
+  bool final = false;
+};
+
+/// One order under way, for as long as somebody holds it. May be asked from any thread.
+class Computation {
+ public:
+  News news() const;
+
+  /// The share that is done.
+  double progress() const { return progress_; }
+
+  /// Whether all is known, after waiting this long at most.
+  bool wait(std::chrono::milliseconds patience) const;
+
+ private:
+  friend class Works;
+
+  void tell(std::shared_ptr<const StoredTransport> stored, std::string unsuitable, bool final);
+
+  mutable std::mutex mutex_;
+  mutable std::condition_variable told_;
+  News news_;
+  std::atomic<double> progress_{0.0};
+};
+
+class Works {
+ public:
+  /// The one that all share; its thread starts with the first order.
+  static Works& instance();
+
+  explicit Works(TransportCache cache = TransportCache()) : cache_(std::move(cache)) {}
+  ~Works();
+  Works(const Works&) = delete;
+  Works& operator=(const Works&) = delete;
+
+  /// Returns at once, all being known already if it was kept. The order that came last is worked on first.
+  std::shared_ptr<const Computation> ask(Order order);
+
+ private:
+  struct Job {
+    Order order;
+    std::string name;
+    std::string about;
+    std::weak_ptr<Computation> computation;
+  };
+
+  void loop(const std::stop_token& stop);
+  void work(const Job& job, const std::stop_token& stop) const;
+
+  TransportCache cache_;
+  std::mutex mutex_;
+  std::condition_variable_any wake_;
+  std::vector<Job> jobs_;
+  std::jthread thread_;
+};
+
+}  // namespace mesograin::transport

@@ -1,0 +1,146 @@
+// Transport that is computed elsewhere and kept: coarse before final, found again, damaged, too much, given up.
+#include "transport/works.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <string>
+
+#include "base/file.h"
+#include "shapes.h"
+#include "transport/transport_file.h"
+
+namespace mesograin::transport {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace std::chrono_literals;
+
+class WorksTest : public testing::Test {
+ protected:
+  WorksTest()
+      : folder_(fs::temp_directory_path() / ("mesograin_works_" + std::to_string(::getpid())) /
+                testing::UnitTest::GetInstance()->current_test_info()->name()) {}
+  ~WorksTest() override { fs::remove_all(folder_); }
+
+  static Order order(double albedo = 0.5) {
+    return {std::make_shared<const scene::Mesh>(cube()), glm::dmat3(1.0), {glm::dvec3(1.0), glm::dvec3(albedo), 1.3}};
+  }
+
+  static StoredTransport small() {
+    StoredTransport stored;
+    stored.size = glm::ivec3(2);
+    stored.terms = 4;
+    stored.channels = 1;
+    stored.distances.assign(8, 0.5F);
+    stored.sources.assign(32, 0.25F);
+    stored.lobes.assign(4 * 256, 1.0F);
+    return stored;
+  }
+
+  static void finish(const Computation& computation) {
+    while (!computation.wait(20ms)) continue;
+  }
+
+  fs::path only_file() const { return fs::directory_iterator(folder_)->path(); }
+
+  fs::path folder_;
+};
+
+TEST_F(WorksTest, TellsCoarselyFirstAndFindsAgainWhatItKept) {
+  StoredTransport computed;
+  {
+    Works works{TransportCache(folder_)};
+    const auto computation = works.ask(order());
+    EXPECT_FALSE(computation->news().final);
+    News first;
+    while (!first.stored) first = computation->news();
+    EXPECT_FALSE(first.final);
+    finish(*computation);
+    const News last = computation->news();
+    ASSERT_TRUE(last.stored);
+    EXPECT_EQ(last.number, 2);
+    EXPECT_GT(last.stored->nodes(), 4 * first.stored->nodes());
+    computed = *last.stored;
+  }
+  Works works{TransportCache(folder_)};
+  const News known = works.ask(order())->news();
+  ASSERT_TRUE(known.final && known.stored);
+  EXPECT_EQ(known.stored->distances, computed.distances);
+  EXPECT_EQ(known.stored->lobes, computed.lobes);
+  EXPECT_EQ(known.stored->axes, computed.axes);
+  ASSERT_EQ(known.stored->sources.size(), computed.sources.size());
+  for (std::size_t i = 0; i < computed.sources.size(); ++i)
+    EXPECT_NEAR(known.stored->sources[i], computed.sources[i], 1e-3F * std::abs(computed.sources[i]) + 1e-6F);
+  EXPECT_FALSE(works.ask(order(0.6))->news().final) << "another material's";
+}
+
+TEST_F(WorksTest, MakesAnewWhatIsDamaged) {
+  const StoredTransport stored = small();
+  const TransportCache cache(folder_);
+  cache.keep("name", "about", stored);
+  ASSERT_TRUE(cache.find("name", "about"));
+  EXPECT_FALSE(cache.find("other", "about"));
+  std::string bytes = base::read_file(only_file());
+  EXPECT_TRUE(from_bytes(bytes, "about"));
+  EXPECT_FALSE(from_bytes(bytes, "another"));
+  EXPECT_FALSE(from_bytes(bytes.substr(0, bytes.size() / 2), "about"));
+  EXPECT_FALSE(from_bytes("", "about"));
+  bytes[bytes.size() / 2] ^= 1;
+  std::ofstream(only_file(), std::ios::binary) << bytes;
+  EXPECT_FALSE(cache.find("name", "about"));
+  EXPECT_TRUE(fs::is_empty(folder_)) << "what is damaged is removed";
+}
+
+TEST_F(WorksTest, KeepsNoMoreThanItsLimit) {
+  const StoredTransport stored = small();
+  const std::size_t bytes = to_bytes(stored, "about").size();
+  const TransportCache cache(folder_, 3 * bytes + 10);
+  for (const char* name : {"a", "b", "c"}) {
+    cache.keep(name, "about", stored);
+    fs::last_write_time(folder_ / (std::string(name) + ".transport"), fs::file_time_type::clock::now() - 1h);
+  }
+  ASSERT_TRUE(cache.find("a", "about")) << "used just now";
+  cache.keep("d", "about", stored);
+  EXPECT_TRUE(cache.find("a", "about") && cache.find("d", "about"));
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 3);
+}
+
+TEST_F(WorksTest, AFolderThatCannotBeHasItComputedAnyway) {
+  const TransportCache cache("/proc/nowhere");
+  cache.keep("name", "about", {});
+  EXPECT_FALSE(cache.find("name", "about"));
+}
+
+TEST_F(WorksTest, GivesUpWhatNobodyWaitsFor) {
+  Works works{TransportCache(folder_)};
+  works.ask(order(0.1));
+  const auto computation = works.ask(order(0.2));
+  while (!computation->news().stored) continue;
+  finish(*computation);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 1);
+}
+
+TEST_F(WorksTest, SaysWhatIsNothingForIt) {
+  Works works{TransportCache(folder_)};
+  std::vector<glm::uvec3> faces = box_triangles();
+  faces.pop_back();
+  Order open = order();
+  open.mesh = std::make_shared<const scene::Mesh>(box_positions(), std::vector<glm::vec3>{}, faces);
+  const auto hole = works.ask(open);
+  Order thick = order();
+  thick.medium.sigma_t = glm::dvec3(1e4);
+  const auto far = works.ask(thick);
+  finish(*hole);
+  finish(*far);
+  EXPECT_NE(hole->news().unsuitable.find("3 open edges"), std::string::npos) << hole->news().unsuitable;
+  EXPECT_NE(far->news().unsuitable.find("mean free paths across"), std::string::npos) << far->news().unsuitable;
+  EXPECT_FALSE(hole->news().stored || far->news().stored);
+}
+
+}  // namespace
+}  // namespace mesograin::transport
