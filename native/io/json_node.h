@@ -14,6 +14,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "base/error.h"
 #include "base/readable.h"
@@ -81,6 +82,13 @@ class Node {
   Node operator[](std::string_view key) const {
     if (!has(key)) throw Error("{} is missing; {} needs it.", child_path(key), path_.empty() ? "the scene" : path_);
     return {value_.at(std::string(key)), child_path(key)};
+  }
+
+  /// Of an object.
+  std::vector<std::string> keys() const {
+    std::vector<std::string> names;
+    for (const auto& item : value_.items()) names.push_back(item.key());
+    return names;
   }
 
   std::size_t size() const { return value_.is_array() ? value_.size() : 0; }

@@ -112,7 +112,54 @@ std::shared_ptr<const Surroundings> read_surroundings(const std::filesystem::pat
   return std::make_shared<const Surroundings>(picture.width, picture.height, std::move(texels));
 }
 
+Json listed(const glm::dvec3& vector) { return {vector.x, vector.y, vector.z}; }
+
+const char* name_of(LightShape shape) { return shape == LightShape::disc ? "disc" : "sphere"; }
+
+Json written(const DirectionalLight& light) {
+  return {{"type", "distant"},
+          {"direction_to_light", listed(light.direction_to_light)},
+          {"irradiance_linear_rgb", listed(light.irradiance)},
+          {"angle", light.angle}};
+}
+
+Json written(const PointLight& light) {
+  return {{"type", "point"},
+          {"position", listed(light.position)},
+          {"radiant_intensity_linear_rgb", listed(light.radiant_intensity)},
+          {"radius", light.radius},
+          {"shape", name_of(light.shape)}};
+}
+
+Json written(const SpotLight& light) {
+  return {{"type", "spot"},
+          {"position", listed(light.position)},
+          {"axis", listed(light.axis)},
+          {"radiant_intensity_linear_rgb", listed(light.radiant_intensity)},
+          {"radius", light.radius},
+          {"shape", name_of(light.shape)},
+          {"angle", light.angle},
+          {"blend", light.blend},
+          {"cosine", light.cosine},
+          {"wide_x", listed(light.wide_x)},
+          {"wide_y", listed(light.wide_y)}};
+}
+
+Json written(const AreaLight& light) {
+  return {{"type", "area"},
+          {"position", listed(light.position)},
+          {"half_x", listed(light.half_x)},
+          {"half_y", listed(light.half_y)},
+          {"radiance_linear_rgb", listed(light.radiance)},
+          {"ellipse", light.ellipse},
+          {"spread", light.spread}};
+}
+
 }  // namespace
+
+Json to_json(const Light& light) {
+  return std::visit([](const auto& kind) { return written(kind); }, light);
+}
 
 /// Without a light there must be a world.
 std::vector<Light> read_lights(const Node& root) {

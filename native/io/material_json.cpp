@@ -97,6 +97,11 @@ Json to_value(Choice value) {
 
 }  // namespace
 
+bool answers_kind(const Node& kind, Model model) {
+  const std::vector<Model> models = models_of(kind);
+  return std::ranges::find(models, model) != models.end();
+}
+
 Material read_material(const Node& node, const std::optional<Model>& asked) {
   const std::vector<Model> models = models_of(node["kind"]);
   Material material;

@@ -8,6 +8,9 @@
 
 namespace mesograin::io {
 
+/// Whether a model is one of those that answer a material's `kind`. Throws Error for a kind that there is not.
+bool answers_kind(const Node& kind, scene::Model model);
+
 /// `asked` answers the material, else the preferred model of its kind.
 scene::Material read_material(const Node& node, const std::optional<scene::Model>& asked);
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <string_view>
 
 #include "scene/mesh.h"
@@ -17,5 +18,8 @@ scene::Mesh read_mesh(const std::filesystem::path& path);
 /// The same from the file's text or bytes.
 scene::Mesh parse_obj(std::string_view text);
 scene::Mesh parse_ply(std::string_view bytes);
+
+/// A mesh as binary PLY, from which parse_ply makes the same vertices.
+std::string to_ply(const scene::Mesh& mesh);
 
 }  // namespace mesograin::io

@@ -6,12 +6,14 @@
 #include <algorithm>
 #include <array>
 #include <glm/gtc/matrix_transform.hpp>
+#include <map>
 #include <memory>
 #include <utility>
 #include <vector>
 
 #include "base/error.h"
 #include "base/file.h"
+#include "io/instances_json.h"
 #include "io/json_node.h"
 #include "io/light_json.h"
 #include "io/material_json.h"
@@ -26,7 +28,10 @@ namespace {
 
 constexpr int largest_side = 16384;
 
-Instance read_geometry(const Node& node, const std::filesystem::path& folder) {
+/// A mesh file is one prototype, however many objects name it.
+using Prototypes = std::map<std::string, MeshPointer>;
+
+Instance read_geometry(const Node& node, const std::filesystem::path& folder, Prototypes& prototypes) {
   Instance instance;
   const std::string shape = node["shape"].text();
   if (shape == "sphere") {
@@ -40,21 +45,81 @@ Instance read_geometry(const Node& node, const std::filesystem::path& folder) {
     instance.object_to_world = glm::scale(glm::translate(glm::dmat4(1.0), centre), glm::dvec3(radius));
   } else if (shape == "mesh") {
     node.require_object(std::array<std::string_view, 3>{"shape", "file", "transform"}, provenance_keys);
-    instance.mesh = at(node["file"], [&] { return std::make_shared<Mesh>(read_mesh(folder / node["file"].text())); });
-    if (node.has("transform")) {
-      const Node rows = node["transform"];
-      if (rows.size() != 4) rows.fail("must be a list of 4 rows");
-      for (int row = 0; row < 4; ++row) {
-        const Node numbers = rows[static_cast<std::size_t>(row)];
-        if (numbers.size() != 4) numbers.fail("must be a list of 4 numbers");
-        for (int column = 0; column < 4; ++column)
-          instance.object_to_world[column][row] = numbers[static_cast<std::size_t>(column)].number();
-      }
-    }
+    const std::string name = node["file"].text();
+    MeshPointer& mesh = prototypes[name];
+    if (!mesh) mesh = at(node["file"], [&] { return std::make_shared<const Mesh>(read_mesh(folder / name)); });
+    instance.mesh = mesh;
+    if (node.has("transform")) instance.object_to_world = read_transform(node["transform"]);
   } else {
     node["shape"].fail("must be \"sphere\" or \"mesh\"");
   }
   return instance;
+}
+
+/// One object, as a whole scene or as one of its `objects`.
+void read_object(const Node& node, const Material& material, const std::filesystem::path& folder,
+                 Prototypes& prototypes, Scene& scene) {
+  Instance instance = read_geometry(node["geometry"], folder, prototypes);
+  instance.material = material;
+  if (node.has("instances"))
+    read_instances(node["instances"], instance, folder, scene.arrays);
+  else
+    scene.instances.push_back(std::move(instance));
+}
+
+/// The materials of a scene of several objects. The model that was asked for answers those whose kind it can, and at
+/// least one.
+class Materials {
+ public:
+  Materials(const Node& root, const std::optional<Model>& asked) : asked_(asked) {
+    if (!root.has("materials")) return;
+    const Node all = root["materials"];
+    if (!all.is_object()) all.fail("must be an object of materials by their names");
+    for (const std::string& name : all.keys()) named_.emplace(name, read(all[name]));
+  }
+
+  Material of(const Node& node) {
+    if (node.is_object()) return read(node);
+    const auto found = named_.find(node.text());
+    if (found == named_.end()) node.fail("must be a material, or the name of one of materials");
+    return found->second;
+  }
+
+  void require_asked() const {
+    if (asked_ && !answered_) throw Error("No object's material is of a kind that {} answers.", name_of(*asked_));
+  }
+
+ private:
+  Material read(const Node& node) {
+    const bool answers = asked_ && answers_kind(node["kind"], *asked_);
+    answered_ = answered_ || answers;
+    return read_material(node, answers ? asked_ : std::nullopt);
+  }
+
+  std::optional<Model> asked_;
+  bool answered_ = false;
+  std::map<std::string, Material> named_;
+};
+
+void read_objects(const Node& root, const std::filesystem::path& folder, const SceneChoices& choices, Scene& scene) {
+  Prototypes prototypes;
+  if (!root.has("objects")) {
+    read_object(root, read_material(root["material"], choices.model), folder, prototypes, scene);
+    at(root["geometry"], [&] { validate(scene); });
+    return;
+  }
+  for (const char* key : {"geometry", "material", "instances"})
+    if (root.has(key)) throw Error("{} must stand in one of objects, since there are objects.", key);
+  const Node objects = root["objects"];
+  if (objects.size() == 0) objects.fail("must be a list of at least one object");
+  Materials materials(root, choices.model);
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    const Node object = objects[i];
+    object.require_object(std::array<std::string_view, 3>{"geometry", "material", "instances"}, provenance_keys);
+    read_object(object, materials.of(object["material"]), folder, prototypes, scene);
+  }
+  materials.require_asked();
+  at(objects, [&] { validate(scene); });
 }
 
 /// A word about the camera or a material that must say what Mesograin does anyway.
@@ -62,7 +127,17 @@ void require_text(const Node& node, const char* key, std::string_view beginning)
   if (node.has(key) && !node[key].text().starts_with(beginning)) node[key].fail("must begin with \"{}\"", beginning);
 }
 
+/// As two matrices, which say all that a camera may be.
+Camera read_camera_matrices(const Node& node) {
+  node.require_object(std::array<std::string_view, 2>{"world_to_camera", "camera_to_clip"}, provenance_keys);
+  const Camera camera{read_transform(node["world_to_camera"]), read_transform(node["camera_to_clip"])};
+  at(node, [&] { validate(camera); });
+  return camera;
+}
+
 Camera read_camera(const Node& node, double aspect) {
+  if (node.is_object() && (node.has("world_to_camera") || node.has("camera_to_clip")))
+    return read_camera_matrices(node);
   node.require_object(std::array<std::string_view, 7>{"position", "look_at", "up", "fov_degrees", "handedness",
                                                       "projection", "pixel_filter"},
                       provenance_keys);
@@ -82,9 +157,9 @@ Camera read_camera(const Node& node, double aspect) {
 
 SceneFile read(const Json& json, const std::filesystem::path& folder, const SceneChoices& choices) {
   const Node root(json, "");
-  root.require_object(
-      std::array<std::string_view, 6>{"geometry", "camera", "resolution", "lights", "world", "material"},
-      provenance_keys);
+  root.require_object(std::array<std::string_view, 9>{"geometry", "camera", "resolution", "lights", "world", "material",
+                                                      "instances", "objects", "materials"},
+                      provenance_keys);
   SceneFile file;
   file.width = choices.width;
   file.height = choices.height;
@@ -96,11 +171,8 @@ SceneFile read(const Json& json, const std::filesystem::path& folder, const Scen
   }
   file.scene.lights = read_lights(root);
   if (root.has("world")) file.scene.world = read_world(root["world"], folder);
-  Instance instance = read_geometry(root["geometry"], folder);
-  instance.material = read_material(root["material"], choices.model);
-  file.scene.instances.push_back(std::move(instance));
+  read_objects(root, folder, choices, file.scene);
   file.camera = read_camera(root["camera"], static_cast<double>(file.width) / file.height);
-  at(root["geometry"], [&] { validate(file.scene); });
   file.source = json.dump(-1, ' ', true, Json::error_handler_t::replace);
   return file;
 }

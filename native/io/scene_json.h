@@ -37,6 +37,11 @@ SceneFile read_scene(const std::filesystem::path& path, const SceneChoices& choi
 /// The same from JSON text; mesh files are looked for in `folder`.
 SceneFile parse_scene(std::string_view text, const std::filesystem::path& folder, const SceneChoices& choices = {});
 
+/// Writes a scene that read_scene reads as it is, `file.source` aside: the JSON at `path`, beside it each mesh as PLY,
+/// each array of instances as NPY and the world's image as EXR, all named after it. Throws Error if a file can't be
+/// written.
+void write_scene(const std::filesystem::path& path, const SceneFile& file);
+
 /// A material as JSON on one line, all parameters by their names.
 std::string to_json(const scene::Material& material);
 

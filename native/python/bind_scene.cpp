@@ -79,6 +79,16 @@ std::vector<glm::dmat4> to_matrices(const Array<double>& array) {
   return matrices;
 }
 
+Array<double> to_array_of_matrices(const scene::InstanceArray& instances) {
+  const std::vector<glm::dmat4>& matrices = instances.object_to_world();
+  Array<double> array({matrices.size(), std::size_t{4}, std::size_t{4}});
+  double* number = array.mutable_data();
+  for (const glm::dmat4& matrix : matrices)
+    for (int row = 0; row < 4; ++row)
+      for (int column = 0; column < 4; ++column) *number++ = matrix[column][row];
+  return array;
+}
+
 void bind_instance_array(py::module_& module) {
   py::class_<scene::InstanceArray>(module, "InstanceArray",
                                    "Many instances of one mesh with one material: grains of a heap, a transform each.")
@@ -89,6 +99,7 @@ void bind_instance_array(py::module_& module) {
            py::arg("mesh").none(false), py::arg("material"), py::arg("transforms"),
            "transforms: (n, 4, 4) float64, object to world. Raises Error for another shape.")
       .def_readonly("material", &scene::InstanceArray::material)
+      .def_property_readonly("transforms", &to_array_of_matrices)
       .def("__len__", [](const scene::InstanceArray& array) { return array.object_to_world().size(); });
 }
 
@@ -139,6 +150,7 @@ void bind_scene(py::module_& module) {
            py::arg("arrays") = std::vector<scene::InstanceArray>{},
            "arrays: InstanceArrays, drawn beside the instances. Raises Error for a transform that cannot be inverted.")
       .def_readonly("instances", &scene::Scene::instances)
+      .def_readonly("arrays", &scene::Scene::arrays)
       .def_readonly("lights", &scene::Scene::lights)
       .def_readonly("world", &scene::Scene::world);
 }

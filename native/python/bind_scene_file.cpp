@@ -52,12 +52,23 @@ py::tuple load_scene(const py::object& source, const std::optional<std::string>&
   return py::make_tuple(std::move(file.scene), file.camera, py::make_tuple(file.width, file.height));
 }
 
+void write_scene(const std::filesystem::path& path, const scene::Scene& scene, const scene::Camera& camera,
+                 const std::pair<int, int>& size) {
+  const io::SceneChoices choices{.model = std::nullopt, .width = size.first, .height = size.second};
+  require_size(choices);
+  const py::gil_scoped_release release;
+  io::write_scene(path, {scene, camera, choices.width, choices.height, {}});
+}
+
 }  // namespace
 
 void bind_scene_file(py::module_& module) {
+  module.def("write_scene", &write_scene, py::arg("path"), py::arg("scene"), py::arg("camera"), py::arg("size"),
+             "Writes a scene that load_scene reads as it is: JSON at `path`, beside it meshes in PLY, arrays of "
+             "instances in NPY and the world's image in EXR. Raises Error if a file can't be written.");
   module.def("load_scene", &load_scene, py::arg("source"), py::arg("model") = py::none(), py::arg("size") = py::none(),
              "(Scene, Camera, (width, height)) from a scene in JSON: a path, the text itself, or a dict of the same "
-             "form (docs/scene-json.md); of text and dicts, mesh files are looked for in the current folder. `model` "
+             "form (docs/scene-json.md); of text and dicts, files are looked for in the current folder. `model` "
              "answers the material instead of the best one for its kind; `size` is (width, height) instead of the "
              "scene's resolution. Raises Error naming the key, what is needed and what came.");
 }

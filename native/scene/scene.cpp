@@ -1,6 +1,7 @@
 // Checks a whole scene before anything of it reaches the device.
 #include "scene/scene.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/matrix.hpp>
 
@@ -21,6 +22,16 @@ void require_invertible(const glm::dmat4& object_to_world) {
 }
 
 }  // namespace
+
+std::vector<Material> materials_of(const Scene& scene) {
+  std::vector<Material> materials;
+  const auto add = [&](const Material& material) {
+    if (std::find(materials.begin(), materials.end(), material) == materials.end()) materials.push_back(material);
+  };
+  for (const Instance& instance : scene.instances) add(instance.material);
+  for (const InstanceArray& array : scene.arrays) add(array.material);
+  return materials;
+}
 
 void validate(const Scene& scene) {
   for (const Instance& instance : scene.instances) {

@@ -42,6 +42,9 @@ struct Scene {
   std::vector<InstanceArray> arrays{};
 };
 
+/// The materials of all that is drawn, each once, in the order of the scene.
+std::vector<Material> materials_of(const Scene& scene);
+
 /// Throws Error for the first material, light, world or transform that cannot be drawn.
 void validate(const Scene& scene);
 

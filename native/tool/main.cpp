@@ -76,6 +76,7 @@ io::SceneChoices parse_choices(const Options& options) {
 
 /// The texture of all instances, with a word about UVs that do not serve well.
 void set_bake(render::View& view, const Options& options, std::size_t instances) {
+  if (instances == 0) throw Error("--bake draws textures of single objects; this scene has nothing but instances.");
   render::Bake bake;
   bake.view_from = render::parse_view_from(options.view_from);
   for (std::size_t i = 0; i < instances; ++i) bake.instances.push_back(i);
@@ -118,10 +119,8 @@ void run(const Options& options) {
   }
   if (options.quiet) return;
   progress.finish();
-  const scene::Model model = file.scene.instances.front().material.model;
   fmt::print(stderr, "{}: {} x {} pixels, {} samples by {} in {:.1f} s on {}\n", output.string(), file.width,
-             file.height, options.samples, scene::model_names[static_cast<std::size_t>(model)], seconds,
-             device.renderer);
+             file.height, options.samples, tool::model_names(file.scene), seconds, device.renderer);
 }
 
 int command(int argument_count, char** arguments) {

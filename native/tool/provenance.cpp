@@ -1,16 +1,35 @@
 // No date and no host: the same scene on the same device gives the same bytes.
 #include "tool/provenance.h"
 
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <string_view>
+#include <vector>
+
 #include "scene/material.h"
 
 namespace mesograin::tool {
 
+std::string model_names(const scene::Scene& scene) {
+  std::vector<std::string_view> names;
+  for (const scene::Material& material : scene::materials_of(scene)) {
+    const std::string_view name = scene::name_of(material.model);
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  }
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
 std::map<std::string, std::string> provenance(const io::SceneFile& file, int samples, std::uint32_t seed,
                                               const gl::DeviceInfo& device) {
-  const scene::Material& material = file.scene.instances.front().material;
+  std::vector<std::string> materials;
+  for (const scene::Material& material : scene::materials_of(file.scene)) {
+    materials.push_back(io::to_json(material));
+  }
   return {{"mesograin:version", MESOGRAIN_VERSION},
-          {"mesograin:model", std::string(scene::model_names[static_cast<std::size_t>(material.model)])},
-          {"mesograin:material", io::to_json(material)},
+          {"mesograin:model", model_names(file.scene)},
+          {"mesograin:material",
+           materials.size() == 1 ? materials.front() : fmt::format("[{}]", fmt::join(materials, ", "))},
           {"mesograin:scene", file.source},
           {"mesograin:samples", std::to_string(samples)},
           {"mesograin:seed", std::to_string(seed)},

@@ -1,6 +1,7 @@
 """Reads thousands of files that were damaged at random, in a process of its own whose memory is limited: a crash ends
 nothing else. Prints a line for each file whose reading ended otherwise than it may, then how many were read and how
 many were refused."""
+import io
 import json
 import pathlib
 import resource
@@ -26,6 +27,22 @@ def scene(geometry):
         "material": {"kind": "subsurface", "sigma_s": [1, 2, 3], "sigma_a": 0.1, "g": 0.3, "eta": 1.3, "scale": 2,
                      "roughness": 0.2, "boundary": "dielectric", "masking": "separable", "profile": "better_dipole"},
     }
+
+
+def heap(instances):
+    """A scene of two objects, one of them a heap."""
+    whole = scene({"shape": "sphere", "radius": 1})
+    grain = {"geometry": whole.pop("geometry"), "material": "sand", "instances": instances}
+    materials = {"sand": whole.pop("material")}
+    return {**whole, "materials": materials, "objects": [
+        grain, {"geometry": {"shape": "sphere", "centre": [0, 0, -9], "radius": 8},
+                "material": {"kind": "diffuse", "reflectance": 0.5}}]}
+
+
+def npy():
+    data = io.BytesIO()
+    np.save(data, np.random.default_rng(SEED).random((7, 3, 4)) + 4.0 * np.eye(3, 4))
+    return data.getvalue()
 
 
 def obj():
@@ -76,11 +93,17 @@ def sources(native, folder):
     def read_mesh(path):
         native.load_scene(scene({"shape": "mesh", "file": str(path)}))
 
+    def read_places(path):
+        native.load_scene(heap({"file": str(path)}))
+
     pixels = np.random.default_rng(SEED).random((9, 7, 4), np.float32)
     native.write_exr(folder / "whole.exr", pixels, attributes={"mesograin:seed": "7"})
     native.write_exr(folder / "half.exr", pixels, channels=["depth.Z", "A", "B", "R"], half=True)
     sphere = json.dumps(scene({"shape": "sphere", "centre": [0, 0, 0], "radius": 1})).encode()
-    return [(".json", sphere, 1000, native.load_scene), (".obj", obj(), 600, read_mesh),
+    inline = json.dumps(heap({"positions": [[1, 2, 3], [4, 5, 6]], "scales": [1, 2]})).encode()
+    return [(".json", sphere, 1000, native.load_scene), (".json", inline, 500, native.load_scene),
+            (".npy", npy(), 400, read_places), (".ply", ascii_ply(), 200, read_places),
+            (".obj", obj(), 600, read_mesh),
             (".ply", ascii_ply(), 400, read_mesh), (".ply", binary_ply(), 400, read_mesh),
             (".exr", (folder / "whole.exr").read_bytes(), 300, native.read_exr),
             (".exr", (folder / "half.exr").read_bytes(), 300, native.read_exr)]

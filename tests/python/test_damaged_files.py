@@ -15,4 +15,4 @@ def test_damaged_files_are_read_or_refused_in_a_sentence():
     assert ended.returncode == 0, f"{ended.stderr}\n{lines[-1:]}"
     assert len(lines) == 1, "\n".join(lines[:20])
     read, refused = map(int, re.fullmatch(r"(\d+) read, (\d+) refused", lines[0]).groups())
-    assert read + refused == 3000 and read > 100 and refused > 1000
+    assert read + refused == 4100 and read > 100 and refused > 1000

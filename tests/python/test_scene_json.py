@@ -54,3 +54,43 @@ def test_unknown_files_models_and_sizes_are_named():
         with pytest.raises(native.Error) as raised:
             native.load_scene(*arguments)
         assert part in str(raised.value)
+
+
+def test_a_scene_that_is_written_is_the_one_that_is_read(tmp_path):
+    random = np.random.default_rng(3)
+    mesh = native.Mesh(np.float32([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]), None,
+                       np.uint32([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]), np.float32(random.random((4, 2))))
+    sand = native.Material(model="model_2", sigma_s=(1, 2, 3), sigma_a=(0.1, 0.2, 0.3), eta=1.5, roughness=0.2)
+    ground = native.Material(model="lambert", reflectance=(0.5, 0.4, 0.3))
+    transforms = np.eye(4) + 0.1 * random.random((20, 4, 4)) * [[1], [1], [1], [0]]
+    lights = [native.DirectionalLight((1, 1, 1), (3, 2, 1), 0.01), native.PointLight((1, 2, 3), (4, 5, 6), 0.1),
+              native.SpotLight((1, 2, 3), (0, 0, -1), (4, 5, 6), angle=0.5, blend=0.25),
+              native.AreaLight((0, 0, 5), (1, 0, 0), (0, 2, 0), (7, 8, 9), ellipse=True)]
+    world = native.World(radiance=(0.5, 0.25, 1), image=native.Surroundings(np.float32(random.random((4, 8, 3)))),
+                         rotation=np.float64([[0, 1, 0], [-1, 0, 0], [0, 0, 1]]), seen=True)
+    scene = native.Scene(instances=[native.Instance(mesh, ground, transforms[0])], lights=lights, world=world,
+                         arrays=[native.InstanceArray(mesh, sand, transforms)])
+    camera = native.Camera.look_at((0, -5, 2), (0, 0, 0), (0, 0, 1), 40.0, 1.5)
+
+    native.write_scene(tmp_path / "heap.json", scene, camera, (48, 32))
+    read, read_camera, size = native.load_scene(tmp_path / "heap.json")
+    assert size == (48, 32) and read_camera == camera
+    np.testing.assert_array_equal(read.arrays[0].transforms, transforms)
+    assert read.arrays[0].material == sand and read.instances[0].material == ground
+    assert [type(light) for light in read.lights] == [type(light) for light in lights]
+
+    pictures = []
+    for each in (scene, read):
+        view = native.View(*size)
+        view.set_scene(each)
+        view.set_camera(camera)
+        view.render(4)
+        pictures.append(view.read())
+    assert pictures[0].max() > 0.1
+    np.testing.assert_array_equal(*pictures)
+
+
+def test_a_scene_is_not_written_where_it_cannot_be(tmp_path):
+    scene, camera, size = native.load_scene(SPHERE)
+    with pytest.raises(native.Error, match=r"\.$"):
+        native.write_scene(tmp_path / "none" / "heap.json", scene, camera, size)

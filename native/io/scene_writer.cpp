@@ -1,0 +1,114 @@
+// A scene as JSON with the files beside it that hold what is long.
+#include <fmt/format.h>
+
+#include <glm/gtc/type_ptr.hpp>
+#include <map>
+#include <span>
+#include <string>
+
+#include "base/file.h"
+#include "io/exr.h"
+#include "io/light_json.h"
+#include "io/mesh_file.h"
+#include "io/npy_file.h"
+#include "io/scene_json.h"
+
+namespace mesograin::io {
+
+using namespace scene;
+
+namespace {
+
+Json rows_of(const glm::dmat4& matrix) {
+  const glm::dmat4 rows = glm::transpose(matrix);
+  Json list = Json::array();
+  for (int row = 0; row < 4; ++row) list.push_back({rows[row].x, rows[row].y, rows[row].z, rows[row].w});
+  return list;
+}
+
+/// Of `all`, what the model reads: as read_material takes it.
+Json material_json(const Material& material) {
+  const ModelTraits& traits = traits_of(material.model);
+  const Json all = Json::parse(to_json(material));
+  Json json{{"kind", traits.kinds.front()}};
+  for (const std::string_view parameter : traits.parameters)
+    json[std::string(parameter)] = all.at(std::string(parameter));
+  return json;
+}
+
+class Writer {
+ public:
+  explicit Writer(const std::filesystem::path& path) : path_(path) {}
+
+  Json objects(const Scene& scene) {
+    Json list = Json::array();
+    for (const Instance& instance : scene.instances)
+      list.push_back({{"geometry", geometry(instance.mesh, instance.object_to_world)},
+                      {"material", material_json(instance.material)}});
+    for (std::size_t i = 0; i < scene.arrays.size(); ++i) {
+      const InstanceArray& array = scene.arrays[i];
+      const std::string file = beside(fmt::format("instances_{}.npy", i));
+      NumberArray numbers{{array.object_to_world().size(), 4, 4}, {}};
+      numbers.numbers.reserve(16 * numbers.shape[0]);
+      for (const glm::dmat4& transform : array.object_to_world()) {
+        const glm::dmat4 rows = glm::transpose(transform);
+        const std::span<const double> values(glm::value_ptr(rows), 16);
+        numbers.numbers.insert(numbers.numbers.end(), values.begin(), values.end());
+      }
+      base::write_file_atomically(path_.parent_path() / file, to_npy(numbers));
+      list.push_back({{"geometry", geometry(array.mesh, glm::dmat4(1.0))},
+                      {"material", material_json(array.material)},
+                      {"instances", {{"file", file}}}});
+    }
+    return list;
+  }
+
+  Json world(const World& world) {
+    Json json{{"radiance_linear_rgb", {world.radiance.r, world.radiance.g, world.radiance.b}}, {"seen", world.seen}};
+    if (!world.image) return json;
+    const std::string file = beside("world.exr");
+    image::Image picture{world.image->width(), world.image->height(), 3, {}};
+    for (const glm::vec3& texel : world.image->texels())
+      picture.pixels.insert(picture.pixels.end(), {texel.r, texel.g, texel.b});
+    write_exr(path_.parent_path() / file, picture.view());
+    json["image"] = file;
+    const glm::dmat3 rows = glm::transpose(world.world_to_image);
+    for (int row = 0; row < 3; ++row) json["world_to_image"].push_back({rows[row].x, rows[row].y, rows[row].z});
+    return json;
+  }
+
+ private:
+  std::string beside(const std::string& what) const { return path_.stem().string() + "_" + what; }
+
+  Json geometry(const MeshPointer& mesh, const glm::dmat4& object_to_world) {
+    std::string& file = meshes_[mesh.get()];
+    if (file.empty()) {
+      file = beside(fmt::format("mesh_{}.ply", meshes_.size() - 1));
+      base::write_file_atomically(path_.parent_path() / file, to_ply(*mesh));
+    }
+    Json json{{"shape", "mesh"}, {"file", file}};
+    if (object_to_world != glm::dmat4(1.0)) json["transform"] = rows_of(object_to_world);
+    return json;
+  }
+
+  std::filesystem::path path_;
+  std::map<const Mesh*, std::string> meshes_;
+};
+
+}  // namespace
+
+void write_scene(const std::filesystem::path& path, const SceneFile& file) {
+  base::require_writable(path);
+  Writer writer(path);
+  Json json{{"objects", writer.objects(file.scene)},
+            {"camera",
+             {{"world_to_camera", rows_of(file.camera.world_to_camera)},
+              {"camera_to_clip", rows_of(file.camera.camera_to_clip)}}},
+            {"resolution", {file.width, file.height}},
+            {"world", writer.world(file.scene.world)},
+            {"lights", Json::array()}};
+  for (const Light& light : file.scene.lights) json["lights"].push_back(to_json(light));
+  base::write_file_atomically(path, json.dump(1) + "\n");
+}
+
+}  // namespace mesograin::io
