@@ -2,6 +2,7 @@
 import bpy
 import pytest
 from mesograin.scene import export
+from mesograin.schema import presets as known
 from mesograin.ui import presets
 
 
@@ -58,7 +59,7 @@ def test_a_grain_looks_the_same_in_any_unit(native, render):
     assert abs(pictures[0] - pictures[1]).max() < 1e-4
 
 
-@pytest.mark.parametrize("row", presets.TABLE, ids=lambda row: row.name)
+@pytest.mark.parametrize("row", known.JENSEN.presets, ids=lambda row: row.name)
 def test_presets_set_what_the_table_says(row):
     mesh = bpy.data.meshes.new("Mesh")
     thing = bpy.data.objects.new("Object", mesh)
@@ -67,21 +68,21 @@ def test_presets_set_what_the_table_says(row):
     mesh.materials.append(material)
     material.mesograin.g, material.mesograin.scale = 0.8, 7.0
     bpy.context.view_layer.objects.active = thing
-    identifier = next(key for key, value in presets.BY_IDENTIFIER.items() if value is row)
+    identifier = row.identifier
     assert bpy.ops.mesograin.apply_preset(preset=identifier) == {"FINISHED"}
     grain = material.mesograin
     assert tuple(grain.sigma_s) == pytest.approx(row.sigma_s_reduced)
     assert tuple(grain.sigma_a) == pytest.approx(row.sigma_a)
     # The table's scattering is reduced, so it is the grain's only without anisotropy.
-    assert (grain.g, grain.scale, grain.model) == (0.0, 1.0, "model_1")
+    assert (grain.g, grain.scale, grain.model) == (0.0, 1.0, "model_2")
     assert grain.eta == pytest.approx(1.5 if row.name == "Marble" else 1.3)
 
 
 def test_presets_leave_a_translucent_model_alone():
     material = bpy.data.materials.new("Grain")
-    material.mesograin.model = "model_2"
-    presets.apply(presets.TABLE[0], material.mesograin)
-    assert material.mesograin.model == "model_2"
+    material.mesograin.model = "model_3"
+    presets.apply(known.JENSEN.presets[0], material.mesograin)
+    assert material.mesograin.model == "model_3"
 
 
 def test_undo_takes_a_preset_back():

@@ -41,3 +41,5 @@ OPAQUE = tuple(name for name, model in MODELS.items() if not model.translucent)
 TRANSLUCENT = tuple(name for name, model in MODELS.items() if model.translucent)
 # Those that know the cosine lobes of Cycles' Subsurface Scattering node.
 WITH_LOBES = tuple(name for name in TRANSLUCENT if not MODELS[name].mesh)
+# What stands for a translucent grain where no model was chosen.
+PREFERRED = next(name for name, model in MODELS.items() if model.translucent and model.preferred)

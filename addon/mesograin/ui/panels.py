@@ -7,7 +7,7 @@ from .. import native_module
 from ..engine import engine, status
 from ..scene import export, plain_materials
 from ..schema import models, parameters
-from . import presets
+from . import look, presets
 
 ENGINES = {engine.MesograinRenderEngine.bl_idname}
 # At a UI scale of 1, in pixels: the average width of a character, and what margins and an icon take of a panel's width.
@@ -64,7 +64,7 @@ class MESOGRAIN_PT_material(MesograinPanel, bpy.types.Panel):
     def draw(self, context):
         layout, grain = self.layout, context.material.mesograin
         layout.use_property_split = True
-        layout.use_property_decorate = False
+        layout.use_property_decorate = True
         if not draw_native_problem(layout, context):
             self._draw_material_problem(context)
         layout.prop(grain, "model")
@@ -73,6 +73,7 @@ class MESOGRAIN_PT_material(MesograinPanel, bpy.types.Panel):
                           icon="INFO")
         takes = models.MODELS[grain.model].parameters
         if "sigma_s" in takes:
+            self._draw_choice(context)
             self._draw_medium(context, grain)
         for name in takes:
             if name not in (*MEDIUM, *SURFACE):
@@ -86,11 +87,25 @@ class MESOGRAIN_PT_material(MesograinPanel, bpy.types.Panel):
         except native.Error as error:
             draw_sentence(self.layout, context, str(error))
 
+    def _draw_choice(self, context):
+        """How thick the object is for light, and a button that takes the model for it."""
+        thing = getattr(context, "object", None)
+        if thing is None or native_module.problem():
+            return
+        sentence = look.hint(context.material, thing, context.scene.mesograin.millimetres_per_unit)
+        if sentence:
+            draw_sentence(self.layout, context, sentence, icon="LIGHT")
+        self.layout.operator(look.MESOGRAIN_OT_choose_model.bl_idname)
+
     def _draw_medium(self, context, grain):
-        layout = self.layout
-        layout.prop(grain, "sigma_s", text="sigma_s")
-        layout.prop(grain, "sigma_a", text="sigma_a")
-        layout.prop(grain, "scale")
+        layout, said = self.layout, context.material.mesograin_look
+        layout.row().prop(said, "way", expand=True)
+        if said.way == "look":
+            look.draw(layout, said)
+        else:
+            layout.prop(grain, "sigma_s", text="sigma_s")
+            layout.prop(grain, "sigma_a", text="sigma_a")
+            layout.prop(grain, "scale")
         layout.prop(grain, "g")
         row = layout.row(heading="Profile")
         row.menu(MESOGRAIN_MT_profiles.bl_idname, text=_profile_label(grain))
@@ -101,6 +116,8 @@ class MESOGRAIN_PT_material(MesograinPanel, bpy.types.Panel):
         draw_sentence(column, context, f"sigma per mm; mean free path {paths} mm", icon="NONE")
 
     def _draw_surface(self, grain, takes):
+        if "eta" in takes:
+            self.layout.prop(grain.id_data.mesograin_look, "surroundings")
         for name, boundaries in SURFACE.items():
             if name in takes:
                 row = self.layout.row()
@@ -135,7 +152,7 @@ class MESOGRAIN_PT_light(MesograinPanel, bpy.types.Panel):
     def draw(self, context):
         layout, light = self.layout, context.light
         layout.use_property_split = True
-        layout.use_property_decorate = False
+        layout.use_property_decorate = True
         layout.prop(light, "type")
         layout.prop(light, "color")
         layout.prop(light, "energy", text="Irradiance" if light.type == "SUN" else "Power")
@@ -162,7 +179,7 @@ class MESOGRAIN_PT_sampling(MesograinPanel, bpy.types.Panel):
     def draw(self, context):
         layout, settings = self.layout, context.scene.mesograin
         layout.use_property_split = True
-        layout.use_property_decorate = False
+        layout.use_property_decorate = True
         if not draw_native_problem(layout, context):
             for sentence in status.complaints():
                 draw_sentence(layout, context, sentence)

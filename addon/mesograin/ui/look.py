@@ -1,0 +1,183 @@
+# A grain as an artist says it: material.mesograin_look, kept in step with material.mesograin by being computed from it.
+import bpy
+import numpy as np
+from bpy.props import EnumProperty, FloatProperty, FloatVectorProperty, PointerProperty
+
+from .. import native_module
+from ..schema import advice, models
+from ..scene import thick_layer
+
+INDICES = {"air": 1.0, "water": 1.333, "oil": 1.47}
+# How round a grain must be to count as a sphere: 36 pi V^2 / S^3, 0.52 of a cube.
+ROUND = 0.8
+UNKNOWN = (0.0, 0.0, 0.0)
+
+
+def _colour(look):
+    grain = look.id_data.mesograin
+    albedos = thick_layer.reduced(grain.sigma_a, grain.sigma_s, grain.g)[1]
+    try:
+        return thick_layer.colour(tuple(albedos), grain.eta, grain.boundary)
+    except _sentences():
+        return UNKNOWN
+
+
+def _set_colour(look, colour):
+    _set(look, colour, _paths(look))
+
+
+def _paths(look):
+    grain = look.id_data.mesograin
+    return thick_layer.mean_free_paths(grain.sigma_a, grain.sigma_s, grain.g, grain.scale)
+
+
+def _set_paths(look, paths):
+    # The albedos stay as they are to the last digit: it is the coefficients that are scaled.
+    grain = look.id_data.mesograin
+    extinctions = thick_layer.reduced(grain.sigma_a, grain.sigma_s, grain.g)[0]
+    scale = _scale(grain)
+    factors = [1.0 / (path * scale * t) if t > 0.0 else 0.0 for path, t in zip(paths, extinctions)]
+    empty = [1.0 / (path * scale * thick_layer.rest(grain.g)) if t <= 0.0 else 0.0
+             for path, t in zip(paths, extinctions)]
+    grain.sigma_a = [factor * a for factor, a in zip(factors, grain.sigma_a)]
+    grain.sigma_s = [factor * s + more for factor, s, more in zip(factors, grain.sigma_s, empty)]
+
+
+def _set(look, colour, paths):
+    grain = look.id_data.mesograin
+    scale = _scale(grain)
+    try:
+        sigma_a, sigma_s = thick_layer.coefficients(colour, [path * scale for path in paths], grain.g, grain.eta,
+                                                    grain.boundary)
+    except _sentences():
+        return
+    grain.sigma_a, grain.sigma_s = sigma_a, sigma_s
+
+
+def _scale(grain):
+    if grain.scale <= 0.0:
+        grain.scale = 1.0
+    return grain.scale
+
+
+def _sentences():
+    """What may go wrong by a user's doing, or for want of the native module."""
+    try:
+        return (native_module.Unavailable, native_module.get().Error)
+    except native_module.Unavailable:
+        return (native_module.Unavailable,)
+
+
+def _surround(look, _context):
+    index = INDICES[look.surroundings]
+    look.id_data.mesograin.eta *= look.index_around / index
+    look.index_around = index
+
+
+class LookProperties(bpy.types.PropertyGroup):
+    """`material.mesograin_look`. Of colour and mean free path it holds nothing: they are the coefficients."""
+
+    way: EnumProperty(name="Set by", default="coefficients", items=(
+        ("coefficients", "Coefficients", "Say the medium as physics does: sigma_s, sigma_a and a scale", 0),
+        ("look", "Look", "Say the medium by the colour of a thick layer and how far light goes in it", 1)))
+    colour: FloatVectorProperty(
+        name="Colour", subtype="COLOR", size=3, min=0.0, max=1.0, get=_colour, set=_set_colour,
+        description="Colour that a layer without end has under an even sky: lighter is less absorption. Mean free paths"
+        " stay. With g it is that of the reduced medium")
+    mean_free_path: FloatVectorProperty(
+        name="Free Path", size=3, min=thick_layer.SHORTEST, max=thick_layer.LONGEST, precision=3, get=_paths,
+        set=_set_paths, description="How far light of each channel goes, in mm, before it has lost its direction or is"
+        " absorbed: longer looks clearer. The colour stays")
+    surroundings: EnumProperty(
+        name="Lies in", default="air", update=_surround, description="What is around the grain. eta is relative to it: a"
+        " wet grain refracts and reflects less, and more of what is inside shows", items=tuple(
+            (name, name.capitalize(), f"Index of refraction {index:g}", number)
+            for number, (name, index) in enumerate(INDICES.items())))
+    index_around: FloatProperty(default=1.0, options={"HIDDEN"})
+
+    def forget_surroundings(self):
+        """The grain lies in air from here on, and its eta is what it is."""
+        self.index_around = INDICES["air"]
+        self.surroundings = "air"
+
+
+def hint(material, thing, millimetres_per_unit):
+    """A sentence on how thick a bpy.types.Object of this material is for light; empty where there is nothing to say."""
+    paths = _paths(material.mesograin_look)
+    sizes = [size * millimetres_per_unit for size in thing.dimensions]
+    thick = thick_layer.thickness(sizes, paths)
+    if not thick > 0.0 or sorted(paths)[1] >= thick_layer.LONGEST:
+        return ""
+    return f"{thick:.2g} mean free paths thick: {thick_layer.looks(thick)}."
+
+
+def advise(material, thing, millimetres_per_unit):
+    """advice.Advice for a mesh object of this material; None for what has no volume."""
+    shape = _shape(thing)
+    if shape is None:
+        return None
+    volume, area, closed = shape
+    radius = (0.75 * volume / np.pi) ** (1.0 / 3.0) * millimetres_per_unit / sorted(_paths(material.mesograin_look))[1]
+    return advice.advise(max(radius, 1e-6), 36.0 * np.pi * volume**2 / area**3 > ROUND, closed)
+
+
+def _shape(thing):
+    """(volume, area, whether it is closed) of a mesh object in the scene's units."""
+    if thing is None or thing.type != "MESH" or not thing.data.polygons:
+        return None
+    mesh = thing.data
+    mesh.calc_loop_triangles()
+    corners = np.empty(3 * len(mesh.loop_triangles), dtype=np.int32)
+    mesh.loop_triangles.foreach_get("vertices", corners)
+    places = np.empty(3 * len(mesh.vertices), dtype=np.float32)
+    mesh.vertices.foreach_get("co", places)
+    linear = np.array(thing.matrix_world.to_3x3(), dtype=np.float64)
+    a, b, c = (places.reshape(-1, 3).astype(np.float64) @ linear.T)[corners.reshape(-1, 3)].transpose(1, 0, 2)
+    normals = np.cross(b - a, c - a)
+    volume = abs(np.einsum("ij,ij->", a, normals)) / 6.0
+    area = 0.5 * np.linalg.norm(normals, axis=1).sum()
+    edges = np.sort(corners.reshape(-1, 3)[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+    closed = bool((np.unique(edges, axis=0, return_counts=True)[1] == 2).all())
+    return (volume, area, closed) if volume > 0.0 and area > 0.0 else None
+
+
+class MESOGRAIN_OT_choose_model(bpy.types.Operator):
+    bl_idname = "mesograin.choose_model"
+    bl_label = "Choose Model"
+    bl_description = ("Take the cheapest model whose measured error is under "
+                      f"{advice.TOLERANCE:g} % for this object's size, shape and medium")
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context):
+        return context.object is not None and context.object.active_material is not None
+
+    def execute(self, context):
+        material = getattr(context, "material", None) or context.object.active_material
+        advised = advise(material, context.object, context.scene.mesograin.millimetres_per_unit)
+        if advised is None:
+            self.report({"WARNING"}, f"'{context.object.name}' encloses nothing: a grain needs a mesh with a volume.")
+            material.mesograin.model = models.PREFERRED
+            return {"FINISHED"}
+        material.mesograin.model = advised.model
+        self.report({"INFO"}, advised.sentence)
+        return {"FINISHED"}
+
+
+def draw(layout, look):
+    """The rows that stand for sigma_s, sigma_a and scale."""
+    layout.prop(look, "colour")
+    layout.prop(look, "mean_free_path")
+
+
+_register_classes, _unregister_classes = bpy.utils.register_classes_factory((LookProperties, MESOGRAIN_OT_choose_model))
+
+
+def register():
+    _register_classes()
+    bpy.types.Material.mesograin_look = PointerProperty(type=LookProperties)
+
+
+def unregister():
+    del bpy.types.Material.mesograin_look
+    _unregister_classes()

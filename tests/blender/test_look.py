@@ -1,0 +1,114 @@
+# A grain said as artists say it, in step with its coefficients; how thick it is; the model that is chosen for it.
+import bpy
+import numpy as np
+import pytest
+from mesograin.schema import presets as known
+from mesograin.ui import look, presets
+
+
+@pytest.fixture
+def material():
+    material = bpy.data.materials.new("Grain")
+    presets.apply(known.BY_IDENTIFIER["apple"], material.mesograin)
+    return material
+
+
+def test_colour_and_path_tell_what_the_coefficients_are(material, native):
+    said, grain = material.mesograin_look, material.mesograin
+    assert tuple(said.mean_free_path) == pytest.approx(
+        [1.0 / (a + s) for a, s in zip(grain.sigma_a, grain.sigma_s)], rel=1e-5)
+    sent_back = native.half_space_albedo(native.Material(model="model_1", sigma_a=grain.sigma_a, sigma_s=grain.sigma_s,
+                                                         eta=grain.eta))
+    white = native.half_space_albedo(native.Material(model="model_1", sigma_a=(0.0,) * 3, sigma_s=(1.0,) * 3,
+                                                     eta=grain.eta))
+    assert tuple(said.colour) == pytest.approx([part / whole for part, whole in zip(sent_back, white)], abs=1e-5)
+
+
+def test_a_colour_leaves_the_paths_and_a_path_the_colour(material, native):
+    said = material.mesograin_look
+    material.mesograin.g, material.mesograin.scale = 0.4, 3.0
+    paths = tuple(said.mean_free_path)
+    said.colour = (0.9, 0.5, 0.1)
+    assert tuple(said.colour) == pytest.approx((0.9, 0.5, 0.1), abs=1e-3)
+    assert tuple(said.mean_free_path) == pytest.approx(paths, rel=1e-4)
+    said.mean_free_path = (0.5, 1.0, 2.0)
+    assert tuple(said.mean_free_path) == pytest.approx((0.5, 1.0, 2.0), rel=1e-4)
+    assert tuple(said.colour) == pytest.approx((0.9, 0.5, 0.1), abs=1e-3)
+    assert (material.mesograin.g, material.mesograin.scale) == (pytest.approx(0.4), 3.0)
+
+
+def test_a_medium_of_nothing_has_a_colour_and_a_path(material, native):
+    grain, said = material.mesograin, material.mesograin_look
+    grain.sigma_a = grain.sigma_s = (0.0, 0.0, 0.0)
+    grain.scale = 0.0
+    assert tuple(said.colour) == (0.0, 0.0, 0.0) and min(said.mean_free_path) > 1e5
+    said.mean_free_path = (1.0, 1.0, 1.0)
+    assert tuple(said.mean_free_path) == pytest.approx((1.0, 1.0, 1.0), rel=1e-5)
+    said.colour = (0.5, 0.5, 0.5)
+    assert tuple(said.colour) == pytest.approx((0.5, 0.5, 0.5), abs=1e-3)
+
+
+def test_water_around_a_grain_is_taken_back(material):
+    grain, said = material.mesograin, material.mesograin_look
+    grain.eta = 1.544
+    said.surroundings = "water"
+    assert grain.eta == pytest.approx(1.544 / 1.333, rel=1e-5)
+    said.surroundings = "oil"
+    assert grain.eta == pytest.approx(1.544 / 1.47, rel=1e-5)
+    said.surroundings = "air"
+    assert grain.eta == pytest.approx(1.544, rel=1e-5)
+    said.surroundings = "water"
+    presets.apply(known.BY_IDENTIFIER["salt"], grain)
+    assert grain.eta == pytest.approx(1.544) and said.surroundings == "air"
+
+
+def grain_object(material, size, is_cube=False):
+    make = bpy.ops.mesh.primitive_cube_add if is_cube else bpy.ops.mesh.primitive_uv_sphere_add
+    make(**({"size": size} if is_cube else {"radius": 0.5 * size}))
+    thing = bpy.context.object
+    thing.data.materials.append(material)
+    bpy.context.view_layer.update()
+    return thing
+
+
+def test_the_hint_knows_size_and_unit(material, native):
+    path = sorted(material.mesograin_look.mean_free_path)[1]
+    thing = grain_object(material, 7.0 * path)
+    assert look.hint(material, thing, 1.0) == "7 mean free paths thick: light shines through its rim."
+    assert "looks solid" in look.hint(material, thing, 10.0)
+    assert "clear" in look.hint(material, thing, 0.1)
+
+
+@pytest.mark.parametrize("paths, is_cube, model", [(8.0, False, "model_2"), (150.0, False, "model_1"),
+                                                   (6.0, True, "transport")])
+def test_a_model_is_chosen_by_size_and_shape(material, native, paths, is_cube, model):
+    thing = grain_object(material, paths * sorted(material.mesograin_look.mean_free_path)[1], is_cube)
+    advised = look.advise(material, thing, 1.0)
+    assert bpy.ops.mesograin.choose_model() == {"FINISHED"}
+    assert material.mesograin.model == advised.model == model
+    assert advised.error <= 10.0
+
+
+def test_an_open_cube_is_told_from_a_closed_one(material, native):
+    thing = grain_object(material, 6.0 * sorted(material.mesograin_look.mean_free_path)[1], True)
+    volume, area, closed = look._shape(thing)
+    assert closed and 36.0 * np.pi * volume**2 / area**3 == pytest.approx(np.pi / 6.0, rel=1e-6)
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.mesh.select_all(action="DESELECT")
+    bpy.ops.object.mode_set(mode="OBJECT")
+    thing.data.polygons[0].select = True
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.mesh.delete(type="FACE")
+    bpy.ops.object.mode_set(mode="OBJECT")
+    assert not look._shape(thing)[2] and look.advise(material, thing, 1.0).model == "model_3"
+
+
+def test_every_preset_can_be_applied(native):
+    bpy.ops.mesh.primitive_uv_sphere_add()
+    bpy.context.object.data.materials.append(bpy.data.materials.new("Grain"))
+    for identifier, preset in known.BY_IDENTIFIER.items():
+        assert bpy.ops.mesograin.apply_preset(preset=identifier) == {"FINISHED"}
+        grain = bpy.context.object.active_material.mesograin
+        assert tuple(grain.sigma_s) == pytest.approx(preset.sigma_s)
+        assert (grain.g, grain.eta, grain.roughness) == pytest.approx((preset.g, preset.eta, preset.roughness))
+        assert grain.boundary == preset.boundary

@@ -1,0 +1,107 @@
+"""Colours of thick layers to coefficients and back, presets, and the choice of a model by what was measured."""
+
+import itertools
+import re
+
+import mesograin_native as native
+import pytest
+
+from addon_rooms import ADDON, room
+
+thick_layer = room("scene.thick_layer")
+presets = room("schema.presets")
+advice = room("schema.advice")
+models = room("schema.models")
+
+COLOURS = ((0.8, 0.5, 0.2), (0.0, 0.01, 0.99), (0.95, 0.95, 0.95))
+
+
+@pytest.mark.parametrize("colour", COLOURS)
+@pytest.mark.parametrize("eta, boundary", [(1.0, "index_matched"), (1.3, "dielectric"), (1.55, "dielectric")])
+def test_a_layer_has_the_colour_that_was_asked_for(colour, eta, boundary):
+    sigma_a, sigma_s = thick_layer.coefficients(colour, (0.5, 1.0, 2.0), 0.0, eta, boundary)
+    made, white = (native.half_space_albedo(native.Material(
+        model="model_1", sigma_a=medium[0], sigma_s=medium[1], eta=eta, boundary=boundary))
+        for medium in ((sigma_a, sigma_s), ((0.0, 0.0, 0.0), (1.0, 1.0, 1.0))))
+    assert [part / whole for part, whole in zip(made, white)] == pytest.approx(colour, abs=2e-5)
+    assert thick_layer.mean_free_paths(sigma_a, sigma_s, 0.0) == pytest.approx((0.5, 1.0, 2.0))
+
+
+@pytest.mark.parametrize("g", [-0.5, 0.0, 0.8])
+def test_colour_and_path_say_the_same_as_coefficients(g):
+    sigma_a, sigma_s = (0.003, 0.034, 0.46), (2.29, 2.39, 1.97)
+    albedos = thick_layer.reduced(sigma_a, sigma_s, g)[1]
+    colour = thick_layer.colour(tuple(albedos), 1.3, "dielectric")
+    paths = thick_layer.mean_free_paths(sigma_a, sigma_s, g)
+    back = thick_layer.coefficients(colour, paths, g, 1.3, "dielectric")
+    assert back[0] == pytest.approx(sigma_a, rel=2e-3)
+    assert back[1] == pytest.approx(sigma_s, rel=2e-3)
+
+
+def test_colours_are_found_quickly(monkeypatch):
+    looked_up = []
+    colour = thick_layer.colour
+    monkeypatch.setattr(thick_layer, "colour", lambda *of: looked_up.append(of) or colour(*of))
+    for wanted in COLOURS:
+        thick_layer.albedos_of_colour(wanted, 1.3, "dielectric")
+    assert len(looked_up) <= 20 * len(COLOURS)
+
+
+def test_what_is_thick_is_told_from_what_is_thin():
+    assert thick_layer.thickness((2.0, 2.0, 2.0), (1.0, 2.0, 4.0)) == pytest.approx(1.0)
+    assert thick_layer.thickness((2.0, 2.0, 0.0), (1.0, 1.0, 1.0)) == 0.0
+    assert len({thick_layer.looks(thick) for thick in (0.5, 3.0, 10.0, 100.0)}) == 4
+
+
+def test_presets_are_grains_that_the_native_module_takes():
+    found = [preset for group in presets.GROUPS for preset in group.presets]
+    assert len(presets.BY_IDENTIFIER) == len(found)
+    assert [preset.name for preset in presets.GRAINS.presets] == [
+        "Sand", "Salt", "Sugar", "Snow", "Ice", "Rice", "Glass beads"]
+    assert [group.measured for group in presets.GROUPS] == [False, True, True]
+    for preset in found:
+        material = native.Material(model="model_2", sigma_a=preset.sigma_a, sigma_s=preset.sigma_s, g=preset.g,
+                                   eta=preset.eta, roughness=preset.roughness, boundary=preset.boundary)
+        assert [(1.0 - preset.g) * channel for channel in material.sigma_s] == pytest.approx(preset.sigma_s_reduced)
+
+
+def test_grains_have_the_colours_that_they_are_known_for():
+    def colour(identifier):
+        preset = presets.BY_IDENTIFIER[identifier]
+        return thick_layer.colour(tuple(thick_layer.reduced(preset.sigma_a, preset.sigma_s, preset.g)[1]), preset.eta,
+                                  preset.boundary)
+
+    sand, snow, sugar = colour("sand"), colour("snow"), colour("sugar")
+    assert sand[0] > sand[1] > sand[2] and sand[0] < 0.8
+    # Pure deep snow reflects 0.97 and more of visible light (Wiscombe and Warren 1980, figure 8).
+    assert min(snow) > 0.95
+    assert min(sugar) > 0.8
+
+
+def test_the_measured_errors_are_those_of_the_docs():
+    page = (ADDON.parent / "docs/accuracy.md").read_text()
+    row = re.search(r"^\| model_1 \|(.*)\|$", page, re.MULTILINE).group(1).split("|")
+    assert [float(number) for number in row[:5]] == list(advice.ROUND["model_1"].values())
+    pictures = [line.split("|") for line in (ADDON.parent / "docs/shapes.md").read_text().splitlines()
+                if line.startswith("| sphere")]
+    for radius, error in advice.ROUND["model_2"].items():
+        errors = [float(cell.split("/")[0]) for row in pictures if float(row[2]) > 1.0 and float(row[4]) == radius
+                  for cell in row[5:8]]
+        assert len(errors) == 18 and sum(errors) / len(errors) == pytest.approx(error, abs=0.06)
+
+
+@pytest.mark.parametrize("radius, is_round, closed, model", [
+    (0.5, True, True, "model_2"), (5.0, True, True, "model_2"), (60.0, True, True, "model_1"),
+    (3.0, False, True, "transport"), (3.0, False, False, "model_3"), (100.0, False, True, "model_1")])
+def test_the_cheapest_model_that_is_near_enough(radius, is_round, closed, model):
+    advised = advice.advise(radius, is_round, closed)
+    assert advised.model == model and model in models.NAMES
+    assert advised.sentence.endswith(".") and f"{advised.error:.2g}" in advised.sentence
+
+
+def test_an_error_lies_between_those_measured():
+    table = advice.ROUND["model_1"]
+    for lower, upper in itertools.pairwise(sorted(table)):
+        assert table[upper] < advice.error_at(table, (lower * upper) ** 0.5) < table[lower]
+        assert advice.error_at(table, upper) == pytest.approx(table[upper])
+    assert advice.error_at(table, 1e6) == table[48.0]
