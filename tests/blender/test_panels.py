@@ -17,13 +17,16 @@ from mesograin.ui.side_task import results
 # Pixels at a UI scale of 1, in a Properties editor of Blender's default layout on a screen 1920 wide, 333 across: what
 # a label left of its value gets, and one of two columns in a box.
 LABEL, HALF = 100, 115
+# What a choice as wide as the panel has for the name of what was chosen.
+WHOLE = 180
 
 
 class Layout:
-    """Takes whatever a panel draws. labels: what stands left of values. menus: their names."""
+    """Takes whatever a panel draws. labels: what stands left of values. menus: their names. whole: properties as wide
+    as the panel."""
 
     def __init__(self):
-        self.labels, self.menus = [], []
+        self.labels, self.menus, self.whole = [], [], []
 
     def __getattr__(self, name):
         return lambda *_, **named: self if "heading" not in named else (self.labels.append(named["heading"]), self)[1]
@@ -32,6 +35,8 @@ class Layout:
         declared = owner.bl_rna.properties[name]
         if text != "" and declared.type != "BOOLEAN":  # whose names stand right of their boxes
             self.labels.append(declared.name if text is None else text)
+        if text == "":
+            self.whole.append(name)
 
     def menu(self, name, **_):
         self.menus.append(name)
@@ -69,9 +74,10 @@ def material():
 @pytest.mark.parametrize("model", models.NAMES)
 def test_no_label_of_a_grain_is_cut_off(material, model):
     material.mesograin.model = model
-    labels = draw(panels.MESOGRAIN_PT_material, material=material).labels
-    assert len(labels) >= 2
-    assert {label: width(label) for label in labels if width(label) > LABEL} == {}
+    drawn = draw(panels.MESOGRAIN_PT_material, material=material)
+    assert drawn.whole == ["model"] and len(drawn.whole + drawn.labels) >= 2
+    assert {label: width(label) for label in drawn.labels if width(label) > LABEL} == {}
+    assert width(models.MODELS[model].label) < WHOLE
 
 
 @pytest.mark.parametrize("panel", [panels.MESOGRAIN_PT_sampling, bake_panel.MESOGRAIN_PT_bake])

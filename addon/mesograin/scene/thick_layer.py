@@ -1,5 +1,5 @@
 # The colour of a layer without end, and the coefficients that a medium needs to have it.
-"""A grain said as artists say it: by the colour that a thick layer of its medium has, and by how far light goes in it."""
+"""A grain said as artists say it: by the colour of a thick layer of its medium, and by how far light goes in it."""
 
 import functools
 import math

@@ -48,8 +48,9 @@ def advise(radius, is_round, closed=True):
                 return _advice(model, error, shape, radius)
     if closed:
         return _advice("transport", ANGULAR["transport"][3.0], "cube, flake and rice", radius)
-    return Advice("model_3", ANGULAR["model_3"][3.0],
-                  "Model 3: its mesh is open, which transport cannot take; measured 13 % off on shapes that are no spheres.")
+    error = ANGULAR["model_3"][3.0]
+    return Advice("model_3", error, f"Model 3: its mesh is open, which transport cannot take; measured {error:.2g} % "
+                  "off on cube, flake and rice.")
 
 
 def _advice(model, error, shape, radius):

@@ -78,19 +78,19 @@ class LookProperties(bpy.types.PropertyGroup):
     """`material.mesograin_look`. Of colour and mean free path it holds nothing: they are the coefficients."""
 
     way: EnumProperty(name="Set by", default="coefficients", items=(
-        ("coefficients", "Coefficients", "Say the medium as physics does: sigma_s, sigma_a and a scale", 0),
+        ("coefficients", "Sigma", "Say the medium as physics does: sigma_s, sigma_a and a scale", 0),
         ("look", "Look", "Say the medium by the colour of a thick layer and how far light goes in it", 1)))
     colour: FloatVectorProperty(
         name="Colour", subtype="COLOR", size=3, min=0.0, max=1.0, get=_colour, set=_set_colour,
-        description="Colour that a layer without end has under an even sky: lighter is less absorption. Mean free paths"
-        " stay. With g it is that of the reduced medium")
+        description="What an endless layer sends back of the light that enters it from everywhere: lighter is less"
+        " absorption. Free paths stay. With g it is that of the reduced medium")
     mean_free_path: FloatVectorProperty(
         name="Free Path", size=3, min=thick_layer.SHORTEST, max=thick_layer.LONGEST, precision=3, get=_paths,
-        set=_set_paths, description="How far light of each channel goes, in mm, before it has lost its direction or is"
-        " absorbed: longer looks clearer. The colour stays")
+        set=_set_paths, description="How far light of each channel goes, in mm, before it has lost its direction or"
+        " is absorbed: longer looks clearer. The colour stays")
     surroundings: EnumProperty(
-        name="Lies in", default="air", update=_surround, description="What is around the grain. eta is relative to it: a"
-        " wet grain refracts and reflects less, and more of what is inside shows", items=tuple(
+        name="Lies in", default="air", update=_surround, description="What is around the grain. eta is relative to"
+        " it: a wet grain refracts and reflects less, and more of what is inside shows", items=tuple(
             (name, name.capitalize(), f"Index of refraction {index:g}", number)
             for number, (name, index) in enumerate(INDICES.items())))
     index_around: FloatProperty(default=1.0, options={"HIDDEN"})

@@ -13,6 +13,8 @@ ENGINES = {engine.MesograinRenderEngine.bl_idname}
 # At a UI scale of 1, in pixels: the average width of a character, and what margins and an icon take of a panel's width.
 CHARACTER_WIDTH = 6.5
 MARGINS = 95
+# What is left for text of one of a popover's units of width, 20 pixels.
+POPOVER_UNIT = 17
 MEDIUM = ("sigma_s", "sigma_a", "scale", "g", "profile")
 REFRACTING = ("dielectric", "lambert_refracted")
 SURFACE = {"boundary": (), "eta": REFRACTING, "roughness": REFRACTING, "masking": REFRACTING,
@@ -20,10 +22,13 @@ SURFACE = {"boundary": (), "eta": REFRACTING, "roughness": REFRACTING, "masking"
 """A grain's parameters as they are grouped; of the surface's, the boundaries for which they count."""
 
 
-def draw_sentence(layout, context, sentence, icon="ERROR"):
-    """A sentence of any length, wrapped to the region's width."""
-    pixels = context.region.width if context.region else 300
-    columns = max(8, int((pixels / context.preferences.system.ui_scale - MARGINS) / CHARACTER_WIDTH))
+def draw_sentence(layout, context, sentence, icon="ERROR", units=None):
+    """A sentence of any length, wrapped to the region's width, or to a popover's of so many units."""
+    if units:
+        pixels = units * POPOVER_UNIT
+    else:
+        pixels = (context.region.width if context.region else 300) / context.preferences.system.ui_scale - MARGINS
+    columns = max(8, int(pixels / CHARACTER_WIDTH))
     column = layout.column(align=True)
     column.scale_y = 0.8
     for line, text in enumerate(textwrap.wrap(sentence, columns)):
@@ -67,7 +72,9 @@ class MESOGRAIN_PT_material(MesograinPanel, bpy.types.Panel):
         layout.use_property_decorate = True
         if not draw_native_problem(layout, context):
             self._draw_material_problem(context)
-        layout.prop(grain, "model")
+        row = layout.row()  # as wide as the panel: the models' names are long
+        row.use_property_split = False
+        row.prop(grain, "model", text="")
         if plain_materials.is_plain(context.material):
             draw_sentence(layout, context, "No grain yet: it is drawn as its nodes say. Choose a model to make it one.",
                           icon="INFO")

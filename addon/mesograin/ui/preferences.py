@@ -1,4 +1,7 @@
-# The add-on's preferences: whether the native module works here, a button that proves it, and the cache of references.
+# The add-on's preferences: whether the native module works here, a button that proves it, diagnostics, and the cache.
+import platform
+import sys
+
 import bpy
 import numpy as np
 from bpy.props import IntProperty, StringProperty
@@ -6,6 +9,7 @@ from bpy.props import IntProperty, StringProperty
 from .. import native_module
 from ..cycles import reference_cache
 from ..cycles.cache import DEFAULT_LIMIT
+from ..engine import status
 from . import panels
 
 
@@ -48,6 +52,41 @@ def _worst_error(native):
     return float(np.max(np.abs(view.read()[..., :3] / 0.5 - 1.0)))
 
 
+def diagnostics():
+    """What a maintainer asks for, as text: versions, devices, the self-test, the last complaints."""
+    lines = [f"Blender {bpy.app.version_string} ({bpy.app.build_hash.decode(errors='replace')}), "
+             f"Python {sys.version.split()[0]}, {platform.platform()}"]
+    problem = native_module.problem()
+    if problem:
+        return "\n".join([*lines, problem])
+    native = native_module.get()
+    lines.append(f"Mesograin {native.__version__}: {native.__file__}")
+    try:
+        info = native.device_info()
+        lines.append(f"Device {info['chosen']}: {info['renderer']}, OpenGL {info['version']}")
+        lines += [f"  tried {attempt['device']}: {attempt['result']}" for attempt in info["tried"]]
+        lines.append(f"Self-test: relative error {_worst_error(native):.2g}")
+    except native.Error as error:
+        lines.append(str(error))
+    for kind in (status.RENDER, status.VIEWPORT):
+        latest = status.get(kind)
+        if latest is not None:
+            passes = ", ".join(f"{name} {milliseconds:.2f} ms" for name, milliseconds in latest.passes)
+            lines.append(f"Last {kind}: {latest.width} x {latest.height}, {latest.samples} samples; {passes}")
+    return "\n".join([*lines, *status.complaints()])
+
+
+class MESOGRAIN_OT_copy_diagnostics(bpy.types.Operator):
+    bl_idname = "mesograin.copy_diagnostics"
+    bl_label = "Copy Diagnostics"
+    bl_description = "Copy versions, devices, the self-test's result and the last complaints, for a report"
+
+    def execute(self, context):
+        context.window_manager.clipboard = diagnostics()
+        self.report({"INFO"}, "Diagnostics are in the clipboard.")
+        return {"FINISHED"}
+
+
 class MesograinPreferences(bpy.types.AddonPreferences):
     bl_idname = reference_cache.ADDON
 
@@ -64,7 +103,9 @@ class MesograinPreferences(bpy.types.AddonPreferences):
             native = native_module.get()
             layout.label(text=f"Native module {native.__version__}: {native.__file__}", icon="CHECKMARK")
             self._draw_devices(context, native)
-        layout.operator(MESOGRAIN_OT_self_test.bl_idname)
+        row = layout.row()
+        row.operator(MESOGRAIN_OT_self_test.bl_idname)
+        row.operator(MESOGRAIN_OT_copy_diagnostics.bl_idname, icon="COPYDOWN")
         layout.prop(self, "cache_folder")
         layout.prop(self, "cache_limit")
         reference_cache.draw(layout)
@@ -80,4 +121,5 @@ class MesograinPreferences(bpy.types.AddonPreferences):
             self.layout.label(text=f"Device {attempt['device']}: {attempt['result']}", icon=icon)
 
 
-register, unregister = bpy.utils.register_classes_factory((MESOGRAIN_OT_self_test, MesograinPreferences))
+register, unregister = bpy.utils.register_classes_factory(
+    (MESOGRAIN_OT_self_test, MESOGRAIN_OT_copy_diagnostics, MesograinPreferences))
