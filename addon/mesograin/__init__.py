@@ -16,7 +16,7 @@ ROOMS = ("compat", "native_module",
          "scene.smooth_normals", "scene.properties", "scene.meshes", "scene.heaps", "scene.lights",
          "scene.surroundings", "scene.plain_materials", "scene.thick_layer", "scene.export",
          "engine.status", "engine.viewport", "engine.viewport_text", "engine.engine",
-         "cycles.reference_cache", "ui.presets", "ui.look", "ui.panels", "ui.notes", "ui.preferences",
+         "cycles.reference_cache", "ui.presets", "ui.look", "ui.conversion", "ui.panels", "ui.notes", "ui.preferences",
          *(f"ui.side_task.{name}" for name in ("settings", "session", "pictures", "operators", "panel", "results")),
          *(f"ui.compare_panel.{name}" for name in ("properties", "session", "operators", "panel")),
          *(f"ui.bake_panel.{name}" for name in ("properties", "compared", "session", "operators", "panel")))

@@ -25,21 +25,27 @@ def build(name, recipe):
     """A new material from a recipe. Raises RuntimeError if a node has a socket that the recipe leaves open."""
     material = bpy.data.materials.new(name)
     try:
-        compat.use_nodes(material)
-        tree = material.node_tree
-        tree.nodes.clear()
-        nodes = {label: _build_node(tree, label, description) for label, description in recipe["nodes"].items()}
-        for source, output, target, socket in recipe["links"]:
-            tree.links.new(nodes[source].outputs[output], nodes[target].inputs[socket])
-        for label, node in nodes.items():
-            _check_sockets(node, recipe["nodes"][label])
-        for name_, value in recipe["material"].items():
-            if hasattr(material.cycles, name_):  # Blender 5 finds out by itself which volumes are homogeneous
-                setattr(material.cycles, name_, value)
+        build_into(material, recipe)
     except BaseException:
         bpy.data.materials.remove(material)
         raise
     return material
+
+
+def build_into(material, recipe):
+    """Gives a material the nodes of a recipe in place of its own. Raises RuntimeError as `build`."""
+    compat.use_nodes(material)
+    tree = material.node_tree
+    tree.nodes.clear()
+    nodes = {label: _build_node(tree, label, description) for label, description in recipe["nodes"].items()}
+    for source, output, target, socket in recipe["links"]:
+        tree.links.new(nodes[source].outputs[output], nodes[target].inputs[socket])
+    for column, (label, node) in enumerate(nodes.items()):
+        _check_sockets(node, recipe["nodes"][label])
+        node.location = (300.0 * column - 300.0 * len(nodes), 0.0)
+    for name, value in recipe["material"].items():
+        if hasattr(material.cycles, name):  # Blender 5 finds out by itself which volumes are homogeneous
+            setattr(material.cycles, name, value)
 
 
 def _build_node(tree, label, description):

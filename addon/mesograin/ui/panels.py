@@ -7,7 +7,7 @@ from .. import native_module
 from ..engine import engine, status
 from ..scene import export, plain_materials
 from ..schema import models, parameters
-from . import look, presets
+from . import conversion, look, presets
 
 ENGINES = {engine.MesograinRenderEngine.bl_idname}
 # At a UI scale of 1, in pixels: the average width of a character, and what margins and an icon take of a panel's width.
@@ -64,6 +64,7 @@ class MESOGRAIN_PT_material(MesograinPanel, bpy.types.Panel):
         return context.material is not None and super().poll(context)
 
     def draw_header_preset(self, _context):
+        self.layout.menu(conversion.MESOGRAIN_MT_conversion.bl_idname, text="", icon="NODE_MATERIAL")
         self.layout.menu(presets.MESOGRAIN_MT_presets.bl_idname, text="", icon="PRESET")
 
     def draw(self, context):

@@ -1,0 +1,163 @@
+# The grain that a Cycles material is: its medium and boundary, read from volume, Subsurface or Principled nodes.
+"""The other way from `recipes`: what those write is read back as it was, and of what artists build, as much as a grain
+can be. See `read`."""
+
+import math
+
+import bpy
+
+from .. import compat
+from ..schema import models
+from . import inversion, nodes
+
+GLASSY = ("BSDF_GLASS", "BSDF_REFRACTION")
+WEIGHTS = ("Subsurface Weight", "Subsurface")
+TRANSMISSION = ("Transmission Weight", "Transmission")
+
+
+class NoGrain(Exception):
+    """Why a material is none; one sentence."""
+
+
+def read(material):
+    """({parameter: value} with coefficients per scene unit, [what is lost]) of a bpy.types.Material. Raises NoGrain."""
+    if not compat.uses_nodes(material):
+        raise NoGrain(f"Material '{material.name}' has no nodes: choose a preset instead.")
+    output = material.node_tree.get_output_node("CYCLES")
+    surface, volume = (_linked(output.inputs[name]) if output else None for name in ("Surface", "Volume"))
+    lost = []
+    if volume is not None:
+        values = _medium(volume, lost)
+        values.update(_boundary(surface, lost))
+    elif surface is not None and surface.type == "SUBSURFACE_SCATTERING":
+        values = _subsurface(surface, lost)
+    elif surface is not None and surface.type == "BSDF_PRINCIPLED" and _weight(surface, WEIGHTS, lost) > 0.0:
+        values = _principled(surface, lost)
+    else:
+        raise NoGrain(f"Material '{material.name}' lets no light through: a grain needs a volume, a Subsurface "
+                      "Scattering node or a Principled one with a subsurface weight.")
+    values.update(model=models.PREFERRED, scale=1.0)
+    return values, list(dict.fromkeys(lost))
+
+
+def _linked(socket):
+    return socket.links[0].from_node if socket.is_linked else None
+
+
+def _value(node, name, lost):
+    """A socket's number or its three numbers; what is linked is lost but for plain values."""
+    socket = node.inputs[name]
+    source = _linked(socket)
+    if source is not None and source.type in ("RGB", "VALUE"):
+        socket = source.outputs[0]
+    elif source is not None:
+        lost.append(f"what is linked to {name} of '{node.name}'")
+    value = socket.default_value
+    return tuple(value[:3]) if hasattr(value, "__len__") else float(value)
+
+
+def _weight(node, names, lost):
+    return next((_value(node, name, lost) for name in names if name in node.inputs), 0.0)
+
+
+def _medium(node, lost):
+    """sigma_a, sigma_s and g of volume shaders and their sums; g is the mean by scattering."""
+    sigma_a, sigma_s, turned = _volume(node, lost)
+    total = sum(sigma_s)
+    return {"sigma_a": sigma_a, "sigma_s": sigma_s, "g": turned / total if total > 0.0 else 0.0}
+
+
+def _volume(node, lost):
+    """(sigma_a, sigma_s, sum over the channels of g sigma_s)."""
+    if node.type == "ADD_SHADER":
+        parts = [_volume(part, lost) for part in map(_linked, node.inputs) if part is not None]
+        return (*(tuple(map(math.fsum, zip(*side))) if parts else (0.0,) * 3
+                  for side in ([part[0] for part in parts], [part[1] for part in parts])),
+                math.fsum(part[2] for part in parts))
+    if node.type not in ("VOLUME_SCATTER", "VOLUME_ABSORPTION", "PRINCIPLED_VOLUME"):
+        raise NoGrain(f"The node '{node.name}' is no medium that a grain can have: use Volume Scatter and Volume"
+                      " Absorption.")
+    colour, density = _value(node, "Color", lost), _value(node, "Density", lost)
+    scattered = tuple(density * channel for channel in colour)
+    rest = tuple(density * max(1.0 - channel, 0.0) for channel in colour)
+    if node.type == "VOLUME_ABSORPTION":
+        return rest, (0.0, 0.0, 0.0), 0.0
+    g = _value(node, "Anisotropy", lost)
+    if getattr(node, "phase", "HENYEY_GREENSTEIN") != "HENYEY_GREENSTEIN":
+        lost.append(f"the phase function of '{node.name}', for which Henyey and Greenstein's stands")
+    if node.type == "VOLUME_SCATTER":
+        return (0.0, 0.0, 0.0), scattered, g * sum(scattered)
+    # Cycles' Principled Volume absorbs (1 - colour) (1 - sqrt(absorption colour)) of its density.
+    absorbed = tuple(channel * max(1.0 - math.sqrt(max(tint, 0.0)), 0.0)
+                     for channel, tint in zip(rest, _value(node, "Absorption Color", lost)))
+    if _value(node, "Emission Strength", lost) > 0.0 or _value(node, "Blackbody Intensity", lost) > 0.0:
+        lost.append(f"the emission of '{node.name}'")
+    return absorbed, scattered, g * sum(scattered)
+
+
+def _boundary(surface, lost):
+    """What light meets before it is in a volume."""
+    if surface is None:
+        return {"boundary": "index_matched"}
+    glassy = surface.type in GLASSY
+    if not glassy and not (surface.type == "BSDF_PRINCIPLED" and _weight(surface, TRANSMISSION, lost) > 0.0):
+        raise NoGrain(f"The node '{surface.name}' lets no light into the volume: use Glass, or no surface at all.")
+    if surface.type == "BSDF_REFRACTION":
+        lost.append(f"that '{surface.name}' reflects nothing")
+    if min(_value(surface, "Color" if glassy else "Base Color", lost)) < 1.0:
+        lost.append(f"the colour of '{surface.name}'")
+    return {"boundary": "dielectric", "eta": _value(surface, "IOR", lost),
+            "roughness": _value(surface, "Roughness", lost) ** 2}  # GGX's alpha
+
+
+def _subsurface(node, lost):
+    g = _value(node, "Anisotropy", lost) if node.falloff != "BURLEY" else 0.0
+    eta = _value(node, "IOR", lost)
+    values = _walk(_value(node, "Color", lost), _radii(node, "Radius", "Scale", lost), node.falloff, g, eta)
+    refracts = nodes.features().subsurface_refracts and node.falloff != "BURLEY"
+    values.update(boundary="lambert_refracted" if refracts else "lambert_lambert", eta=eta)
+    # GGX's alpha itself, unlike the other nodes' roughness.
+    values["roughness"] = _value(node, "Roughness", lost) if refracts else 0.0
+    return values
+
+
+def _principled(node, lost):
+    weight = _weight(node, WEIGHTS, lost)
+    if weight < 1.0:
+        lost.append(f"the {1.0 - weight:.0%} of '{node.name}' that is not subsurface scattering")
+    own = "Subsurface Color" in node.inputs  # up to Blender 3, where the radius has no scale but the weight
+    colour = _value(node, "Subsurface Color" if own else "Base Color", lost)
+    if own:
+        radii = tuple(weight * radius for radius in _value(node, "Subsurface Radius", lost))
+    else:
+        radii = _radii(node, "Subsurface Radius", "Subsurface Scale", lost)
+    if _value(node, "Metallic", lost) > 0.0:
+        lost.append(f"the metal of '{node.name}'")
+    g = _value(node, "Subsurface Anisotropy", lost)
+    method = node.subsurface_method
+    eta = _value(node, "IOR", lost)
+    values = _walk(colour, radii, method, 0.0 if method == "BURLEY" else g, eta)
+    values.update(boundary="dielectric", eta=eta, roughness=_value(node, "Roughness", lost) ** 2)
+    return values
+
+
+def _radii(node, radius, scale, lost):
+    factor = _value(node, scale, lost)
+    return tuple(factor * channel for channel in _value(node, radius, lost))
+
+
+def _walk(colour, radii, method, g, eta):
+    """The medium that Cycles walks in for a colour and radii: `inversion`, backwards."""
+    g = min(max(g, 0.0), inversion.ANISOTROPY_LIMIT)
+    albedos = [inversion.single_scattering_albedo(min(max(channel, 0.0), 1.0), g) for channel in colour]
+    rescales = method == "RANDOM_WALK_SKIN" or (method == "RANDOM_WALK" and "RANDOM_WALK_FIXED_RADIUS" in _methods())
+    factors = [inversion.skin_radius_factor(channel, eta) if rescales else inversion.FIXED_RADIUS_FACTOR
+               for channel in colour]
+    extinctions = [factor / (max(radius, 1e-9) * (1.0 - g)) for factor, radius in zip(factors, radii)]
+    return {"sigma_a": tuple((1.0 - albedo) * t for albedo, t in zip(albedos, extinctions)),
+            "sigma_s": tuple(albedo * t for albedo, t in zip(albedos, extinctions)), "g": g}
+
+
+def _methods():
+    declared = bpy.types.ShaderNodeSubsurfaceScattering.bl_rna.properties["falloff"].enum_items
+    return {item.identifier for item in declared}
