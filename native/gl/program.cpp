@@ -112,7 +112,8 @@ void Program::reflect() {
     const GLint location = glGetUniformLocation(handle_.name(), uniform.c_str());
     if (location < 0) continue;  // a member of a block
     GLuint unit = 0;
-    if (type == GL_SAMPLER_2D || type == GL_SAMPLER_2D_ARRAY || type == GL_SAMPLER_3D) {
+    if (type == GL_SAMPLER_2D || type == GL_SAMPLER_2D_ARRAY || type == GL_SAMPLER_3D ||
+        type == GL_UNSIGNED_INT_SAMPLER_2D) {
       unit = next_unit++;
       glProgramUniform1i(handle_.name(), location, static_cast<GLint>(unit));
     }
@@ -167,7 +168,8 @@ void Program::set(std::string_view uniform, const glm::mat4& value) const {
 }
 
 void Program::set(std::string_view sampler, const Texture& texture) const {
-  if (const Uniform* found = find(sampler, GL_SAMPLER_2D)) texture.bind(found->unit);
+  if (const Uniform* found = find(sampler, texture.holds_numbers() ? GL_UNSIGNED_INT_SAMPLER_2D : GL_SAMPLER_2D))
+    texture.bind(found->unit);
 }
 
 void Program::set(std::string_view sampler, const TextureArray& textures) const {

@@ -13,8 +13,14 @@ class Texture : public TextureStorage<GL_TEXTURE_2D> {
   /// Uploads tightly packed rows, first row at v = 0.
   void upload(GLenum components, GLenum type, const void* texels);
 
+  /// Whether its texels are integers, for a usampler2D.
+  bool holds_numbers() const { return holds_numbers_; }
+
   /// Linear or nearest filtering.
   void sample_linearly(bool linear) { filter(linear ? GL_LINEAR : GL_NEAREST); }
+
+ private:
+  bool holds_numbers_;
 };
 
 }  // namespace mesograin::gl

@@ -19,6 +19,11 @@ TextureArray::TextureArray(GLenum format, int width, int height, int layers)
       "draw fewer grains or lights, or choose model_1, which needs none");
 }
 
+void TextureArray::upload(int layer, GLenum components, GLenum type, const void* texels) {
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  glTextureSubImage3D(name(), 0, 0, 0, layer, width(), height(), 1, components, type, texels);
+}
+
 void TextureArray::read(int layer, float* texels) const {
   const GLsizei bytes = width() * height() * 4 * static_cast<GLsizei>(sizeof(float));
   glPixelStorei(GL_PACK_ALIGNMENT, 1);

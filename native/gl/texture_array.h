@@ -12,6 +12,9 @@ class TextureArray : public TextureStorage<GL_TEXTURE_2D_ARRAY> {
 
   int layers() const { return layers_; }
 
+  /// Uploads tightly packed rows of one layer, first row at v = 0.
+  void upload(int layer, GLenum components, GLenum type, const void* texels);
+
   /// Waits for the drawing and copies one layer as float RGBA into `texels`, first row y = 0.
   void read(int layer, float* texels) const;
 

@@ -1,7 +1,9 @@
 // The renderer for Python: the GIL is released while the device works, and Ctrl-C ends a render after its sample.
+#include <fmt/ranges.h>
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <chrono>
 #include <optional>
 #include <string>
@@ -128,6 +130,14 @@ void set_bake(render::View& view, std::vector<std::size_t> instances, const std:
   view.set_bake(bake);
 }
 
+void set_visibility(render::View& view, const std::string& by) {
+  const auto found = std::find(render::visibility_names.begin(), render::visibility_names.end(), by);
+  if (found == render::visibility_names.end())
+    throw Error("Visibility must be one of {}; got '{}'.", fmt::join(render::visibility_names, ", "), by);
+  const py::gil_scoped_release release;
+  view.set_visibility(static_cast<render::Visibility>(found - render::visibility_names.begin()));
+}
+
 py::dict uv_use(render::View& view) {
   render::UvUse use;
   {
@@ -193,6 +203,13 @@ void bind_view(py::module_& module) {
            "Sets how many light map samples model 3 takes for one pixel and sample, over all lights (default 16), and "
            "restarts the\n"
            "accumulation. Raises Error unless it is in [1, 65536].")
+      .def(
+          "set_visibility", &set_visibility, py::arg("by"),
+          "How it is found what is seen of arrays and what stands in their light: 'drawn' by the device, 'cast' by "
+          "rays "
+          "on all cores, or\n"
+          "'automatic', which is drawn where there is a GPU. Restarts the accumulation. Raises Error where rays cannot "
+          "be cast.")
       .def("set_camera", &render::View::set_camera, py::arg("camera"), Release(),
            "Restarts the accumulation; sends nothing.")
       .def("set_bake", &set_bake, py::arg("instances"), py::arg("view_from") = "above_surface",

@@ -16,6 +16,10 @@ struct Bounds {
     lower = glm::min(lower, middle - radius);
     upper = glm::max(upper, middle + radius);
   }
+  void include(const Bounds& other) {
+    lower = glm::min(lower, other.lower);
+    upper = glm::max(upper, other.upper);
+  }
 };
 
 }  // namespace mesograin::render

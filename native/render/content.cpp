@@ -101,11 +101,9 @@ Content::Content(DeviceCache& cache, const scene::Scene& scene, Content before,
     bounds_.include(draws_[i].centre - anchor_, draws_[i].radius);
     if (i != ground_) over_ground_.include(draws_[i].centre - anchor_, draws_[i].radius);
   }
-  const std::size_t in_arrays = instances_ ? instances_->count() : 0;
-  for (std::size_t i = 0; i < in_arrays; ++i) {
-    const glm::vec4& ball = instances_->ball(i);
-    bounds_.include(glm::dvec3(ball), ball.w);
-    over_ground_.include(glm::dvec3(ball), ball.w);
+  if (instances_) {
+    bounds_.include(instances_->bounds());
+    over_ground_.include(instances_->bounds());
   }
   find_shadows();
 }

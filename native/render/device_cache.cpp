@@ -68,7 +68,7 @@ void DeviceMaterial::bind(const gl::Program& program) const {
 DeviceCache::MeshEntry& DeviceCache::mesh_entry(const scene::MeshPointer& mesh) {
   MeshEntry& entry = meshes_[mesh.get()];
   // A new mesh may have been given the address of one that is gone.
-  if (entry.source.expired()) entry = {mesh, nullptr, nullptr, std::nullopt};
+  if (entry.source.expired()) entry = {mesh, nullptr, nullptr, nullptr, std::nullopt};
   return entry;
 }
 
@@ -87,6 +87,12 @@ std::shared_ptr<Details> DeviceCache::details(const scene::MeshPointer& mesh) {
   MeshEntry& entry = mesh_entry(mesh);
   if (!entry.details) entry.details = std::make_shared<Details>(*mesh, this->mesh(mesh));
   return entry.details;
+}
+
+std::shared_ptr<const casting::MeshTree> DeviceCache::tree(const scene::MeshPointer& mesh) {
+  MeshEntry& entry = mesh_entry(mesh);
+  if (!entry.tree) entry.tree = std::make_shared<casting::MeshTree>(*mesh);
+  return entry.tree;
 }
 
 bool DeviceCache::convex(const scene::MeshPointer& mesh) {
@@ -188,7 +194,8 @@ const gl::Program& DeviceCache::shading(const DeviceMaterial& material, const Sh
   if (material.light_maps()) defines.emplace_back("LIGHT_MAPS");
   if (scene::traits_of(material.model()).mesh) defines.emplace_back("WHOLE_GRAIN");
   if (shading.instanced) defines.emplace_back("INSTANCED");
-  if (shading.shadows) defines.emplace_back("SHADOWS");
+  if (shading.shadows != Shadows::none) defines.emplace_back("SHADOWS");
+  if (shading.shadows == Shadows::cast) defines.emplace_back("CAST_SHADOWS");
   if (shading.lights_at_place) defines.emplace_back("LIGHTS_AT_PLACE");
   return program(fmt::format("{} {} {}", pass, model, fmt::join(defines, " ")), gl::ShaderSource({vertex}, {}),
                  gl::ShaderSource({"passes/" + pass + ".frag", "models/" + model + ".glsl"}, defines));

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "casting/mesh_tree.h"
 #include "gl/program.h"
 #include "gl/texture.h"
 #include "gl/vertex_array.h"
@@ -20,11 +21,18 @@
 
 namespace mesograin::render {
 
+/// How a program learns what other objects leave of a light.
+enum class Shadows {
+  none,  ///< nothing stands in the light
+  maps,  ///< from what each light sees
+  cast,  ///< from what was found for each pixel
+};
+
 /// What a shading program is compiled for beside its material.
 struct Shading {
-  bool unwrapped = false;        ///< at its UVs; else as the camera sees it
-  bool instanced = false;        ///< one of an array of instances
-  bool shadows = false;          ///< something may stand in the light
+  bool unwrapped = false;  ///< at its UVs; else as the camera sees it
+  bool instanced = false;  ///< one of an array of instances
+  Shadows shadows = Shadows::none;
   bool lights_at_place = false;  ///< the place that is shaded draws its own directions of lights that have a place
 };
 
@@ -74,6 +82,9 @@ class DeviceCache {
   /// Its levels of detail, the mesh itself among them.
   std::shared_ptr<Details> details(const scene::MeshPointer& mesh);
 
+  /// For rays; see casting::available.
+  std::shared_ptr<const casting::MeshTree> tree(const scene::MeshPointer& mesh);
+
   /// As scene::is_convex, found once.
   bool convex(const scene::MeshPointer& mesh);
 
@@ -116,6 +127,7 @@ class DeviceCache {
     std::weak_ptr<const scene::Mesh> source;
     std::shared_ptr<gl::VertexArray> device;
     std::shared_ptr<Details> details;
+    std::shared_ptr<const casting::MeshTree> tree;
     std::optional<bool> convex;
   };
   MeshEntry& mesh_entry(const scene::MeshPointer& mesh);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <chrono>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -13,6 +14,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "gl/context_thread.h"
 #include "render/sequence.h"
 
 namespace mesograin::render {
@@ -29,6 +31,14 @@ struct DeviceDirection {
 
 // How many directions of the world light one sample; where each costs a grain its own light map, one.
 constexpr int most_world_directions = 4;
+
+bool is_opaque(const DeviceMaterial& material) {
+  return !material.light_maps() && !scene::traits_of(material.model()).mesh;
+}
+
+double milliseconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
 
 }  // namespace
 
@@ -66,6 +76,7 @@ void Frame::resize(int width, int height) {
 }
 
 void Frame::set_scene(scene::Scene scene) {
+  cast_.reset();
   content_ = std::make_unique<Content>(cache_, scene, std::move(*content_));
   version_ = content_->version();
   lighting_.set(scene);
@@ -94,6 +105,7 @@ void Frame::set_bake(const Bake& bake) {
     if (scene_.instances[instance].mesh->uvs().empty())
       throw Error("Baking needs UVs, and the mesh of instance {} has none: unwrap it first.", instance);
   }
+  cast_.reset();
   content_ = std::make_unique<Content>(cache_, scene_, std::move(*content_), bake.instances);
   version_ = content_->version();
   baked_.clear();
@@ -151,8 +163,40 @@ void Frame::set_taps(int taps) {
   samples_ = 0;
 }
 
+void Frame::set_visibility(Visibility visibility) {
+  if (visibility == Visibility::cast && !casting::available())
+    throw Error("Rays cannot be cast on this machine: Embree needs AVX.");
+  visibility_ = visibility;
+  selection_.reset();
+  receivers_.clear();
+  samples_ = 0;
+}
+
+bool Frame::casts() const {
+  if (content_->instances() == nullptr || visibility_ == Visibility::drawn) return false;
+  return visibility_ == Visibility::cast ||
+         (!gl::ContextThread::instance().device_info().hardware && casting::available());
+}
+
+bool Frame::reads_light_maps() const {
+  const std::vector<Prototype>& prototypes = content_->instances()->prototypes();
+  return std::any_of(prototypes.begin(), prototypes.end(),
+                     [](const Prototype& prototype) { return prototype.light_maps != nullptr; });
+}
+
+bool Frame::cast_shadows() const {
+  if (bake_ || !casts() || lighting_.eyes(sampled_lights_, content_->anchor()).size() > most_cast_lights) return false;
+  const std::vector<Draw>& draws = content_->draws();
+  const std::vector<InstanceGroup>& groups = content_->instances()->groups();
+  return std::all_of(draws.begin(), draws.end(), [](const Draw& draw) { return is_opaque(*draw.material); }) &&
+         std::all_of(groups.begin(), groups.end(),
+                     [](const InstanceGroup& group) { return is_opaque(*group.material); });
+}
+
 bool Frame::add_sample(const GoOn& go_on) {
-  if (content_->instances() != nullptr && !selection_)
+  if (casts() && !cast_) cast_ = std::make_unique<CastContent>(cache_, *content_);
+  // Light maps are as fine as the largest grain in the picture.
+  if (content_->instances() != nullptr && !selection_ && !(casts() && !reads_light_maps()))
     selection_ = std::make_unique<DeviceSelection>(
         content_->instances()->select(anchor_to_clip(*content_, camera_), width_, height_));
   const std::vector<Draw>& draws = content_->draws();
@@ -219,11 +263,34 @@ bool Frame::update_light_maps(const GoOn& go_on) {
   return true;
 }
 
+bool Frame::update_shadows(const GoOn& go_on) {
+  shadows_drawn_ = content_->shadows() && !lighting_.eyes(sampled_lights_, content_->anchor()).empty();
+  if (!shadows_drawn_) return true;
+  const auto start = std::chrono::steady_clock::now();
+  shadow_timer_.start();
+  const bool whole = cast_shadows() ? update_cast_shadows(go_on) : update_shadow_maps(go_on);
+  shadow_timer_.stop();
+  shadow_milliseconds_ = milliseconds_since(start);
+  return whole;
+}
+
+bool Frame::update_cast_shadows(const GoOn& go_on) {
+  const std::vector<glm::vec4>* positions = &cast_surfaces_.positions();
+  const std::vector<glm::vec4>* normals = &cast_surfaces_.normals();
+  if (!content_->draws().empty()) {
+    read_positions_.resize(positions->size());
+    read_normals_.resize(normals->size());
+    targets_->surfaces.read(&read_positions_.front().x, 0);
+    targets_->surfaces.read(&read_normals_.front().x, 1);
+    positions = &read_positions_;
+    normals = &read_normals_;
+  }
+  return cast_shadows_.cast(*cast_, *content_, {*positions, *normals, {width_, height_}, viewer(content_->anchor())},
+                            lighting_.eyes(sampled_lights_, content_->anchor()), go_on);
+}
+
 bool Frame::update_shadow_maps(const GoOn& go_on) {
   const std::vector<ShadowEye> eyes = lighting_.eyes(sampled_lights_, content_->anchor());
-  shadows_drawn_ = content_->shadows() && !eyes.empty();
-  if (!shadows_drawn_) return true;
-  shadow_timer_.start();
   if (receivers_.empty())
     receivers_ = receivers(targets_->surfaces, width_, height_,
                            [this](std::size_t number) { return content_->receiver(number); });
@@ -231,15 +298,39 @@ bool Frame::update_shadow_maps(const GoOn& go_on) {
   const int resolution = std::clamp(static_cast<int>(std::bit_ceil(static_cast<unsigned>(std::max(width_, height_)))),
                                     least_shadow_resolution, most_shadow_resolution);
   const glm::dvec2 jitter = r2_point(static_cast<std::uint32_t>(samples_), seeded_offset(seed_ + 0x20000U));
-  const auto draw = [&](const glm::dmat4& to_clip, const ShadowEye& eye) {
+  std::vector<glm::vec2> texels;
+  const auto draw = [&](const glm::dmat4& to_clip, const ShadowEye& eye, gl::TextureArray& maps, int layer,
+                        const gl::Texture& depth) {
+    if (casts()) {
+      if (!cast_shadow_map(*cast_, *content_, to_clip, eye, resolution, texels, go_on)) return false;
+      maps.upload(layer, GL_RG, GL_FLOAT, texels.data());
+      return true;
+    }
     std::unique_ptr<DeviceSelection> casters;
     if (const Instances* instances = content_->instances())
       casters = std::make_unique<DeviceSelection>(instances->select(to_clip, resolution, resolution));
-    return draw_casters(cache_, *content_, casters.get(), to_clip, eye, go_on);
+    const gl::Framebuffer target(maps, layer, depth);
+    return draw_casters(cache_, *content_, casters.get(), to_clip, eye, target, go_on);
   };
+  return shadow_maps_.update(eyes, receivers_, content_->bounds(), content_->over_ground(), resolution, jitter, draw);
+}
+
+bool Frame::find_surfaces(const glm::vec2& jitter, std::size_t first, const GoOn& go_on) {
+  const auto start = std::chrono::steady_clock::now();
+  if (casts()) {
+    if (first == 0 &&
+        !cast_surfaces_.cast(*cast_, *content_, anchor_to_clip(*content_, camera_), jitter, {width_, height_}, go_on))
+      return false;
+    cast_surfaces_.upload(targets_->position, targets_->normal, targets_->depth, first);
+  }
+  targets_->surfaces.bind();
+  glDisable(GL_BLEND);
+  if (!casts() && first == 0) targets_->surfaces.clear();
+  if (!casts() && first > 0) targets_->surfaces.clear_depth();
   const bool whole =
-      shadow_maps_.update(eyes, receivers_, content_->bounds(), content_->over_ground(), resolution, jitter, draw);
-  shadow_timer_.stop();
+      draw_surfaces(cache_, *content_, casts() ? nullptr : selection_.get(), camera_, jitter, first, go_on);
+  if (casts()) glFinish();
+  surface_milliseconds_ = milliseconds_since(start);
   return whole;
 }
 
@@ -248,7 +339,7 @@ bool Frame::shade(const GoOn& go_on) {
   const glm::dvec2 point = r2_point(static_cast<std::uint32_t>(samples_), seeded_offset(seed_));
   const glm::vec2 jitter((2.0 * point - 1.0) / glm::dvec2(width_, height_));
   if (bake_) {
-    if (!update_shadow_maps(go_on)) return false;
+    if (!update_shadows(go_on)) return false;
     targets_->shade.bind();
     targets_->shade.clear();
     glDisable(GL_BLEND);
@@ -258,15 +349,11 @@ bool Frame::shade(const GoOn& go_on) {
   const Instances* instances = content_->instances();
   const std::size_t units = (instances != nullptr ? instances->groups().size() : 0) + content_->draws().size();
   for (std::size_t first = 0; first < units || first == 0; first += most_in_stencil) {
-    targets_->surfaces.bind();
-    glDisable(GL_BLEND);
-    if (first == 0)
-      targets_->surfaces.clear();
-    else
-      targets_->surfaces.clear_depth();
-    if (!draw_surfaces(cache_, *content_, selection_.get(), camera_, jitter, first, go_on)) return false;
+    if (!find_surfaces(jitter, first, go_on)) return false;
     if (first == 0) {
-      if (!update_shadow_maps(go_on)) return false;
+      if (!update_shadows(go_on)) return false;
+      // Rays are not the device's work.
+      if (casts()) shade_timer_.start();
       targets_->shade.bind();
       targets_->shade.clear_colour();
       glDisable(GL_BLEND);
@@ -346,7 +433,8 @@ void Frame::shade_unwrapped(const glm::vec2& jitter) {
 }
 
 Shading Frame::shading(const DeviceMaterial& material, bool unwrapped, bool instanced) const {
-  return {unwrapped, instanced, content_->shadows(), lights_at_place(material, instanced)};
+  const Shadows shadows = !content_->shadows() ? Shadows::none : cast_shadows() ? Shadows::cast : Shadows::maps;
+  return {unwrapped, instanced, shadows, lights_at_place(material, instanced)};
 }
 
 bool Frame::lights_at_place(const DeviceMaterial& material, bool instanced) const {
@@ -375,15 +463,20 @@ void Frame::set_lights(const gl::Program& program, const std::vector<LightDirect
 void Frame::set_common(const gl::Program& program) const {
   program.set("sample_index", samples_);
   program.set("taps", taps_);
-  if (shadows_drawn_) shadow_maps_.bind(program);
+  if (shadows_drawn_ && cast_shadows()) cast_shadows_.bind(program);
+  if (shadows_drawn_ && !cast_shadows()) shadow_maps_.bind(program);
 }
 
 void Frame::set_viewer(const gl::Program& program, const glm::dvec3& origin) const {
+  program.set("viewer", viewer(origin));
+}
+
+glm::vec4 Frame::viewer(const glm::dvec3& origin) const {
   const glm::dmat4 camera_to_world = glm::inverse(camera_.world_to_camera);
   // A perspective projection takes its w from depth; an orthographic one is affine and sees along one direction.
   const bool orthographic = camera_.camera_to_clip[2][3] == 0.0;
-  program.set("viewer", orthographic ? glm::vec4(glm::normalize(glm::dvec3(camera_to_world[2])), 0.0)
-                                     : glm::vec4(glm::dvec3(camera_to_world[3]) - origin, 1.0));
+  return orthographic ? glm::vec4(glm::normalize(glm::dvec3(camera_to_world[2])), 0.0)
+                      : glm::vec4(glm::dvec3(camera_to_world[3]) - origin, 1.0);
 }
 
 void Frame::set_draw(const gl::Program& program, const Draw& draw) {
@@ -407,7 +500,7 @@ void Frame::set_group(const gl::Program& program, const InstanceGroup& group) {
   if (group.material->light_maps()) prototype.light_maps->bind(program);
   program.set("typical_scale", static_cast<float>(group.typical_scale));
   program.set("grain_reach", static_cast<float>(prototype.mesh->reach() * group.typical_scale));
-  program.set("shades_itself", static_cast<int>(!group.material->light_maps() && !cache_.convex(prototype.mesh)));
+  program.set("shades_itself", static_cast<int>(instances.shades_itself(group)));
   set_viewer(program, content_->anchor());
 }
 
@@ -467,6 +560,13 @@ std::vector<PassTiming> Frame::timings() const {
   if (!timed_) return {};
   std::vector<PassTiming> passes;
   if (light_maps_drawn_ > 0) passes.push_back({"light_maps", light_map_timer_.milliseconds()});
+  if (casts()) {
+    passes.push_back({"surfaces", surface_milliseconds_});
+    if (shadows_drawn_) passes.push_back({"shadows", shadow_milliseconds_});
+    passes.push_back({"shade", shade_timer_.milliseconds()});
+    passes.push_back({"accumulate", accumulate_timer_.milliseconds()});
+    return passes;
+  }
   // The shadows are drawn once it is known what is seen, and so amid the rest.
   const double shadows = shadows_drawn_ ? shadow_timer_.milliseconds() : 0.0;
   if (shadows_drawn_) passes.push_back({"shadow_maps", shadows});

@@ -3,10 +3,12 @@
 // sum, resolve the mean on demand.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "gl/framebuffer.h"
@@ -15,6 +17,9 @@
 #include "gl/timer.h"
 #include "gl/vertex_array.h"
 #include "render/bake.h"
+#include "render/cast_content.h"
+#include "render/cast_shadows.h"
+#include "render/cast_surfaces.h"
 #include "render/content.h"
 #include "render/device_cache.h"
 #include "render/lighting.h"
@@ -27,6 +32,15 @@
 namespace mesograin::render {
 
 inline constexpr int default_taps = 16;
+
+/// How it is found what is seen of arrays, and what stands in the light.
+enum class Visibility {
+  automatic,  ///< drawn where there is a GPU, else cast
+  drawn,      ///< by the device's rasteriser
+  cast,       ///< by rays, on all cores
+};
+
+inline constexpr std::array<std::string_view, 3> visibility_names = {"automatic", "drawn", "cast"};
 
 struct PassTiming {
   std::string pass;
@@ -51,6 +65,9 @@ class Frame {
 
   /// Light map samples that model 3 takes for one pixel and sample, over all lights.
   void set_taps(int taps);
+
+  /// Throws Error where rays are asked for and cannot be cast.
+  void set_visibility(Visibility visibility);
 
   /// Adds one sample to the sum. `go_on` is asked between its parts; where it says no, nothing is added, and the answer
   /// is false.
@@ -89,8 +106,21 @@ class Frame {
     gl::Framebuffer accumulate;
   };
 
+  /// Whether rays are cast for this content.
+  bool casts() const;
+
+  /// Whether any array does.
+  bool reads_light_maps() const;
+
+  /// Whether it is enough to know for each pixel which lights reach it.
+  bool cast_shadows() const;
+
   bool update_light_maps(const GoOn& go_on);
+  bool update_shadows(const GoOn& go_on);
   bool update_shadow_maps(const GoOn& go_on);
+  bool update_cast_shadows(const GoOn& go_on);
+  bool find_surfaces(const glm::vec2& jitter, std::size_t first, const GoOn& go_on);
+  glm::vec4 viewer(const glm::dvec3& origin) const;
   bool shade(const GoOn& go_on);
 
   /// The world, everywhere.
@@ -141,6 +171,12 @@ class Frame {
   std::unique_ptr<DeviceSelection> selection_;  // for the camera; null if not known yet or without instances
   Receivers receivers_;                         // empty if not known yet
   ShadowMaps shadow_maps_;
+  Visibility visibility_ = Visibility::automatic;
+  std::unique_ptr<CastContent> cast_;  // null if not known yet
+  CastSurfaces cast_surfaces_;
+  CastShadows cast_shadows_;
+  std::vector<glm::vec4> read_positions_;  // of surfaces that were drawn
+  std::vector<glm::vec4> read_normals_;
   std::unique_ptr<Targets> targets_;
   gl::FullScreenTriangle full_screen_;
   gl::Program accumulate_program_;
@@ -152,8 +188,10 @@ class Frame {
   gl::Timer accumulate_timer_;
   bool timed_ = false;
   int taps_ = default_taps;
-  int light_maps_drawn_ = 0;    // in the last sample
-  bool shadows_drawn_ = false;  // in the last sample
+  int light_maps_drawn_ = 0;           // in the last sample
+  bool shadows_drawn_ = false;         // in the last sample
+  double surface_milliseconds_ = 0.0;  // of rays, in the last sample
+  double shadow_milliseconds_ = 0.0;
 };
 
 }  // namespace mesograin::render

@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
+#include <iterator>
 #include <map>
 #include <utility>
 
@@ -50,7 +51,7 @@ Instances::Instances(DeviceCache& cache, const std::vector<scene::InstanceArray>
 std::size_t Instances::prototype(DeviceCache& cache, const scene::MeshPointer& mesh) {
   for (std::size_t i = 0; i < prototypes_.size(); ++i)
     if (prototypes_[i].mesh == mesh) return i;
-  prototypes_.push_back({mesh, cache.details(mesh), nullptr});
+  prototypes_.push_back({mesh, cache.details(mesh), cache.convex(mesh), nullptr});
   return prototypes_.size() - 1;
 }
 
@@ -89,6 +90,7 @@ void Instances::add(DeviceCache& cache, const scene::InstanceArray& array, const
       const glm::dvec3 place = glm::dvec3(object_to_world * glm::dvec4(middle, 1.0)) - anchor;
       for (int row = 0; row < 3; ++row) rows_.emplace_back(linear[0][row], linear[1][row], linear[2][row], place[row]);
       balls_.emplace_back(glm::vec3(place), static_cast<float>(mesh.reach() * largest_stretch(linear)));
+      bounds_.include(glm::dvec3(balls_.back()), balls_.back().w);
     }
   }
 }
@@ -98,6 +100,26 @@ void Instances::take_light_maps(Instances& before) {
     for (Prototype& old : before.prototypes_)
       if (prototype.light_maps && old.light_maps && old.mesh == prototype.mesh)
         prototype.light_maps = std::move(old.light_maps);
+}
+
+bool Instances::shades_itself(const InstanceGroup& group) const {
+  return !group.material->light_maps() && !prototypes_[group.prototype].convex;
+}
+
+bool Instances::shades_itself(std::size_t instance) const {
+  const auto after =
+      std::upper_bound(groups_.begin(), groups_.end(), instance,
+                       [](std::size_t number, const InstanceGroup& group) { return number < group.first; });
+  return shades_itself(*std::prev(after));
+}
+
+const casting::PlacedTree& Instances::tree(DeviceCache& cache) {
+  if (tree_) return *tree_;
+  std::vector<casting::PlacedGroup> groups;
+  for (const InstanceGroup& group : groups_)
+    groups.push_back({cache.tree(prototypes_[group.prototype].mesh), rows(group.first), group.count, group.first});
+  tree_ = std::make_unique<casting::PlacedTree>(std::move(groups));
+  return *tree_;
 }
 
 Selection Instances::select(const glm::dmat4& anchor_to_clip, int width, int height) const {

@@ -11,7 +11,9 @@
 #include <optional>
 #include <vector>
 
+#include "casting/placed_tree.h"
 #include "gl/buffer.h"
+#include "render/bounds.h"
 #include "render/details.h"
 #include "render/device_cache.h"
 #include "render/light_map_atlas.h"
@@ -26,6 +28,7 @@ inline constexpr std::size_t fewest_in_array = 9;
 struct Prototype {
   scene::MeshPointer mesh;
   std::shared_ptr<Details> details;
+  bool convex;
   std::unique_ptr<LightMapAtlas> light_maps;  // once a material reads them
 };
 
@@ -69,6 +72,19 @@ class Instances {
   /// The ball that holds an instance: xyz its middle, from the anchor; w its radius.
   const glm::vec4& ball(std::size_t instance) const { return balls_[instance]; }
 
+  /// Three rows of its transform: object to anchor's space, the middle of the bounds at the origin.
+  const glm::vec4* rows(std::size_t instance) const { return &rows_[3 * instance]; }
+
+  /// Whether, for all that the model knows, a part of an instance may stand in another's light.
+  bool shades_itself(const InstanceGroup& group) const;
+  bool shades_itself(std::size_t instance) const;
+
+  /// Of all, from the anchor.
+  const Bounds& bounds() const { return bounds_; }
+
+  /// What rays are cast into; made on first use. Its groups are these.
+  const casting::PlacedTree& tree(DeviceCache& cache);
+
   /// Those that a picture of `width` x `height` pixels may show, `anchor_to_clip` being its projection.
   Selection select(const glm::dmat4& anchor_to_clip, int width, int height) const;
 
@@ -85,8 +101,10 @@ class Instances {
 
   std::vector<Prototype> prototypes_;
   std::vector<InstanceGroup> groups_;
-  std::vector<glm::vec4> rows_;  // three an instance: object to anchor's space, the middle of the bounds at the origin
+  std::vector<glm::vec4> rows_;  // three an instance
   std::vector<glm::vec4> balls_;
+  Bounds bounds_;
+  std::unique_ptr<casting::PlacedTree> tree_;
   std::optional<gl::Buffer> device_;
 };
 

@@ -9,8 +9,6 @@
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 
-#include "gl/framebuffer.h"
-
 namespace mesograin::render {
 namespace {
 
@@ -124,17 +122,9 @@ bool ShadowMaps::update(const std::vector<ShadowEye>& eyes, const Receivers& rec
     const ShadowEye& eye = eyes[static_cast<std::size_t>(layer)];
     const auto fit = eye.w > 0.0 ? fit_place : fit_parallel;
     const Projection view = fit(glm::dvec3(eye), receivers, casters, over_ground, resolution, jitter);
-    const gl::Framebuffer target(*maps_, layer, *depth_);
-    target.bind();
-    constexpr float nothing[4] = {-3e38F, 0.0F, 0.0F, 0.0F};
-    target.clear(nothing);
-    glEnable(GL_DEPTH_TEST);
-    glDepthFunc(GL_LESS);
-    glDisable(GL_BLEND);
-    if (!draw(view.anchor_to_clip, eye)) return false;
+    if (!draw(view.anchor_to_clip, eye, *maps_, layer, *depth_)) return false;
     views.push_back({glm::mat4(to_unit * view.anchor_to_clip), glm::vec4(eye), glm::vec4(view.texel, error, 0.0, 0.0)});
   }
-  glDisable(GL_DEPTH_TEST);
   views_.emplace(views);
   return true;
 }

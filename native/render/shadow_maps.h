@@ -23,8 +23,10 @@ using ShadowEye = glm::dvec4;
 
 class ShadowMaps {
  public:
-  /// Draws all that may stand in the light through this projection, with this eye; says false to stop.
-  using DrawCasters = std::function<bool(const glm::dmat4& anchor_to_clip, const ShadowEye& eye)>;
+  /// Fills a layer with all that may stand in the light, as this projection and this eye see it; says false to stop.
+  /// `depth` is as large as a layer.
+  using DrawCasters = std::function<bool(const glm::dmat4& anchor_to_clip, const ShadowEye& eye, gl::TextureArray& maps,
+                                         int layer, const gl::Texture& depth)>;
 
   /// Draws a map for each eye, around what is lit. `casters` hold all that may stand in the light, `over_ground` what
   /// may stand in that of the ground. `jitter`, in [0, 1)^2, moves the texels, so that the mean over many has no

@@ -53,14 +53,10 @@ bool draw_surfaces(DeviceCache& cache, const Content& content, const DeviceSelec
   glDepthFunc(GL_LESS);
   glEnable(GL_STENCIL_TEST);
   glStencilOp(GL_KEEP, GL_KEEP, GL_REPLACE);
-  const auto mark = [first](std::size_t unit) {
-    const bool told = unit >= first && unit - first < most_in_stencil;
-    glStencilFunc(GL_ALWAYS, told ? static_cast<GLint>(unit - first + 1) : 0, most_in_stencil);
-  };
+  const auto mark = [first](std::size_t unit) { glStencilFunc(GL_ALWAYS, stencil_mark(unit, first), most_in_stencil); };
   bool whole = true;
-  std::size_t groups = 0;
+  const std::size_t groups = content.instances() != nullptr ? content.instances()->groups().size() : 0;
   if (selection != nullptr) {
-    groups = content.instances()->groups().size();
     const gl::Program& program = cache.surface_program(true);
     program.use();
     program.set("jitter", jitter);
@@ -92,7 +88,14 @@ bool draw_surfaces(DeviceCache& cache, const Content& content, const DeviceSelec
 }
 
 bool draw_casters(DeviceCache& cache, const Content& content, const DeviceSelection* selection,
-                  const glm::dmat4& anchor_to_clip, const ShadowEye& eye, const GoOn& go_on) {
+                  const glm::dmat4& anchor_to_clip, const ShadowEye& eye, const gl::Framebuffer& target,
+                  const GoOn& go_on) {
+  target.bind();
+  constexpr float nothing[4] = {-3e38F, 0.0F, 0.0F, 0.0F};
+  target.clear(nothing);
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_LESS);
+  glDisable(GL_BLEND);
   const auto begin = [&](const gl::Program& program) {
     program.use();
     program.set("anchor_to_clip", glm::mat4(anchor_to_clip));
@@ -113,6 +116,7 @@ bool draw_casters(DeviceCache& cache, const Content& content, const DeviceSelect
     draw.mesh->draw();
     if (!go_on()) return false;
   }
+  glDisable(GL_DEPTH_TEST);
   return true;
 }
 

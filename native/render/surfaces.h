@@ -2,21 +2,17 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
 
+#include "gl/framebuffer.h"
 #include "render/content.h"
+#include "render/go_on.h"
 #include "render/shadow_maps.h"
+#include "render/stencil.h"
 #include "scene/camera.h"
 
 namespace mesograin::render {
-
-/// How many things that are shaded apart the stencil's bits tell from each other, beside nothing.
-inline constexpr std::size_t most_in_stencil = 0xFF;
-
-/// Asked between draws; false ends a sample unfinished.
-using GoOn = std::function<bool()>;
 
 /// Selected instances on the device.
 struct DeviceSelection {
@@ -27,13 +23,15 @@ struct DeviceSelection {
 };
 
 /// Draws positions and normals. What is shaded apart, the groups of instances and then the draws, marks the stencil: 1
-/// for `first`, and so on up to the last it can hold. `selection` is null without instances. False if ended.
+/// for `first`, and so on up to the last it can hold. `selection` is null without instances, or where they
+/// were found by other means. False if ended.
 bool draw_surfaces(DeviceCache& cache, const Content& content, const DeviceSelection* selection,
                    const scene::Camera& camera, const glm::vec2& jitter, std::size_t first, const GoOn& go_on);
 
-/// Draws what stands in a light. False if ended.
+/// Draws what stands in a light into a layer of shadow maps. False if ended.
 bool draw_casters(DeviceCache& cache, const Content& content, const DeviceSelection* selection,
-                  const glm::dmat4& anchor_to_clip, const ShadowEye& eye, const GoOn& go_on);
+                  const glm::dmat4& anchor_to_clip, const ShadowEye& eye, const gl::Framebuffer& target,
+                  const GoOn& go_on);
 
 /// The camera's projection, from the content's anchor.
 glm::dmat4 anchor_to_clip(const Content& content, const scene::Camera& camera);

@@ -117,6 +117,11 @@ std::vector<std::string> View::warnings() const {
   return sentences;
 }
 
+void View::set_visibility(Visibility visibility) {
+  gl::ContextThread::instance().run([&] { frame(id_).set_visibility(visibility); });
+  *samples_ = 0;
+}
+
 void View::render(int samples) { start(samples).get(); }
 
 std::future<double> View::start(int samples) {

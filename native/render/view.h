@@ -58,6 +58,9 @@ class View {
   /// One sentence for each thing that is not drawn by the model asked for.
   std::vector<std::string> warnings() const;
 
+  /// How it is found what is seen of arrays. Restarts the accumulation. Throws Error where rays cannot be cast.
+  void set_visibility(Visibility visibility);
+
   /// Adds `samples` to the mean and returns when they are drawn.
   void render(int samples);
 

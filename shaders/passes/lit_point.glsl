@@ -50,7 +50,9 @@ uniform float grain_reach;  // no point of the grain is farther than this from t
 #ifndef LIGHT_MAPS
 // What reaches a surface that shows light only where it enters.
 float light_reaches_surface(LightSample light, SurfacePoint point) {
-#if defined(SHADOWS) && defined(WHOLE_GRAIN)
+#ifdef CAST_SHADOWS
+  return light_reaches_pixel(light.index);
+#elif defined(SHADOWS) && defined(WHOLE_GRAIN)
   // Light enters about the point, as far as half the grain reaches: where, is another place with every sample.
   vec3 random = 2.0 * vec3(pcg4d(uvec4(uvec2(gl_FragCoord.xy), uint(sample_index), uint(light.index))).xyz >> 8u) * (1.0 / 16777216.0) - 1.0;
   return light_reaches(light.index, point.on_triangle + 0.5 * grain_reach * random, -1.0);

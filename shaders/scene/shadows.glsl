@@ -4,9 +4,14 @@
 //
 // What is chosen at compile time:
 //   SHADOWS       there is something that may stand in the light
+//   CAST_SHADOWS  rays have found for each pixel which lights reach the surface; there are no such pictures
 #include "scene/grain.glsl"
 
-#ifdef SHADOWS
+#ifdef CAST_SHADOWS
+uniform usampler2D lights_that_reach;  // a bit each
+
+float light_reaches_pixel(int light) { return float((texelFetch(lights_that_reach, ivec2(gl_FragCoord.xy), 0).r >> uint(light)) & 1u); }
+#elif defined(SHADOWS)
 struct ShadowView {
   mat4 to_map;  // from the place amid the scene to [0, 1]^2, before the division by w
   vec4 eye;     // xyz: the place of the light if w is 1, the direction towards it if w is 0

@@ -60,8 +60,10 @@ std::vector<glm::dmat4> eight_places() {
   return places;
 }
 
-std::vector<float> picture(const scene::Scene& scene, const scene::Camera& camera, int width, int height, int samples) {
+std::vector<float> picture(const scene::Scene& scene, const scene::Camera& camera, int width, int height, int samples,
+                           Visibility visibility = Visibility::automatic) {
   View view(width, height);
+  view.set_visibility(visibility);
   view.set_scene(scene);
   view.set_camera(camera);
   view.render(samples);
@@ -104,7 +106,7 @@ class HeapTest : public testing::Test {
   void TearDown() override { EXPECT_TRUE(gl::ContextThread::instance().take_gl_errors().empty()); }
 };
 
-void expect_array_as_one_by_one(scene::Model model, double most_in_blocks) {
+void expect_array_as_one_by_one(scene::Model model, double most_in_blocks, Visibility visibility) {
   scene::Material material;
   material.model = model;
   material.sigma_a = {0.05, 0.2, 0.6};
@@ -117,20 +119,93 @@ void expect_array_as_one_by_one(scene::Model model, double most_in_blocks) {
   const scene::Scene array = array_of(mesh, material, eight_places(), lights);
   const scene::Camera camera = scene::Camera::look_at({0, 0, 16}, {0, 0, 0}, {0, 1, 0}, 30.0, 2.0);
   const Difference found =
-      difference(picture(array, camera, 256, 128, 48), picture(one_by_one, camera, 256, 128, 48), 256, 128);
+      difference(picture(array, camera, 256, 128, 48, visibility), picture(one_by_one, camera, 256, 128, 48), 256, 128);
   EXPECT_LT(found.blocks, most_in_blocks);
   EXPECT_NEAR(found.total, 1.0, 0.01);
 }
 
 TEST_F(HeapTest, AnArrayOfOpaqueGrainsIsAsOneByOne) {
-  expect_array_as_one_by_one(scene::Model::lambert, 0.01);
-  expect_array_as_one_by_one(scene::Model::model_1, 0.012);
+  for (const Visibility visibility : {Visibility::drawn, Visibility::cast}) {
+    expect_array_as_one_by_one(scene::Model::lambert, 0.01, visibility);
+    expect_array_as_one_by_one(scene::Model::model_1, 0.012, visibility);
+  }
 }
 
 // Their light maps are from directions near the light's.
 TEST_F(HeapTest, AnArrayOfTranslucentGrainsIsNearlyAsOneByOne) {
-  expect_array_as_one_by_one(scene::Model::model_2, 0.035);
-  expect_array_as_one_by_one(scene::Model::model_3, 0.035);
+  for (const Visibility visibility : {Visibility::drawn, Visibility::cast}) {
+    expect_array_as_one_by_one(scene::Model::model_2, 0.035, visibility);
+    expect_array_as_one_by_one(scene::Model::model_3, 0.035, visibility);
+  }
+}
+
+// Grains on a ground, some mirrored, close enough to shade each other; a lamp and a sun.
+scene::Scene small_heap(const scene::MeshPointer& mesh, scene::Model model) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  std::vector<glm::dmat4> places;
+  for (int i = 0; i < 60; ++i) {
+    const glm::dvec3 place(9.0 * unit(random) - 4.5, 6.0 * unit(random) - 3.0, 1.0 + 2.0 * unit(random));
+    const glm::dvec3 axis(unit(random) - 0.5, unit(random) - 0.5, unit(random) - 0.5);
+    glm::dmat4 matrix = glm::rotate(glm::translate(glm::dmat4(1.0), place), 2.0 * pi * unit(random), axis);
+    matrix = glm::scale(matrix, (0.5 + 0.4 * unit(random)) * glm::dvec3(i % 2 == 0 ? 1.0 : -1.0, 1.0, 0.8));
+    places.push_back(matrix);
+  }
+  scene::Material material;
+  material.model = model;
+  scene::PointLight lamp;
+  lamp.position = {-5.0, 4.0, 9.0};
+  lamp.radiant_intensity = glm::dvec3(150.0);
+  lamp.radius = 0.3;
+  scene::Scene scene = array_of(mesh, material, places, {sun({1.0, 0.3, 1.0}, 3.0), lamp});
+  scene.instances.push_back({square(20.0F), {}, glm::dmat4(1.0)});
+  return scene;
+}
+
+TEST_F(HeapTest, WhatIsCastIsWhatIsDrawn) {
+  const scene::Camera camera = scene::Camera::look_at({0, -9, 16}, {0, 0, 0}, {0, 1, 0}, 35.0, 2.0);
+  const auto ball = std::make_shared<scene::Mesh>(scene::unit_sphere(48, 24));
+  const auto found = [&](const scene::MeshPointer& mesh, scene::Model model) {
+    const scene::Scene scene = small_heap(mesh, model);
+    return difference(picture(scene, camera, 256, 128, 16, Visibility::cast),
+                      picture(scene, camera, 256, 128, 16, Visibility::drawn), 256, 128);
+  };
+  // Rays to the lights from each pixel; a shadow map tells of a hollow grain's own shadow as finely as its texels are.
+  for (const scene::Model model : {scene::Model::lambert, scene::Model::model_1}) {
+    const Difference of_balls = found(ball, model);
+    EXPECT_LT(of_balls.blocks, 0.005);
+    EXPECT_NEAR(of_balls.total, 1.0, 0.002);
+    const Difference of_hollows = found(bumpy(), model);
+    EXPECT_LT(of_hollows.blocks, 0.01);
+    EXPECT_NEAR(of_hollows.total, 1.0, 0.004);
+  }
+  // Rays from the lights.
+  const Difference of_translucent = found(bumpy(), scene::Model::model_2);
+  EXPECT_LT(of_translucent.blocks, 0.005);
+  EXPECT_NEAR(of_translucent.total, 1.0, 0.002);
+}
+
+// More groups than the stencil tells apart.
+TEST_F(HeapTest, ManyCastMaterialsAreEachShadedWithTheirOwn) {
+  const auto ball = std::make_shared<scene::Mesh>(scene::unit_sphere(16, 8));
+  scene::Scene scene{{}, {sun({0.0, 0.0, 1.0}, pi)}};
+  constexpr int side = 18;
+  for (int i = 0; i < side * side; ++i) {
+    scene::Material material;
+    material.reflectance = glm::dvec3(0.2 + 0.6 * i / (side * side), 0.5, 0.8 - 0.6 * i / (side * side));
+    const glm::dmat4 place = glm::translate(glm::dmat4(1.0), glm::dvec3(i % side, i / side, 0.0));
+    scene.arrays.emplace_back(ball, material, std::vector<glm::dmat4>{glm::scale(place, glm::dvec3(0.45))});
+  }
+  const scene::Camera camera{glm::translate(glm::dmat4(1.0), glm::dvec3(0.5 - side / 2.0, 0.5 - side / 2.0, -5.0)),
+                             glm::ortho(-side / 2.0, side / 2.0, -side / 2.0, side / 2.0, 0.1, 20.0)};
+  constexpr int size = side * 5;
+  const std::vector<float> pixels = picture(scene, camera, size, size, 1, Visibility::cast);
+  for (int i = 0; i < side * side; ++i) {
+    const int x = i % side * 5 + 2, y = size - 1 - (i / side * 5 + 2);
+    const float* pixel = &pixels[static_cast<std::size_t>(4 * (y * size + x))];
+    const double expected = (0.2 + 0.6 * i / (side * side)) / 0.5;
+    EXPECT_NEAR(pixel[0] / pixel[1], expected, 1e-4) << i;
+  }
 }
 
 TEST_F(HeapTest, ManyEqualInstancesAreAnArrayAndLookAlike) {
@@ -282,7 +357,7 @@ TEST_F(HeapTest, ACancelledSampleAddsNothing) {
   View view(64, 64);
   view.set_scene(array_of(ball, {}, places, {sun({0.5, 0.0, 1.0}, pi)}));
   view.set_camera(scene::Camera::look_at({0, 0, 8}, {0, 0, 0}, {0, 1, 0}, 30.0));
-  std::future<void> done = view.start(1000);
+  std::future<double> done = view.start(1000);
   view.cancel();
   done.get();
   EXPECT_LT(view.samples(), 1000);

@@ -237,7 +237,7 @@ TEST_F(ViewTest, CancelEndsARenderEarly) {
   View view(256, 256);
   view.set_scene(one_square_);
   view.set_camera(straight_camera());
-  std::future<void> done = view.start(1'000'000);
+  std::future<double> done = view.start(1'000'000);
   while (view.samples() == 0) std::this_thread::yield();
   view.cancel();
   done.get();

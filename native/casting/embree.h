@@ -1,0 +1,58 @@
+// Embree 3 and 4 under one name.
+#pragma once
+
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+
+namespace mesograin::casting {
+
+/// The one device of the process; null if Embree does not start or has no packets of eight on this machine.
+RTCDevice embree_device();
+
+/// What goes with the rays of a packet on their way through user geometry.
+struct Context {
+#if RTC_VERSION_MAJOR >= 4
+  RTCRayQueryContext query;
+#else
+  RTCIntersectContext query;
+#endif
+  const float* own = nullptr;  // of each ray, as in Packet
+
+  Context() {
+#if RTC_VERSION_MAJOR >= 4
+    rtcInitRayQueryContext(&query);
+#else
+    rtcInitIntersectContext(&query);
+    query.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+#endif
+  }
+};
+
+inline void intersect(const int* valid, RTCScene scene, Context& context, RTCRayHit8& rays) {
+#if RTC_VERSION_MAJOR >= 4
+  RTCIntersectArguments arguments;
+  rtcInitIntersectArguments(&arguments);
+  arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+  arguments.context = &context.query;
+  rtcIntersect8(valid, scene, &rays, &arguments);
+#else
+  rtcIntersect8(valid, scene, &context.query, &rays);
+#endif
+}
+
+inline void occlude(const int* valid, RTCScene scene, Context& context, RTCRay8& rays) {
+#if RTC_VERSION_MAJOR >= 4
+  RTCOccludedArguments arguments;
+  rtcInitOccludedArguments(&arguments);
+  arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+  arguments.context = &context.query;
+  rtcOccluded8(valid, scene, &rays, &arguments);
+#else
+  rtcOccluded8(valid, scene, &context.query, &rays);
+#endif
+}
+
+}  // namespace mesograin::casting

@@ -1,0 +1,184 @@
+// Each instance is a primitive of Embree's user geometry: its own instances would take ten times the memory.
+#include "casting/placed_tree.h"
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+#include <limits>
+#include <utility>
+
+#include "base/error.h"
+#include "casting/embree.h"
+
+namespace mesograin::casting {
+namespace {
+
+RTCScene to_scene(void* scene) { return static_cast<RTCScene>(scene); }
+
+void find_bounds(const RTCBoundsFunctionArguments* arguments) {
+  const auto& group = *static_cast<const PlacedGroup*>(arguments->geometryUserPtr);
+  const glm::vec4* rows = group.rows + 3 * std::size_t{arguments->primID};
+  // What rounding may move a ray by on its way into the mesh's axes.
+  constexpr float rounding = 1e-6F;
+  float reach[3];
+  for (int i = 0; i < 3; ++i)
+    reach[i] = (1.0F + 10.0F * rounding) * glm::dot(glm::abs(glm::vec3(rows[i])), group.mesh->half()) +
+               rounding * std::abs(rows[i].w);
+  *arguments->bounds_o = {rows[0].w - reach[0], rows[1].w - reach[1], rows[2].w - reach[2], 0.0F,
+                          rows[0].w + reach[0], rows[1].w + reach[1], rows[2].w + reach[2], 0.0F};
+}
+
+// The inverse of an instance's transform, row by row.
+struct ToMesh {
+  glm::vec3 x, y, z;
+  glm::vec3 place;
+
+  explicit ToMesh(const glm::vec4* rows) : place(rows[0].w, rows[1].w, rows[2].w) {
+    const glm::vec3 a(rows[0]), b(rows[1]), c(rows[2]);
+    const glm::vec3 bc = glm::cross(b, c), ca = glm::cross(c, a), ab = glm::cross(a, b);
+    const float scale = 1.0F / glm::dot(a, bc);
+    x = scale * glm::vec3(bc.x, ca.x, ab.x);
+    y = scale * glm::vec3(bc.y, ca.y, ab.y);
+    z = scale * glm::vec3(bc.z, ca.z, ab.z);
+  }
+
+  // Distances along the rays stay as they are.
+  void turn(const RTCRay8& rays, RTCRay8& turned) const {
+    for (unsigned i = 0; i < rays_in_packet; ++i) {
+      const float from_x = rays.org_x[i] - place.x;
+      const float from_y = rays.org_y[i] - place.y;
+      const float from_z = rays.org_z[i] - place.z;
+      turned.org_x[i] = x.x * from_x + x.y * from_y + x.z * from_z;
+      turned.org_y[i] = y.x * from_x + y.y * from_y + y.z * from_z;
+      turned.org_z[i] = z.x * from_x + z.y * from_y + z.z * from_z;
+      turned.dir_x[i] = x.x * rays.dir_x[i] + x.y * rays.dir_y[i] + x.z * rays.dir_z[i];
+      turned.dir_y[i] = y.x * rays.dir_x[i] + y.y * rays.dir_y[i] + y.z * rays.dir_z[i];
+      turned.dir_z[i] = z.x * rays.dir_x[i] + z.y * rays.dir_y[i] + z.z * rays.dir_z[i];
+      turned.tnear[i] = rays.tnear[i];
+      turned.tfar[i] = rays.tfar[i];
+      turned.time[i] = 0.0F;
+      turned.mask[i] = ~0U;
+      turned.id[i] = i;
+      turned.flags[i] = 0;
+    }
+  }
+};
+
+// Rays of a packet of eight arrive eight at a time.
+void intersect_instance(const RTCIntersectFunctionNArguments* arguments) {
+  const auto& group = *static_cast<const PlacedGroup*>(arguments->geometryUserPtr);
+  RTCRayHit8& rays = *reinterpret_cast<RTCRayHit8*>(arguments->rayhit);
+  RTCRayHit8 inside;
+  ToMesh(group.rows + 3 * std::size_t{arguments->primID}).turn(rays.ray, inside.ray);
+  for (unsigned& geometry : inside.hit.geomID) geometry = RTC_INVALID_GEOMETRY_ID;
+  Context context;
+  alignas(32) int valid[rays_in_packet];
+  for (unsigned i = 0; i < rays_in_packet; ++i) valid[i] = arguments->valid[i];
+  intersect(valid, to_scene(group.mesh->scene()), context, inside);
+  for (unsigned i = 0; i < rays_in_packet; ++i) {
+    if (valid[i] == 0 || inside.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
+    rays.ray.tfar[i] = inside.ray.tfar[i];
+    rays.hit.geomID[i] = arguments->geomID;
+    rays.hit.primID[i] = inside.hit.primID[i];
+    rays.hit.instID[0][i] = arguments->primID;
+    rays.hit.u[i] = inside.hit.u[i];
+    rays.hit.v[i] = inside.hit.v[i];
+  }
+}
+
+void occlude_instance(const RTCOccludedFunctionNArguments* arguments) {
+  const auto& group = *static_cast<const PlacedGroup*>(arguments->geometryUserPtr);
+  const std::uint32_t number = group.first_number + arguments->primID;
+  RTCRay8& rays = *reinterpret_cast<RTCRay8*>(arguments->ray);
+  const float* own = reinterpret_cast<const Context*>(arguments->context)->own;
+  alignas(32) int valid[rays_in_packet];
+  RTCRay8 inside;
+  bool any = false;
+  for (unsigned i = 0; i < rays_in_packet; ++i) {
+    valid[i] = rays.id[i] == number && !(own[i] > 0.0F) ? 0 : arguments->valid[i];
+    any = any || valid[i] != 0;
+  }
+  if (!any) return;
+  ToMesh(group.rows + 3 * std::size_t{arguments->primID}).turn(rays, inside);
+  for (unsigned i = 0; i < rays_in_packet; ++i)
+    if (rays.id[i] == number) inside.tnear[i] = own[i];
+  Context context;
+  occlude(valid, to_scene(group.mesh->scene()), context, inside);
+  for (unsigned i = 0; i < rays_in_packet; ++i)
+    if (valid[i] != 0 && inside.tfar[i] < 0.0F) rays.tfar[i] = -std::numeric_limits<float>::infinity();
+}
+
+void fill(const Packet& packet, RTCRay8& rays, int* valid) {
+  for (unsigned i = 0; i < rays_in_packet; ++i) {
+    valid[i] = packet.cast[i] ? -1 : 0;
+    rays.org_x[i] = packet.origin_x[i];
+    rays.org_y[i] = packet.origin_y[i];
+    rays.org_z[i] = packet.origin_z[i];
+    rays.dir_x[i] = packet.direction_x[i];
+    rays.dir_y[i] = packet.direction_y[i];
+    rays.dir_z[i] = packet.direction_z[i];
+    rays.tnear[i] = 0.0F;
+    rays.tfar[i] = packet.farthest[i];
+    rays.time[i] = 0.0F;
+    rays.mask[i] = ~0U;
+    rays.id[i] = packet.from[i];
+    rays.flags[i] = 0;
+  }
+}
+
+}  // namespace
+
+PlacedTree::PlacedTree(std::vector<PlacedGroup> groups)
+    : groups_(std::move(groups)), scene_(rtcNewScene(embree_device())) {
+  for (PlacedGroup& group : groups_) {
+    RTCGeometry geometry = rtcNewGeometry(embree_device(), RTC_GEOMETRY_TYPE_USER);
+    rtcSetGeometryUserPrimitiveCount(geometry, group.count);
+    rtcSetGeometryUserData(geometry, &group);
+    rtcSetGeometryBoundsFunction(geometry, find_bounds, nullptr);
+    rtcSetGeometryIntersectFunction(geometry, intersect_instance);
+    rtcSetGeometryOccludedFunction(geometry, occlude_instance);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(to_scene(scene_), geometry);
+    rtcReleaseGeometry(geometry);
+  }
+  rtcCommitScene(to_scene(scene_));
+  if (rtcGetDeviceError(embree_device()) == RTC_ERROR_NONE) return;
+  rtcReleaseScene(to_scene(scene_));
+  throw Error("The instances do not fit into memory for casting rays at them; draw fewer grains.");
+}
+
+PlacedTree::~PlacedTree() { rtcReleaseScene(to_scene(scene_)); }
+
+void PlacedTree::first_hits(Packet& packet, Hits& hits) const {
+  alignas(32) int valid[rays_in_packet];
+  RTCRayHit8 rays;
+  fill(packet, rays.ray, valid);
+  for (unsigned& geometry : rays.hit.geomID) geometry = RTC_INVALID_GEOMETRY_ID;
+  Context context;
+  intersect(valid, to_scene(scene_), context, rays);
+  for (unsigned i = 0; i < rays_in_packet; ++i) {
+    if (valid[i] == 0 || rays.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
+    packet.farthest[i] = rays.ray.tfar[i];
+    hits.met[i] = true;
+    hits.distance[i] = rays.ray.tfar[i];
+    hits.group[i] = rays.hit.geomID[i];
+    hits.number[i] = groups_[rays.hit.geomID[i]].first_number + rays.hit.instID[0][i];
+    hits.triangle[i] = rays.hit.primID[i];
+    hits.second[i] = rays.hit.u[i];
+    hits.third[i] = rays.hit.v[i];
+  }
+}
+
+void PlacedTree::find_occluded(Packet& packet) const {
+  alignas(32) int valid[rays_in_packet];
+  RTCRay8 rays;
+  fill(packet, rays, valid);
+  Context context;
+  context.own = packet.own;
+  occlude(valid, to_scene(scene_), context, rays);
+  for (unsigned i = 0; i < rays_in_packet; ++i)
+    if (valid[i] != 0 && rays.tfar[i] < 0.0F) packet.cast[i] = false;
+}
+
+}  // namespace mesograin::casting

@@ -1,0 +1,23 @@
+// The tree of the instances is theirs, and lives as long as they stand still; that of the draws is made anew.
+#include "render/cast_content.h"
+
+#include <utility>
+
+namespace mesograin::render {
+
+CastContent::CastContent(DeviceCache& cache, Content& content) : instances_(&content.instances()->tree(cache)) {
+  std::vector<casting::PlacedGroup> groups;
+  rows_.reserve(3 * content.draws().size());
+  for (std::size_t i = 0; i < content.draws().size(); ++i) {
+    const Draw& draw = content.draws()[i];
+    const glm::dvec3 place = draw.centre - content.anchor();
+    for (int row = 0; row < 3; ++row)
+      rows_.emplace_back(draw.object_to_world[0][row], draw.object_to_world[1][row], draw.object_to_world[2][row],
+                         place[row]);
+    groups.push_back(
+        {cache.tree(draw.source), rows_.data() + 3 * i, 1, static_cast<std::uint32_t>(content.object_number(i))});
+  }
+  if (!groups.empty()) draws_ = std::make_unique<casting::PlacedTree>(std::move(groups));
+}
+
+}  // namespace mesograin::render

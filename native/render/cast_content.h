@@ -1,0 +1,30 @@
+// A view's content as rays meet it, where no hardware draws it faster.
+#pragma once
+
+#include <glm/vec4.hpp>
+#include <memory>
+#include <vector>
+
+#include "casting/placed_tree.h"
+#include "render/content.h"
+
+namespace mesograin::render {
+
+class CastContent {
+ public:
+  /// `content` must outlive it.
+  CastContent(DeviceCache& cache, Content& content);
+
+  /// Of instances of arrays alone.
+  const casting::PlacedTree& instances() const { return *instances_; }
+
+  /// Null if there are no draws. Its numbers are those by which shadows know them.
+  const casting::PlacedTree* draws() const { return draws_.get(); }
+
+ private:
+  const casting::PlacedTree* instances_;
+  std::vector<glm::vec4> rows_;  // of the draws
+  std::unique_ptr<casting::PlacedTree> draws_;
+};
+
+}  // namespace mesograin::render

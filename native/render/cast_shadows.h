@@ -1,0 +1,52 @@
+// What other objects leave of each light, found by rays: from what is seen to the light, a bit for each light and
+// pixel; or, where light is known beneath the surface too, from the light, as a shadow map.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec4.hpp>
+#include <optional>
+#include <vector>
+
+#include "gl/program.h"
+#include "gl/texture.h"
+#include "render/cast_content.h"
+#include "render/content.h"
+#include "render/go_on.h"
+#include "render/shadow_maps.h"
+
+namespace mesograin::render {
+
+/// Each has a bit.
+inline constexpr std::size_t most_cast_lights = 32;
+
+/// What a picture shows, as surface.frag writes it.
+struct SeenSurfaces {
+  const std::vector<glm::vec4>& positions;
+  const std::vector<glm::vec4>& normals;
+  glm::ivec2 size;
+  glm::vec4 viewer;  ///< as in lit_point.glsl, from the anchor
+};
+
+class CastShadows {
+ public:
+  /// Casts a ray from each pixel to each light. False if ended.
+  bool cast(const CastContent& cast, const Content& content, const SeenSurfaces& seen,
+            const std::vector<ShadowEye>& eyes, const GoOn& go_on);
+
+  /// Makes them what shaders/scene/shadows.glsl reads.
+  void bind(const gl::Program& program) const;
+
+ private:
+  std::vector<std::uint32_t> reached_;  // a bit a light
+  std::optional<gl::Texture> device_;
+};
+
+/// Fills a shadow map of this many texels on a side. False if ended.
+bool cast_shadow_map(const CastContent& cast, const Content& content, const glm::dmat4& anchor_to_clip,
+                     const ShadowEye& eye, int resolution, std::vector<glm::vec2>& texels, const GoOn& go_on);
+
+}  // namespace mesograin::render

@@ -1,0 +1,188 @@
+"""What heaps of grains cost: milliseconds a sample, as ratios to a Lambert sphere that fills the same picture.
+
+    heap.py BUILD_FOLDER [--grains N ...] [--samples N] [--shapes sphere ...] [--models lambert ...] [--json FILE]
+
+The picture has 960x540 pixels, and the heap fills it; one sun, which casts shadows. Each heap is measured in a process
+of its own, whose peak memory is told; so is the first picture after a material has changed, in samples.
+"""
+import argparse
+import json
+import math
+import pathlib
+import resource
+import statistics
+import subprocess
+import sys
+import time
+
+import numpy
+
+from frame import sphere
+
+SIZE = (960, 540)
+SUN = ((1.0, 0.4, 1.2), (3.0,) * 3)
+PARAMETERS = {"sigma_a": (0.05,) * 3, "sigma_s": (2.0,) * 3, "eta": 1.3, "roughness": 0.3,
+              "reflectance": (0.6, 0.5, 0.4)}
+MODELS_AT = 100_000
+GRAINS = [1_000, 10_000, 100_000, 1_000_000]
+
+
+def shapes(native):
+    """{name: native.Mesh}, of about radius 1."""
+    positions, normals, triangles = sphere()
+    unit = normals.astype(numpy.float64)
+    x, y, z = unit.T
+    bumps = 1.0 + 0.15 * numpy.sin(4.0 * x + 1.0) * numpy.cos(5.0 * y - 3.0 * z)
+    irregular = (unit * bumps[:, None] * (1.0, 0.9, 0.75)).astype(numpy.float32)
+    return {"sphere": native.Mesh(normals, normals, triangles), "irregular": native.Mesh(irregular, None, triangles)}
+
+
+def places(count):
+    """(n, 4, 4) transforms of a heap half as high as it is wide, turned at random, and how wide it is."""
+    random = numpy.random.default_rng(1)
+    side = math.ceil((2.0 * count) ** (1.0 / 3.0))
+    number = numpy.arange(count)
+    layer, row, column = number // side ** 2, number // side % side, number % side
+    place = numpy.stack((column + 0.5 * (layer % 2), row + 0.5 * (layer % 2), 0.72 * layer), axis=-1) * 1.9
+    place += random.uniform(0.0, 0.3, place.shape)
+    place -= (0.95 * side, 0.95 * side, 1.9 * 0.72 * count / side ** 2)
+    place[:, 2] += 1.2 * numpy.sin(0.5 * place[:, 0])
+    turn = random.normal(size=(count, 4))
+    w, x, y, z = (turn / numpy.linalg.norm(turn, axis=1, keepdims=True)).T
+    rotation = numpy.array([[1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+                            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+                            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)]])
+    result = numpy.zeros((count, 4, 4), dtype=numpy.float32)
+    result[:, :3, :3] = rotation.transpose(2, 0, 1) * random.uniform(0.8, 1.2, (count, 1, 1))
+    result[:, :3, 3] = place
+    result[:, 3, 3] = 1.0
+    return result, 1.9 * side
+
+
+def milliseconds(view, samples):
+    """The median time of a sample."""
+    times = []
+    for _ in range(samples):
+        start = time.perf_counter()
+        view.render(1)
+        times.append((time.perf_counter() - start) * 1e3)
+    return statistics.median(times)
+
+
+def make_view(native, visibility):
+    view = native.View(*SIZE)
+    view.set_visibility(visibility)
+    return view
+
+
+def sphere_view(native, visibility):
+    """A Lambert sphere that covers all of the picture."""
+    view = make_view(native, visibility)
+    mesh = shapes(native)["sphere"]
+    grain = native.Instance(mesh, native.Material(model="lambert", **PARAMETERS), numpy.eye(4))
+    view.set_scene(native.Scene(instances=[grain], lights=[native.DirectionalLight(*SUN)]))
+    view.set_camera(native.Camera.look_at((0.0, 0.0, 8.0), (0.0, 0.0, 0.0), (0.0, 1.0, 0.0), 7.0, SIZE[0] / SIZE[1]))
+    return view
+
+
+def measure(native, shape, model, count, samples, visibility):
+    """What one heap costs, as a dictionary."""
+    reference = sphere_view(native, visibility)
+    reference.render(3)
+    transforms, width = places(count)
+    view = make_view(native, visibility)
+    mesh = shapes(native)[shape]
+
+    def scene(**changes):
+        heap = native.InstanceArray(mesh, native.Material(model=model, **{**PARAMETERS, **changes}), transforms)
+        return native.Scene(arrays=[heap], lights=[native.DirectionalLight(*SUN)])
+
+    eye = (0.0, -0.6 * width, 1.05 * width)
+    view.set_camera(native.Camera.look_at(eye, (0.0, 0.0, -0.15 * width), (0.0, 0.0, 1.0), 18.0, SIZE[0] / SIZE[1]))
+    start = time.perf_counter()
+    view.set_scene(scene())
+    view.render(1)
+    first = (time.perf_counter() - start) * 1e3
+    view.render(1)
+    alone, times, after = [], [], []
+    for _ in range(samples):  # in turns, so that whatever else the machine does slows both
+        alone.append(milliseconds(reference, 3))
+        times.append(milliseconds(view, 1))
+    for number in range(3):
+        changed = scene(sigma_a=(0.06 + 0.001 * number,) * 3, reflectance=(0.5 + 0.01 * number,) * 3)
+        start = time.perf_counter()
+        view.set_scene(changed)
+        view.render(1)
+        after.append((time.perf_counter() - start) * 1e3)
+    view.render(1)
+    pixels = view.read()
+    sample = statistics.median(times)
+    return {"shape": shape, "model": model, "grains": count, "sphere_milliseconds": statistics.median(alone),
+            "milliseconds": sample, "ratio": sample / statistics.median(alone), "first_milliseconds": first,
+            "after_a_slider": statistics.median(after) / sample, "coverage": float(pixels[..., 3].mean()),
+            "passes": {entry["pass"]: entry["milliseconds"] for entry in view.timings()},
+            "peak_megabytes": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0,
+            "device": native.device_info()["renderer"]}
+
+
+def run_apart(options, shape, model, count):
+    """measure(), in a process of its own."""
+    words = [sys.executable, __file__, options.build, "--one", shape, model, str(count),
+             "--samples", str(options.samples), "--visibility", options.visibility]
+    return json.loads(subprocess.run(words, check=True, stdout=subprocess.PIPE, text=True).stdout)
+
+
+def show(case):
+    passes = ", ".join(f"{name} {milliseconds:.0f}" for name, milliseconds in case["passes"].items())
+    print(f"{case['shape']:<10}{case['model']:<9}{case['grains']:>9}{case['milliseconds']:>9.0f}{case['ratio']:>8.1f}"
+          f"{case['after_a_slider']:>8.2f}{case['first_milliseconds']:>9.0f}{case['peak_megabytes']:>7.0f}  {passes}",
+          flush=True)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("build", help="the folder of the native module")
+    parser.add_argument("--grains", type=int, nargs="+", default=GRAINS,
+                        help="sizes of heaps (default: 1000 to 1000000)")
+    parser.add_argument("--samples", type=int, default=5, help="samples of each heap (default: 5)")
+    parser.add_argument("--shapes", nargs="+", default=["sphere", "irregular"], choices=["sphere", "irregular"])
+    parser.add_argument("--models", nargs="+", default=["lambert", "model_1", "model_2", "model_3"],
+                        help=f"lambert's heaps are of all sizes, those of other models have {MODELS_AT} grains")
+    parser.add_argument("--visibility", default="automatic", choices=["automatic", "drawn", "cast"],
+                        help="how it is found what is seen (default: automatic)")
+    parser.add_argument("--one", nargs=3, metavar=("SHAPE", "MODEL", "GRAINS"), help=argparse.SUPPRESS)
+    parser.add_argument("--json", type=pathlib.Path, metavar="FILE", help="also writes the result there")
+    options = parser.parse_args()
+    if options.one:
+        sys.path.insert(0, options.build)
+        import mesograin_native as native
+
+        shape, model, count = options.one
+        print(json.dumps(measure(native, shape, model, int(count), options.samples, options.visibility)))
+        return
+
+    print(f"{'shape':<10}{'model':<9}{'grains':>9}{'ms':>9}{'ratio':>8}{'slider':>8}{'first':>9}{'MB':>7}"
+          "  milliseconds of the passes")
+    cases = []
+    for shape in options.shapes:
+        for model in options.models:
+            for count in options.grains if model == "lambert" else [MODELS_AT]:
+                cases.append(run_apart(options, shape, model, count))
+                show(cases[-1])
+    of = {(case["shape"], case["model"], case["grains"]): case for case in cases}
+    for shape in options.shapes:
+        if (shape, "lambert", 10_000) in of and (shape, "lambert", 1_000_000) in of:
+            growth = of[shape, "lambert", 1_000_000]["ratio"] / of[shape, "lambert", 10_000]["ratio"]
+            print(f"{shape}: a hundred times as many grains as 10000 cost {growth:.1f} times as much")
+        for model in options.models:
+            if model != "lambert" and {(shape, "lambert", MODELS_AT), (shape, model, MODELS_AT)} <= set(of):
+                cost = of[shape, model, MODELS_AT]["ratio"] / of[shape, "lambert", MODELS_AT]["ratio"]
+                print(f"{shape}: {MODELS_AT} grains of {model} cost {cost:.2f} times lambert's")
+    print("ratio: to a Lambert sphere that fills the picture; slider: the first picture after a material changed, in"
+          f" samples; first: from no scene to a picture; on {cases[0]['device']}")
+    if options.json:
+        options.json.write_text(json.dumps(cases, indent=1) + "\n")
+
+
+if __name__ == "__main__":
+    main()
