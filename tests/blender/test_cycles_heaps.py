@@ -7,9 +7,11 @@ import pytest
 from cycles_scenes import depsgraph, make_sphere
 from mathutils import Euler, Matrix, Vector
 
+from mesograin import native_module
 from mesograin.cycles import instancing, kinds, nodes, recipes, reference, settings, shot
 from mesograin.cycles.cache import Cache
 from mesograin.cycles.stage import Stage
+from mesograin.scene import export
 
 SUN = [((1.0, 1.0, 2.0), 3.0)]
 SIZE = (32, 32)
@@ -94,6 +96,44 @@ def test_what_is_baked_stays_an_object_of_its_own():
         expected = bpy.data.objects["Grain.005"].matrix_world
         np.testing.assert_allclose(np.array(placed.matrix_world), np.array(expected), atol=1e-6)
         assert len(staged.heaps[0].matrices) == instancing.FROM + 9
+
+
+def make_irregular(count):
+    """`count` bumpy grains, resting in each other's light on a ground; the sun is low."""
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
+    make_sphere([((1.0, 0.4, 0.9), 3.0)], camera=(0.0, 0.0, 9.0), segments=32, model="lambert",
+                reflectance=(0.8, 0.5, 0.2))
+    grain = next(placed for placed in bpy.data.objects if placed.type == "MESH")
+    for vertex in grain.data.vertices:
+        x, y, z = vertex.co.normalized()
+        vertex.co *= 1.0 + 0.15 * np.sin(4.0 * x + 1.0) * np.cos(5.0 * y - 3.0 * z)
+    random = np.random.default_rng(11)
+    for number in range(count):
+        turn = Euler(random.uniform(-np.pi, np.pi, 3)).to_matrix().to_4x4()
+        where = Vector((*random.uniform(-2.6, 2.6, 2), random.uniform(0.1, 0.9)))
+        placed = grain if number == 0 else bpy.data.objects.new("Grain", grain.data)
+        placed.matrix_world = Matrix.Translation(where) @ turn @ Matrix.Scale(random.uniform(0.06, 0.12), 4)
+        if number:
+            bpy.context.scene.collection.objects.link(placed)
+    bpy.ops.mesh.primitive_plane_add(size=12.0)
+    bpy.context.object.data.materials.append(grain.data.materials[0])
+
+
+@pytest.mark.parametrize("by", ["cast", "drawn"])
+def test_grains_shade_each_other_and_the_ground_as_in_cycles(by):
+    size, block = 64, 4
+    make_irregular(300)
+    evaluated = depsgraph()
+    expected = reference.render(evaluated, "diffuse", (size, size), samples=128, seeds=(1,)).mean
+    view = native_module.get().View(size, size)
+    view.set_visibility(by)
+    view.set_scene(export.scene_from_depsgraph(evaluated)[0])
+    view.set_camera(export.camera_from_scene(evaluated, size, size))
+    view.render(64)
+    ours, theirs = (picture[..., :3].reshape(size // block, block, size // block, block, 3).mean(axis=(1, 3))
+                    for picture in (view.read(), expected))
+    assert abs(ours.sum() / theirs.sum() - 1.0) < 0.005
+    assert np.abs(ours - theirs).sum() < 0.015 * theirs.sum()
 
 
 def test_a_moved_grain_is_another_reference(tmp_path):
