@@ -124,6 +124,19 @@ py::list timings(render::View& view) {
   return result;
 }
 
+py::dict statistics(render::View& view) {
+  const render::Statistics counts = [&] {
+    const py::gil_scoped_release release;
+    return view.statistics();
+  }();
+  py::dict result;
+  result["instances"] = counts.instances;
+  result["drawn"] = counts.drawn;
+  result["cast"] = counts.cast;
+  result["seen"] = counts.seen;
+  return result;
+}
+
 void set_bake(render::View& view, std::vector<std::size_t> instances, const std::string& view_from) {
   const render::Bake bake{std::move(instances), render::parse_view_from(view_from)};
   const py::gil_scoped_release release;
@@ -245,6 +258,9 @@ void bind_view(py::module_& module) {
           "The mean: (height, width, 4) float32, linear RGB premultiplied by coverage, and coverage; row 0 at the top, "
           "which in a bake is v = 1. "
           "`out`, if given, is filled and returned.")
+      .def("statistics", &statistics,
+           "What of the scene's arrays the last sample took the trouble of: {'instances': there are, 'drawn': that the "
+           "device drew for the camera, 'cast': that rays were cast at, 'seen': of those, that rays met}.")
       .def("timings", &timings, "[{'pass', 'milliseconds'}, ...] of the last sample, in the order the passes ran.");
 }
 

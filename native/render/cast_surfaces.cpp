@@ -8,6 +8,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
+#include <set>
 
 #include "render/cast_work.h"
 #include "render/stencil.h"
@@ -114,6 +115,13 @@ void CastSurfaces::cast_band(const CastContent& cast, const Content& content, co
         groups_[place] = hits.group[ray] + 1;
       }
     }
+}
+
+std::size_t CastSurfaces::seen() const {
+  std::set<float> numbers;
+  for (const glm::vec4& normal : normals_)
+    if (normal.w != 0.0F) numbers.insert(std::abs(normal.w));
+  return numbers.size();
 }
 
 void CastSurfaces::upload(gl::Texture& position, gl::Texture& normal, gl::Texture& depth, std::size_t first) {

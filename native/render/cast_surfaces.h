@@ -24,6 +24,9 @@ class CastSurfaces {
   /// Makes them the surfaces drawn so far. Groups mark the stencil from 1 for `first` up to the last it can hold.
   void upload(gl::Texture& position, gl::Texture& normal, gl::Texture& depth, std::size_t first);
 
+  /// How many instances were seen.
+  std::size_t seen() const;
+
   /// As surface.frag writes them.
   const std::vector<glm::vec4>& positions() const { return positions_; }
   const std::vector<glm::vec4>& normals() const { return normals_; }

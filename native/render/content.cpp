@@ -77,7 +77,10 @@ Content::Content(DeviceCache& cache, const scene::Scene& scene, Content before,
     if (!array.object_to_world().empty() && fits_array(array.material)) arrays.push_back(array);
   if (!arrays.empty()) {
     instances_.emplace(cache, arrays, anchor_);
-    if (before.instances_) instances_->take_light_maps(*before.instances_);
+    if (before.instances_) {
+      instances_->take_light_maps(*before.instances_);
+      instances_->take_places(*before.instances_);
+    }
   }
   for (const std::size_t index : alone) {
     draws_.emplace_back(cache, scene.instances[index], index);

@@ -77,6 +77,7 @@ void Frame::resize(int width, int height) {
 
 void Frame::set_scene(scene::Scene scene) {
   cast_.reset();
+  casters_.clear();
   content_ = std::make_unique<Content>(cache_, scene, std::move(*content_));
   version_ = content_->version();
   lighting_.set(scene);
@@ -106,6 +107,7 @@ void Frame::set_bake(const Bake& bake) {
       throw Error("Baking needs UVs, and the mesh of instance {} has none: unwrap it first.", instance);
   }
   cast_.reset();
+  casters_.clear();
   content_ = std::make_unique<Content>(cache_, scene_, std::move(*content_), bake.instances);
   version_ = content_->version();
   baked_.clear();
@@ -184,7 +186,7 @@ bool Frame::reads_light_maps() const {
                      [](const Prototype& prototype) { return prototype.light_maps != nullptr; });
 }
 
-bool Frame::cast_shadows() const {
+bool Frame::knows_shadows_by_pixel() const {
   if (bake_ || !casts() || lighting_.eyes(sampled_lights_, content_->anchor()).size() > most_cast_lights) return false;
   const std::vector<Draw>& draws = content_->draws();
   const std::vector<InstanceGroup>& groups = content_->instances()->groups();
@@ -203,6 +205,7 @@ bool Frame::add_sample(const GoOn& go_on) {
   const bool own_maps =
       std::any_of(draws.begin(), draws.end(), [](const Draw& draw) { return draw.light_maps != nullptr; });
   sampled_lights_ = lighting_.sample(static_cast<std::uint32_t>(samples_), seed_, own_maps ? 1 : most_world_directions);
+  shadows_by_pixel_ = knows_shadows_by_pixel();
   light_map_timer_.start();
   if (!update_light_maps(go_on)) return false;
   light_map_timer_.stop();
@@ -268,7 +271,7 @@ bool Frame::update_shadows(const GoOn& go_on) {
   if (!shadows_drawn_) return true;
   const auto start = std::chrono::steady_clock::now();
   shadow_timer_.start();
-  const bool whole = cast_shadows() ? update_cast_shadows(go_on) : update_shadow_maps(go_on);
+  const bool whole = shadows_by_pixel_ ? update_cast_shadows(go_on) : update_shadow_maps(go_on);
   shadow_timer_.stop();
   shadow_milliseconds_ = milliseconds_since(start);
   return whole;
@@ -291,9 +294,11 @@ bool Frame::update_cast_shadows(const GoOn& go_on) {
 
 bool Frame::update_shadow_maps(const GoOn& go_on) {
   const std::vector<ShadowEye> eyes = lighting_.eyes(sampled_lights_, content_->anchor());
-  if (receivers_.empty())
+  if (receivers_.empty()) {
+    casters_.clear();
     receivers_ = receivers(targets_->surfaces, width_, height_,
                            [this](std::size_t number) { return content_->receiver(number); });
+  }
   // About a texel a pixel: the jitter makes them finer with every sample.
   const int resolution = std::clamp(static_cast<int>(std::bit_ceil(static_cast<unsigned>(std::max(width_, height_)))),
                                     least_shadow_resolution, most_shadow_resolution);
@@ -306,13 +311,22 @@ bool Frame::update_shadow_maps(const GoOn& go_on) {
       maps.upload(layer, GL_RG, GL_FLOAT, texels.data());
       return true;
     }
-    std::unique_ptr<DeviceSelection> casters;
-    if (const Instances* instances = content_->instances())
-      casters = std::make_unique<DeviceSelection>(instances->select(to_clip, resolution, resolution));
     const gl::Framebuffer target(maps, layer, depth);
-    return draw_casters(cache_, *content_, casters.get(), to_clip, eye, target, go_on);
+    return draw_casters(cache_, *content_, casters(to_clip, eye, static_cast<std::size_t>(layer), resolution), to_clip,
+                        eye, target, go_on);
   };
   return shadow_maps_.update(eyes, receivers_, content_->bounds(), content_->over_ground(), resolution, jitter, draw);
+}
+
+const DeviceSelection* Frame::casters(const glm::dmat4& anchor_to_clip, const ShadowEye& eye, std::size_t layer,
+                                      int resolution) {
+  if (content_->instances() == nullptr) return nullptr;
+  if (casters_.size() <= layer) casters_.resize(layer + 1);
+  Casters& known = casters_[layer];
+  if (!known.selection || known.eye != eye)
+    known = {eye,
+             std::make_unique<DeviceSelection>(content_->instances()->select(anchor_to_clip, resolution, resolution))};
+  return known.selection.get();
 }
 
 bool Frame::find_surfaces(const glm::vec2& jitter, std::size_t first, const GoOn& go_on) {
@@ -433,7 +447,7 @@ void Frame::shade_unwrapped(const glm::vec2& jitter) {
 }
 
 Shading Frame::shading(const DeviceMaterial& material, bool unwrapped, bool instanced) const {
-  const Shadows shadows = !content_->shadows() ? Shadows::none : cast_shadows() ? Shadows::cast : Shadows::maps;
+  const Shadows shadows = !content_->shadows() ? Shadows::none : shadows_by_pixel_ ? Shadows::cast : Shadows::maps;
   return {unwrapped, instanced, shadows, lights_at_place(material, instanced)};
 }
 
@@ -463,8 +477,8 @@ void Frame::set_lights(const gl::Program& program, const std::vector<LightDirect
 void Frame::set_common(const gl::Program& program) const {
   program.set("sample_index", samples_);
   program.set("taps", taps_);
-  if (shadows_drawn_ && cast_shadows()) cast_shadows_.bind(program);
-  if (shadows_drawn_ && !cast_shadows()) shadow_maps_.bind(program);
+  if (shadows_drawn_ && shadows_by_pixel_) cast_shadows_.bind(program);
+  if (shadows_drawn_ && !shadows_by_pixel_) shadow_maps_.bind(program);
 }
 
 void Frame::set_viewer(const gl::Program& program, const glm::dvec3& origin) const {
@@ -573,6 +587,20 @@ std::vector<PassTiming> Frame::timings() const {
   passes.push_back({"shade", shade_timer_.milliseconds() - shadows});
   passes.push_back({"accumulate", accumulate_timer_.milliseconds()});
   return passes;
+}
+
+Statistics Frame::statistics() const {
+  Statistics result;
+  if (content_->instances() == nullptr) return result;
+  result.instances = content_->instances()->count();
+  if (samples_ == 0 || bake_) return result;
+  if (casts()) {
+    result.cast = result.instances;
+    result.seen = cast_surfaces_.seen();
+  } else {
+    result.drawn = selection_->selection.instances.size();
+  }
+  return result;
 }
 
 }  // namespace mesograin::render

@@ -47,6 +47,14 @@ struct PassTiming {
   double milliseconds;
 };
 
+/// What of the arrays the last sample took the trouble of.
+struct Statistics {
+  std::size_t instances = 0;  ///< there are
+  std::size_t drawn = 0;      ///< that the device drew for the camera, in as few triangles as they deserve
+  std::size_t cast = 0;       ///< that rays were cast at
+  std::size_t seen = 0;       ///< of those, that rays met
+};
+
 /// Lives on the context's thread.
 class Frame {
  public:
@@ -90,6 +98,8 @@ class Frame {
 
   std::vector<PassTiming> timings() const;
 
+  Statistics statistics() const;
+
   int width() const { return width_; }
   int height() const { return height_; }
 
@@ -112,13 +122,17 @@ class Frame {
   /// Whether any array does.
   bool reads_light_maps() const;
 
-  /// Whether it is enough to know for each pixel which lights reach it.
-  bool cast_shadows() const;
+  /// Whether it is enough to know for each pixel which lights of this sample reach it.
+  bool knows_shadows_by_pixel() const;
 
   bool update_light_maps(const GoOn& go_on);
   bool update_shadows(const GoOn& go_on);
   bool update_shadow_maps(const GoOn& go_on);
   bool update_cast_shadows(const GoOn& go_on);
+  /// What a light of this layer sees: the same as in the sample before where it has not moved.
+  const DeviceSelection* casters(const glm::dmat4& anchor_to_clip, const ShadowEye& eye, std::size_t layer,
+                                 int resolution);
+
   bool find_surfaces(const glm::vec2& jitter, std::size_t first, const GoOn& go_on);
   glm::vec4 viewer(const glm::dvec3& origin) const;
   bool shade(const GoOn& go_on);
@@ -175,6 +189,13 @@ class Frame {
   std::unique_ptr<CastContent> cast_;  // null if not known yet
   CastSurfaces cast_surfaces_;
   CastShadows cast_shadows_;
+  bool shadows_by_pixel_ = false;  // in the sample under way
+  /// Where the light's eye was, and what it saw of the same receivers.
+  struct Casters {
+    ShadowEye eye;
+    std::unique_ptr<DeviceSelection> selection;
+  };
+  std::vector<Casters> casters_;
   std::vector<glm::vec4> read_positions_;  // of surfaces that were drawn
   std::vector<glm::vec4> read_normals_;
   std::unique_ptr<Targets> targets_;

@@ -45,7 +45,6 @@ Instances::Instances(DeviceCache& cache, const std::vector<scene::InstanceArray>
   rows_.reserve(3 * count);
   balls_.reserve(count);
   for (const scene::InstanceArray& array : arrays) add(cache, array, anchor);
-  device_.emplace(rows_);
 }
 
 std::size_t Instances::prototype(DeviceCache& cache, const scene::MeshPointer& mesh) {
@@ -93,6 +92,27 @@ void Instances::add(DeviceCache& cache, const scene::InstanceArray& array, const
       bounds_.include(glm::dvec3(balls_.back()), balls_.back().w);
     }
   }
+}
+
+void Instances::take_places(Instances& before) {
+  const auto same = [](const InstanceGroup& a, const InstanceGroup& b) {
+    return a.prototype == b.prototype && a.first == b.first && a.count == b.count;
+  };
+  const auto same_mesh = [](const Prototype& a, const Prototype& b) { return a.mesh == b.mesh; };
+  if (rows_ != before.rows_ ||
+      !std::equal(groups_.begin(), groups_.end(), before.groups_.begin(), before.groups_.end(), same) ||
+      !std::equal(prototypes_.begin(), prototypes_.end(), before.prototypes_.begin(), before.prototypes_.end(),
+                  same_mesh))
+    return;
+  // The tree looks at these very rows.
+  rows_ = std::move(before.rows_);
+  tree_ = std::move(before.tree_);
+  device_ = std::move(before.device_);
+}
+
+void Instances::bind() const {
+  if (!device_) device_.emplace(rows_);
+  device_->bind_storage(2);
 }
 
 void Instances::take_light_maps(Instances& before) {

@@ -61,6 +61,10 @@ class Instances {
   /// Takes the arrays of a scene. `anchor`, a place amid the scene, is the origin of all that is on the device.
   Instances(DeviceCache& cache, const std::vector<scene::InstanceArray>& arrays, const glm::dvec3& anchor);
 
+  /// Takes over what was made for the same instances in the same order, whatever their materials are: a material's
+  /// change costs no tree and sends nothing.
+  void take_places(Instances& before);
+
   /// Takes over the light maps of prototypes that were there before.
   void take_light_maps(Instances& before);
 
@@ -93,7 +97,7 @@ class Instances {
   LightMapDirections light_directions(std::size_t prototype, const std::vector<glm::dvec3>& to_light) const;
 
   /// Makes them what shaders/scene/instances.glsl reads.
-  void bind() const { device_->bind_storage(2); }
+  void bind() const;
 
  private:
   void add(DeviceCache& cache, const scene::InstanceArray& array, const glm::dvec3& anchor);
@@ -105,7 +109,7 @@ class Instances {
   std::vector<glm::vec4> balls_;
   Bounds bounds_;
   std::unique_ptr<casting::PlacedTree> tree_;
-  std::optional<gl::Buffer> device_;
+  mutable std::optional<gl::Buffer> device_;  // the rows, sent on first use
 };
 
 }  // namespace mesograin::render

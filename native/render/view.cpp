@@ -161,6 +161,10 @@ std::vector<PassTiming> View::timings() {
   return gl::ContextThread::instance().run([&] { return frame(id_).timings(); });
 }
 
+Statistics View::statistics() {
+  return gl::ContextThread::instance().run([&] { return frame(id_).statistics(); });
+}
+
 Sent View::sent() {
   return gl::ContextThread::instance().run([] { return device().cache.sent(); });
 }

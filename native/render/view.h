@@ -84,6 +84,9 @@ class View {
   /// Milliseconds of each pass of the last sample, in the order they ran; empty before the first.
   std::vector<PassTiming> timings();
 
+  /// What of the arrays the last sample took the trouble of.
+  Statistics statistics();
+
   /// What all views together have sent to the device so far.
   static Sent sent();
 

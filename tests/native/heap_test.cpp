@@ -351,6 +351,42 @@ TEST_F(HeapTest, WhatIsSelectedIsWhatTheCameraSees) {
   EXPECT_LT(found.blocks, 2e-3);
 }
 
+// Whatever was made for the places stays, and the new material is seen; another place is another picture.
+TEST_F(HeapTest, AMaterialChangesWithoutItsInstances) {
+  const auto ball = std::make_shared<scene::Mesh>(scene::unit_sphere(16, 8));
+  const scene::Camera camera = scene::Camera::look_at({0, 0, 16}, {0, 0, 0}, {0, 1, 0}, 30.0, 2.0);
+  for (const Visibility visibility : {Visibility::drawn, Visibility::cast}) {
+    View view(64, 32);
+    view.set_visibility(visibility);
+    view.set_camera(camera);
+    const auto shown = [&](const scene::Scene& scene) {
+      view.set_scene(scene);
+      view.render(4);
+      std::vector<float> pixels(64 * 32 * 4);
+      view.read(pixels.data());
+      return pixels;
+    };
+    scene::Material material;
+    material.reflectance = glm::dvec3(0.2);
+    const std::vector<scene::Light> lights = {sun({0.3, 0.2, 1.0}, 3.0)};
+    const std::vector<float> dark = shown(array_of(ball, material, eight_places(), lights));
+    const std::size_t sent = View::sent().bytes;
+    material.reflectance = glm::dvec3(0.4);
+    std::vector<float> bright = shown(array_of(ball, material, eight_places(), lights));
+    EXPECT_EQ(View::sent().bytes, sent);
+    for (std::size_t i = 0; i < bright.size(); ++i)
+      if (i % 4 < 3) bright[i] *= 0.5F;
+    EXPECT_LT(difference(bright, dark, 64, 32).blocks, 1e-5);
+    std::vector<glm::dmat4> moved = eight_places();
+    moved[3] = glm::translate(moved[3], glm::dvec3(0.5, 0.5, 0.0));
+    const std::vector<float> anew = picture(array_of(ball, material, moved, lights), camera, 64, 32, 4, visibility);
+    EXPECT_EQ(shown(array_of(ball, material, moved, lights)), anew);
+    const Statistics counts = view.statistics();
+    EXPECT_EQ(counts.instances, 8U);
+    EXPECT_EQ(visibility == Visibility::cast ? counts.seen : counts.drawn, 8U);
+  }
+}
+
 TEST_F(HeapTest, ACancelledSampleAddsNothing) {
   const auto ball = std::make_shared<scene::Mesh>(scene::unit_sphere(8, 4));
   const std::vector<glm::dmat4> places(20001, glm::dmat4(1.0));
