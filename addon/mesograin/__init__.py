@@ -12,11 +12,12 @@ bl_info = {
 __version__ = ".".join(str(number) for number in bl_info["version"])
 
 # What there is to register, in the order of its imports: each room knows only those before it.
-ROOMS = ("compat", "native_module",
+ROOMS = ("compat", "native_module", "grains.shape", "grains.kinds", "grains.pile", "grains.objects",
          "scene.smooth_normals", "scene.properties", "scene.meshes", "scene.heaps", "scene.lights",
-         "scene.surroundings", "scene.plain_materials", "scene.thick_layer", "scene.export",
+         "scene.colours", "scene.surroundings", "scene.plain_materials", "scene.thick_layer", "scene.export",
          "engine.status", "engine.viewport", "engine.viewport_text", "engine.engine",
-         "cycles.reference_cache", "ui.presets", "ui.look", "ui.conversion", "ui.panels", "ui.notes", "ui.preferences",
+         "cycles.reference_cache", "ui.presets", "ui.look", "ui.conversion", "ui.panels", "ui.notes",
+         "ui.grain_tools", "ui.preferences",
          *(f"ui.side_task.{name}" for name in ("settings", "session", "pictures", "operators", "panel", "results")),
          *(f"ui.compare_panel.{name}" for name in ("properties", "session", "operators", "panel")),
          *(f"ui.bake_panel.{name}" for name in ("properties", "compared", "session", "operators", "panel")))

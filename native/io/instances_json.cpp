@@ -104,10 +104,12 @@ Transforms read_places(const Node& node) {
   return transforms;
 }
 
-Transforms read_file(const std::filesystem::path& path) {
+/// What `parse` makes of a file's bytes.
+template <typename Parse>
+auto read_whole(const std::filesystem::path& path, const Parse& parse) {
   const std::string bytes = base::read_file(path);
   try {
-    return path.extension() == ".npy" ? transforms_of(parse_npy(bytes)) : parse_ply_places(bytes);
+    return parse(bytes);
   } catch (const Error& error) {
     throw Error("Can't read {}: {}", path.string(), error.what());
   }
@@ -116,11 +118,16 @@ Transforms read_file(const std::filesystem::path& path) {
 Transforms read_file(const Node& name, const std::filesystem::path& folder) {
   const std::filesystem::path path = folder / name.text();
   if (path.extension() != ".npy" && path.extension() != ".ply") name.fail("must be a .npy or .ply file");
-  return at(name, [&] { return read_file(path); });
+  return at(name, [&] {
+    return read_whole(path, [&](const std::string& bytes) {
+      return path.extension() == ".npy" ? transforms_of(parse_npy(bytes)) : parse_ply_places(bytes);
+    });
+  });
 }
 
 Transforms read_transforms(const Node& node, const std::filesystem::path& folder) {
-  node.require_object(std::array<std::string_view, 4>{"transforms", "positions", "scales", "file"}, provenance_keys);
+  node.require_object(std::array<std::string_view, 5>{"transforms", "positions", "scales", "file", "factors"},
+                      provenance_keys);
   if (node.has("transforms") + node.has("positions") + node.has("file") != 1)
     node.fail("must have one of transforms, positions and file");
   if (node.has("scales") && !node.has("positions")) node["scales"].fail("must stand beside positions");
@@ -130,6 +137,40 @@ Transforms read_transforms(const Node& node, const std::filesystem::path& folder
   const Node list = node["transforms"];
   for (std::size_t i = 0; i < list.size(); ++i) transforms.push_back(read_transform(list[i]));
   return transforms;
+}
+
+/// A list, a file of one, or a range that is drawn from.
+std::vector<glm::vec3> read_factors(const Node& node, const std::filesystem::path& folder, std::size_t count) {
+  if (node.is_object()) {
+    node.require_object(std::array<std::string_view, 3>{"from", "to", "seed"});
+    const int seed = node.has("seed") ? node["seed"].integer(0, 1 << 30) : 0;
+    return random_factors(node["from"].rgb(), node["to"].rgb(), count, static_cast<std::uint64_t>(seed));
+  }
+  std::vector<glm::vec3> factors;
+  if (node.is_text()) {
+    const std::filesystem::path path = folder / node.text();
+    const NumberArray array = at(node, [&] { return read_whole(path, parse_npy); });
+    if (array.shape.size() != 2 || array.shape[1] != 3)
+      node.fail("must be an .npy of shape (n, 3), not ({})", fmt::join(array.shape, ", "));
+    for (std::size_t i = 0; i < array.shape[0]; ++i)
+      factors.emplace_back(array.numbers[3 * i], array.numbers[3 * i + 1], array.numbers[3 * i + 2]);
+    return factors;
+  }
+  for (std::size_t i = 0; i < node.size(); ++i) factors.emplace_back(node[i].rgb());
+  return factors;
+}
+
+ColourFactors read_colour_factors(const Node& node, const std::filesystem::path& folder, std::size_t count) {
+  node.require_object(std::array<std::string_view, 3>{"sigma_a", "sigma_s", "reflectance"});
+  ColourFactors factors;
+  const auto read = [&](const char* name, std::vector<glm::vec3>& numbers) {
+    if (node.has(name)) numbers = read_factors(node[name], folder, count);
+  };
+  read("sigma_a", factors.sigma_a);
+  read("sigma_s", factors.sigma_s);
+  read("reflectance", factors.reflectance);
+  at(node, [&] { validate(factors, count); });
+  return factors;
 }
 
 }  // namespace
@@ -151,7 +192,9 @@ void read_instances(const Node& node, const Instance& prototype, const std::file
   Transforms transforms = read_transforms(node, folder);
   if (transforms.empty()) node.fail("must place at least one instance");
   for (glm::dmat4& transform : transforms) transform *= prototype.object_to_world;
-  arrays.emplace_back(prototype.mesh, prototype.material, std::move(transforms));
+  ColourFactors factors;
+  if (node.has("factors")) factors = read_colour_factors(node["factors"], folder, transforms.size());
+  arrays.emplace_back(prototype.mesh, prototype.material, std::move(transforms), std::move(factors));
 }
 
 }  // namespace mesograin::io

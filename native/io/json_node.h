@@ -66,6 +66,7 @@ class Node {
 
   const std::string& path() const { return path_; }
   bool is_number() const { return value_.is_number(); }
+  bool is_text() const { return value_.is_string(); }
   bool is_object() const { return value_.is_object(); }
 
   /// Refuses keys that are neither in `known` nor in `ignored`.

@@ -56,9 +56,11 @@ class Writer {
         numbers.numbers.insert(numbers.numbers.end(), values.begin(), values.end());
       }
       base::write_file_atomically(path_.parent_path() / file, to_npy(numbers));
+      Json instances{{"file", file}};
+      if (array.factors().any()) instances["factors"] = factors(array.factors(), i);
       list.push_back({{"geometry", geometry(array.mesh, glm::dmat4(1.0))},
                       {"material", material_json(array.material)},
-                      {"instances", {{"file", file}}}});
+                      {"instances", std::move(instances)}});
     }
     return list;
   }
@@ -79,6 +81,22 @@ class Writer {
 
  private:
   std::string beside(const std::string& what) const { return path_.stem().string() + "_" + what; }
+
+  Json factors(const ColourFactors& factors, std::size_t number) {
+    Json json = Json::object();
+    const auto add = [&](const char* name, const std::vector<glm::vec3>& numbers) {
+      if (numbers.empty()) return;
+      const std::string file = beside(fmt::format("{}_{}.npy", name, number));
+      NumberArray rows{{numbers.size(), 3}, {}};
+      for (const glm::vec3& row : numbers) rows.numbers.insert(rows.numbers.end(), {row.r, row.g, row.b});
+      base::write_file_atomically(path_.parent_path() / file, to_npy(rows));
+      json[name] = file;
+    };
+    add("sigma_a", factors.sigma_a);
+    add("sigma_s", factors.sigma_s);
+    add("reflectance", factors.reflectance);
+    return json;
+  }
 
   Json geometry(const MeshPointer& mesh, const glm::dmat4& object_to_world) {
     std::string& file = meshes_[mesh.get()];

@@ -2,6 +2,8 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -89,15 +91,57 @@ Array<double> to_array_of_matrices(const scene::InstanceArray& instances) {
   return array;
 }
 
+using Factors = std::map<std::string, Array<float>>;
+
+scene::ColourFactors to_factors(const Factors& factors) {
+  scene::ColourFactors found;
+  for (const auto& [name, array] : factors) {
+    std::vector<glm::vec3> numbers = to_vectors<glm::vec3>(array, "factors");
+    if (name == "sigma_a")
+      found.sigma_a = std::move(numbers);
+    else if (name == "sigma_s")
+      found.sigma_s = std::move(numbers);
+    else if (name == "reflectance")
+      found.reflectance = std::move(numbers);
+    else
+      throw Error("Factors are of sigma_a, sigma_s or reflectance; got '{}'.", name);
+  }
+  return found;
+}
+
+Factors from_factors(const scene::InstanceArray& array) {
+  Factors factors;
+  const auto add = [&](const char* name, const std::vector<glm::vec3>& numbers) {
+    if (numbers.empty()) return;
+    Array<float> rows({numbers.size(), std::size_t{3}});
+    std::copy_n(&numbers.front().x, 3 * numbers.size(), rows.mutable_data());
+    factors.emplace(name, std::move(rows));
+  };
+  add("sigma_a", array.factors().sigma_a);
+  add("sigma_s", array.factors().sigma_s);
+  add("reflectance", array.factors().reflectance);
+  return factors;
+}
+
 void bind_instance_array(py::module_& module) {
   py::class_<scene::InstanceArray>(module, "InstanceArray",
                                    "Many instances of one mesh with one material: grains of a heap, a transform each.")
-      .def(py::init(
-               [](std::shared_ptr<scene::Mesh> mesh, const scene::Material& material, const Array<double>& transforms) {
-                 return scene::InstanceArray(std::move(mesh), material, to_matrices(transforms));
-               }),
-           py::arg("mesh").none(false), py::arg("material"), py::arg("transforms"),
-           "transforms: (n, 4, 4) float64, object to world. Raises Error for another shape.")
+      .def(py::init([](std::shared_ptr<scene::Mesh> mesh, const scene::Material& material,
+                       const Array<double>& transforms, const Factors& factors) {
+             return scene::InstanceArray(std::move(mesh), material, to_matrices(transforms), to_factors(factors));
+           }),
+           py::arg("mesh").none(false), py::arg("material"), py::arg("transforms"), py::arg("factors") = Factors{},
+           "transforms: (n, 4, 4) float64, object to world. factors: {parameter: (n, 3) float32} by which each "
+           "instance's sigma_a, sigma_s or reflectance is multiplied. Raises Error for another shape.")
+      .def(
+          "with_material",
+          [](const scene::InstanceArray& array, const scene::Material& material) {
+            scene::InstanceArray other = array;
+            other.material = material;
+            return other;
+          },
+          py::arg("material"), "The same instances of another material; nothing is copied.")
+      .def_property_readonly("factors", &from_factors)
       .def_readonly("material", &scene::InstanceArray::material)
       .def_property_readonly("transforms", &to_array_of_matrices)
       .def("__len__", [](const scene::InstanceArray& array) { return array.object_to_world().size(); });

@@ -17,6 +17,7 @@ PYBIND11_MODULE(mesograin_native, module) {
   mesograin::python::bind_material(module);
   mesograin::python::bind_scene(module);
   mesograin::python::bind_physics(module);
+  mesograin::python::bind_pile(module);
   mesograin::python::bind_scene_file(module);
   mesograin::python::bind_view(module);
 

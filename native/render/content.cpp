@@ -6,6 +6,8 @@
 #include <map>
 #include <utility>
 
+#include "scene/colour_classes.h"
+
 namespace mesograin::render {
 namespace {
 
@@ -73,7 +75,8 @@ Content::Content(DeviceCache& cache, const scene::Scene& scene, Content before,
     : anchor_(amid(scene)) {
   std::vector<std::size_t> alone = alone_too;
   std::vector<scene::InstanceArray> arrays = gathered(scene, alone);
-  for (const scene::InstanceArray& array : scene.arrays)
+  const std::vector<scene::InstanceArray> of_colours = scene::by_colour(scene.arrays);
+  for (const scene::InstanceArray& array : of_colours)
     if (!array.object_to_world().empty() && fits_array(array.material)) arrays.push_back(array);
   if (!arrays.empty()) {
     instances_.emplace(cache, arrays, anchor_);
@@ -86,7 +89,7 @@ Content::Content(DeviceCache& cache, const scene::Scene& scene, Content before,
     draws_.emplace_back(cache, scene.instances[index], index);
     draws_.back().take_light_maps(before.draws_);
   }
-  for (const scene::InstanceArray& array : scene.arrays) {
+  for (const scene::InstanceArray& array : of_colours) {
     if (fits_array(array.material)) continue;
     for (const glm::dmat4& object_to_world : array.object_to_world()) {
       draws_.emplace_back(cache, scene::Instance{array.mesh, array.material, object_to_world}, Draw::of_an_array);

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "scene/colour_factors.h"
 #include "scene/light.h"
 #include "scene/material.h"
 #include "scene/mesh.h"
@@ -19,20 +20,24 @@ struct Instance {
   glm::dmat4 object_to_world{1.0};
 };
 
-/// Many instances of one mesh and material: each is a transform and nothing else.
+/// Many instances of one mesh and material: each is a transform, and a colour if they differ in it.
 class InstanceArray {
  public:
-  InstanceArray(MeshPointer of, const Material& with, std::vector<glm::dmat4> object_to_world)
+  InstanceArray(MeshPointer of, const Material& with, std::vector<glm::dmat4> object_to_world,
+                ColourFactors factors = {})
       : mesh(std::move(of)),
         material(with),
-        object_to_world_(std::make_shared<const std::vector<glm::dmat4>>(std::move(object_to_world))) {}
+        object_to_world_(std::make_shared<const std::vector<glm::dmat4>>(std::move(object_to_world))),
+        factors_(std::make_shared<const ColourFactors>(std::move(factors))) {}
 
   MeshPointer mesh;
   Material material;
   const std::vector<glm::dmat4>& object_to_world() const { return *object_to_world_; }
+  const ColourFactors& factors() const { return *factors_; }
 
  private:
   std::shared_ptr<const std::vector<glm::dmat4>> object_to_world_;  // copies of a scene share them
+  std::shared_ptr<const ColourFactors> factors_;
 };
 
 struct Scene {

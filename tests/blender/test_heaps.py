@@ -8,7 +8,7 @@ from mathutils import Euler, Matrix
 from test_export import add_camera, add_cube, add_mesh_object, add_object, add_sun, read_scene
 
 import mesograin
-from mesograin.scene import heaps
+from mesograin.scene import export, heaps, meshes
 
 SIDE = 12
 
@@ -127,3 +127,39 @@ def test_grains_shade_each_other_and_the_ground_as_in_cycles(tmp_path):
     metrics = case.entry["metrics"]
     assert metrics["relative_l1_blocks_corrected"] < 0.015
     assert metrics["bias"] == pytest.approx(1.0, abs=0.005)
+
+
+def test_grains_vary_in_colour_as_cycles_random_says(native):
+    _, grain = scatter(grid())
+    material = bpy.data.materials.new("Sand")
+    material.mesograin.model = "lambert"
+    material.mesograin.reflectance = (0.5, 0.5, 0.5)
+    grain.data.materials.append(material)
+    assert read_scene().heaps[0].factors == ()
+    material.mesograin_colours.vary = True
+    material.mesograin_colours.colour_from, material.mesograin_colours.colour_to = (0.5, 1.0, 1.0), (1.5, 1.0, 1.0)
+    [heap] = read_scene().heaps
+    [(name, numbers)] = heap.factors
+    assert name == "reflectance"
+    rows = np.frombuffer(numbers, dtype=np.float32).reshape(-1, 3)
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    randoms = np.array([each.random_id & 0xFFFFFFFF for each in depsgraph.object_instances if each.is_instance])
+    randoms = randoms / 0xFFFFFFFF
+    np.testing.assert_allclose(rows, np.stack((0.5 + randoms, *np.ones((2, len(randoms)))), axis=-1), atol=1e-5)
+    assert 0.25 < rows[:, 0].std() < 0.33, "spread evenly"
+
+    material.mesograin.model = "model_2"
+    material.mesograin_colours.scattering_to = 2.0
+    assert [name for name, _ in read_scene().heaps[0].factors] == ["sigma_a", "sigma_s"]
+    values = export.read_scene(depsgraph, meshes.MeshCache(), varied=False)
+    assert values.heaps[0].factors == () and any("vary in colour" in sentence for sentence in values.warnings)
+
+
+def test_few_grains_vary_as_well():
+    _, grain = scatter(grid()[:20])
+    material = bpy.data.materials.new("Sand")
+    material.mesograin.model = "lambert"
+    material.mesograin_colours.vary = True
+    grain.data.materials.append(material)
+    reds = {dict(each.material.values)["reflectance"][0] for each in read_scene().instances if each.name == "Grain"}
+    assert len(reds) >= 20

@@ -89,7 +89,7 @@ def _run(words, tell):
 
 def _scene(depsgraph, size, overrides):
     """The scene as mesograin-referee reads it (docs/scene-json.md). Raises ReferenceError if it is not that simple."""
-    values = export.read_scene(depsgraph, meshes.MeshCache())
+    values = export.read_scene(depsgraph, meshes.MeshCache(), varied=False)
     values.to_native()  # says which light or material has values that cannot be
     centre, radius = _sphere(depsgraph)
     others = [light.name for light in values.lights if not isinstance(light, lights.SunValues)]

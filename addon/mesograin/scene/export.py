@@ -6,8 +6,8 @@ import typing
 import numpy as np
 
 from .. import native_module
-from ..schema import parameters
-from . import heaps, lights, meshes, plain_materials, properties, surroundings
+from ..schema import models, parameters
+from . import colours, heaps, lights, meshes, plain_materials, properties, surroundings
 
 
 @dataclasses.dataclass(frozen=True)
@@ -16,6 +16,17 @@ class MaterialValues:
 
     name: str
     values: tuple  # (parameter, value) pairs
+
+    def multiplied(self, factors):
+        """The material with some of its colours multiplied. factors: {parameter: 3 numbers}."""
+        if not factors:
+            return self
+        most = parameters.PARAMETERS["reflectance"].most
+        values = dict(self.values)
+        for name, factor in factors.items():
+            product = (channel * each for channel, each in zip(values[name], factor))
+            values[name] = tuple(min(channel, most) if name == "reflectance" else channel for channel in product)
+        return dataclasses.replace(self, values=tuple(values.items()))
 
     def to_native(self, native):
         """Raises native.Error naming the material if a value is out of range, or one that its model does not know."""
@@ -193,9 +204,10 @@ def material_values(material, millimetres_per_unit):
     return MaterialValues(material.name_full, tuple(values.items()))
 
 
-def read_scene(depsgraph, cache):
-    """SceneValues of an evaluated dependency graph; `cache` spares reading meshes twice."""
-    reader = _Reader(depsgraph.scene.mesograin.millimetres_per_unit, cache)
+def read_scene(depsgraph, cache, varied=True):
+    """SceneValues of an evaluated dependency graph; `cache` spares reading meshes twice. varied: whether instances have
+    colours of their own, which a comparison's other side does not know."""
+    reader = _Reader(depsgraph.scene.mesograin.millimetres_per_unit, cache, varied)
     reader.read_all(depsgraph)
     return reader.scene_values(depsgraph.scene)
 
@@ -216,12 +228,20 @@ def _default_parameters(millimetres_per_unit):
                        millimetres_per_unit)
 
 
+def _in_slot(evaluated_object, slot):
+    """The bpy.types.Material of a face, or None."""
+    slots = evaluated_object.material_slots
+    # Faces may name a slot that is gone; Blender then shows the last one.
+    return slots[min(slot, len(slots) - 1)].material if slots else None
+
+
 class _Reader:
     """Collects what one pass over the instances finds; complaints come once, however often an object is instanced."""
 
-    def __init__(self, millimetres_per_unit, cache):
+    def __init__(self, millimetres_per_unit, cache, varied):
         self._millimetres_per_unit = millimetres_per_unit
         self._cache = cache
+        self._varied = varied
         self._materials = {}
         self._instances = []
         self._groups = {}  # {address of a shape: heaps.Group, or None for what is read one by one}
@@ -246,15 +266,17 @@ class _Reader:
                 group = groups[key]
             else:
                 group = groups[key] = self._group(shape)
-            matrix = instance.matrix_world
             if group is None:
-                self._read(shape, matrix)
+                self._read(shape, instance.matrix_world)
                 continue
+            # A copy is read once; each row of the original would be read anew.
+            first, second, third, _ = instance.matrix_world.copy()
             extend = group.extend
-            extend(matrix[0][:])
-            extend(matrix[1][:])
-            extend(matrix[2][:])
-            extend(matrix[3][:])
+            extend(first[:])
+            extend(second[:])
+            extend(third[:])
+            if group.random_ids is not None:
+                group.random_ids.append(instance.random_id)
 
     def _group(self, shape):
         """heaps.Group of a shape that can be drawn, else None."""
@@ -263,7 +285,8 @@ class _Reader:
         parts = self._cache.parts(shape)
         if not any(part.has_area for part in parts) or any(part.broken_uvs for part in parts):
             return None
-        return heaps.Group(shape.name, [(part.mesh, self._material(shape, part.slot)) for part in parts])
+        return heaps.Group(shape.name, [heaps.Part(part.mesh, self._material(shape, part.slot),
+                                                   self._variation(shape, part.slot)) for part in parts])
 
     def _read(self, shape, matrix_world):
         if meshes.is_shape(shape):
@@ -280,7 +303,7 @@ class _Reader:
         if len(cloud.data.points) == 0:
             self._warn(f"Object '{cloud.name}' has no points, so nothing of it is drawn.")
             return
-        group = heaps.Group(cloud.name, [(heaps.sphere(), self._material(cloud, 0))])
+        group = heaps.Group(cloud.name, [heaps.Part(heaps.sphere(), self._material(cloud, 0))])
         group.extend(heaps.point_placings(cloud.data, matrix_world))
         self._groups[len(self._groups), cloud.name] = group
 
@@ -298,8 +321,8 @@ class _Reader:
                 if len(heap) >= heaps.MANY:
                     found.append(heap)
                     continue
-                self._instances.extend(InstanceValues(heap.name, heap.mesh, heap.material, placing)
-                                       for placing in heap.each())
+                self._instances.extend(InstanceValues(heap.name, heap.mesh, material, placing)
+                                       for placing, material in zip(heap.each(), heap.materials()))
         return tuple(found)
 
     def scene_values(self, scene):
@@ -322,6 +345,8 @@ class _Reader:
         if not parts:
             if evaluated_object.type == "META":
                 return  # a family of metaballs is drawn with its first member
+            if any(modifier.type == "NODES" for modifier in evaluated_object.modifiers):
+                return  # which may have made instances of it and nothing else
             self._warn(f"Object '{evaluated_object.name}' has no faces, so nothing of it is drawn.")
             return
         if not any(part.has_area for part in parts):
@@ -341,10 +366,20 @@ class _Reader:
                                                   self._material(evaluated_object, part.slot), to_world,
                                                   part.broken_uvs))
 
+    def _variation(self, evaluated_object, slot):
+        material = _in_slot(evaluated_object, slot)
+        if material is None:
+            return None
+        model = dict(self._material(evaluated_object, slot).values)["model"]
+        variation = colours.read(material, models.MODELS[model].parameters)
+        if variation is not None and not self._varied:
+            self._warn(f"The grains of material '{material.name}' vary in colour, unknown to the reference: "
+                       "they are compared in the material's own.")
+            return None
+        return variation
+
     def _material(self, evaluated_object, slot):
-        slots = evaluated_object.material_slots
-        # Faces may name a slot that is gone; Blender then shows the last one.
-        material = slots[min(slot, len(slots) - 1)].material if slots else None
+        material = _in_slot(evaluated_object, slot)
         key = material and material.name_full
         if key not in self._materials:
             self._materials[key] = material_values(material, self._millimetres_per_unit)

@@ -14,12 +14,14 @@ MANY = 64
 
 @dataclasses.dataclass(frozen=True)
 class HeapValues:
-    """Many placings of one part of a mesh. placings: bytes of (n, 4, 4) float32, row by row, equal by content."""
+    """Many placings of one part of a mesh. placings: bytes of (n, 4, 4) float32, row by row, equal by content.
+    factors: (parameter, bytes of (n, 3) float32) pairs, by which each placing's differs from the material's."""
 
     name: str
     mesh: object  # native.Mesh, equal by identity
     material: object  # export.MaterialValues
     placings: bytes
+    factors: tuple = ()
 
     def __len__(self):
         return len(self.placings) // 64
@@ -28,30 +30,59 @@ class HeapValues:
         """Tuples of 16 numbers, row by row."""
         return map(tuple, np.frombuffer(self.placings, dtype=np.float32).reshape(-1, 16).tolist())
 
+    def materials(self):
+        """The material of each placing."""
+        factors = [(name, np.frombuffer(numbers, dtype=np.float32).reshape(-1, 3)) for name, numbers in self.factors]
+        for number in range(len(self)):
+            yield self.material.multiplied({name: rows[number].tolist() for name, rows in factors})
+
     def to_native(self, native, material):
         """native.InstanceArray."""
         placings = np.frombuffer(self.placings, dtype=np.float32).reshape(-1, 4, 4)
-        return native.InstanceArray(self.mesh, material, placings)
+        factors = {name: np.frombuffer(numbers, dtype=np.float32).reshape(-1, 3) for name, numbers in self.factors}
+        return native.InstanceArray(self.mesh, material, placings, factors)
+
+
+@dataclasses.dataclass(frozen=True)
+class Part:
+    """One of a shape's material slots. variation: colours.Variation of its material, or None."""
+
+    mesh: object  # native.Mesh
+    material: object  # export.MaterialValues
+    variation: object = None
 
 
 class Group:
-    """Where one shape stands: 16 numbers a placing, row by row, collected in one pass over a dependency graph.
-    parts: (native.Mesh, material) of each of the shape's material slots; none if it is not drawn."""
+    """Where one shape stands: the upper 3 rows of its matrix, 12 numbers a placing, collected in one pass over a
+    dependency graph. parts: a Part for each of the shape's material slots; none if it is not drawn.
+    random_ids: Blender's for each placing, or None if no part needs them."""
 
     def __init__(self, name, parts):
         self.name, self._parts = name, parts
         self._rows = array.array("f")
         # One call a row: slices are the fastest way out of a Blender matrix.
         self.extend = self._rows.extend
+        self.random_ids = array.array("i") if any(part.variation for part in parts) else None
 
     def values(self):
         """([HeapValues], how many placings have no extent or are no numbers)."""
-        placings = np.frombuffer(self._rows, dtype=np.float32).reshape(-1, 4, 4)
+        rows = np.frombuffer(self._rows, dtype=np.float32).reshape(-1, 3, 4)
+        placings = np.zeros((len(rows), 4, 4), dtype=np.float32)
+        placings[:, :3] = rows
+        placings[:, 3, 3] = 1.0
         drawn = _drawable(placings)
         kept = placings if drawn.all() else placings[drawn]
         content = kept.tobytes()
-        heaps = [HeapValues(self.name, mesh, material, content) for mesh, material in self._parts if len(kept)]
+        heaps = [HeapValues(self.name, part.mesh, part.material, content, self._factors(part, drawn))
+                 for part in self._parts if len(kept)]
         return heaps, len(placings) - len(kept)
+
+    def _factors(self, part, drawn):
+        if part.variation is None or self.random_ids is None:
+            return ()
+        # As Cycles' Object Info has it: the whole range of 32 bits is from 0 to 1.
+        randoms = np.frombuffer(self.random_ids, dtype=np.uint32)[drawn] / np.float32(0xFFFFFFFF)
+        return part.variation.factors(randoms.astype(np.float32))
 
 
 def _drawable(placings):
@@ -103,4 +134,4 @@ def point_placings(cloud, matrix_world):
     local[:, (0, 1, 2), (0, 1, 2)] = radii[:, None]
     local[:, :3, 3] = places
     local[:, 3, 3] = 1.0
-    return array.array("f", (np.array(matrix_world, dtype=np.float32) @ local).tobytes())
+    return array.array("f", (np.array(matrix_world, dtype=np.float32) @ local)[:, :3].tobytes())

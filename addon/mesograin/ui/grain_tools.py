@@ -1,0 +1,188 @@
+# Add > Grain: a single grain, or a pile of them.
+import bpy
+import numpy as np
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
+from bpy_extras.object_utils import AddObjectHelper, object_data_add
+from mathutils import Vector
+
+from .. import native_module
+from ..grains import kinds, objects
+
+KIND_ITEMS = tuple((kind, kind.replace("_", " ").title(), make.__doc__.split(".")[0].replace("\n   ", ""), number)
+                   for number, (kind, make) in enumerate(kinds.KINDS.items()))
+# How finely heights of a surface are sampled, along its longer side.
+HEIGHT_SAMPLES = 96
+
+
+class _Habit:
+    """What tells grains of one kind apart."""
+
+    kind: EnumProperty(name="Kind", items=KIND_ITEMS, description="What the grain is")
+    seed: IntProperty(name="Seed", min=0, description="Another seed is another grain of the same kind")
+    segments: IntProperty(name="Segments", default=16, min=4, soft_max=64, max=256,
+                          description="Divisions along each of the six charts of the surface")
+    angularity: FloatProperty(name="Angularity", default=0.5, min=0.0, max=1.0, subtype="FACTOR",
+                              description="How far the shape is from a plain one: cuts of sand, arms of snow")
+    roundness: FloatProperty(name="Roundness", default=0.3, min=0.0, max=1.0, subtype="FACTOR",
+                             description="How worn edges and corners are")
+
+    def habit(self):
+        return {name: getattr(self, name) for name in ("seed", "segments", "angularity", "roundness")}
+
+
+class MESOGRAIN_OT_add_grain(bpy.types.Operator, _Habit, AddObjectHelper):
+    bl_idname = "mesograin.add_grain"
+    bl_label = "Grain"
+    bl_description = "Add a grain: a closed mesh with UVs that bake well, and a material"
+    bl_options = {"REGISTER", "UNDO"}
+
+    size: FloatProperty(name="Size", default=1.0, min=1e-6, subtype="DISTANCE",
+                        description="Radius of a ball as large as the grain")
+
+    def execute(self, context):
+        _leave_edit_mode(context)
+        made = objects.mesh(self.kind, size=self.size, **self.habit())
+        made.materials.append(objects.material(self.kind))
+        object_data_add(context, made, operator=self)
+        return {"FINISHED"}
+
+
+class MESOGRAIN_OT_add_pile(bpy.types.Operator, _Habit):
+    bl_idname = "mesograin.add_pile"
+    bl_label = "Pile of Grains"
+    bl_description = "Add grains that have fallen and come to rest on each other, as instances of a few shapes"
+    bl_options = {"REGISTER", "UNDO"}
+
+    count: IntProperty(name="Grains", default=1000, min=1, soft_max=20000, max=1000000,
+                       description="How many grains fall; ten thousand take some seconds")
+    shapes: IntProperty(name="Shapes", default=3, min=1, max=32,
+                        description="How many grains are modelled; all others are instances")
+    size: FloatProperty(name="Size", default=0.05, min=1e-6, subtype="DISTANCE",
+                        description="Radius of a ball as large as the mean grain")
+    variation: FloatProperty(name="Variation", default=0.2, min=0.0, max=0.9, subtype="FACTOR",
+                             description="How far sizes differ from the mean one")
+    friction: FloatProperty(name="Friction", default=0.6, min=0.0, max=2.0,
+                            description="Between grains and on the ground; the more, the steeper the heap")
+    place: EnumProperty(name="Place", items=(
+        ("HEAP", "Heap", "On the plane of the 3D cursor, as far as it runs out", 0),
+        ("BOX", "Box", "Between upright walls around the 3D cursor", 1),
+        ("ACTIVE", "On Active Object", "On the surface of the active mesh, within its bounds, from above", 2)))
+    box: FloatProperty(name="Box", default=1.0, min=1e-5, subtype="DISTANCE", description="How far the walls are apart")
+    settle_walls: BoolProperty(name="Walls", default=True,
+                               description="Grains do not fall over the edge of the active object")
+
+    def draw(self, _context):
+        layout = self.layout
+        layout.use_property_split = True
+        for name in ("kind", "count", "shapes", "size", "variation", "place"):
+            layout.prop(self, name)
+        if self.place == "BOX":
+            layout.prop(self, "box")
+        elif self.place == "ACTIVE":
+            layout.prop(self, "settle_walls")
+        for name in ("friction", "seed", "segments", "angularity", "roundness"):
+            layout.prop(self, name)
+
+    def execute(self, context):
+        _leave_edit_mode(context)
+        try:
+            place, settling = self._settling(context)
+            made = objects.pile_of([self.kind] * self.shapes, self.count, self.size, variation=self.variation,
+                                   friction=self.friction, **self.habit(), **settling)
+        except _sentences() as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        made.location = place
+        context.collection.objects.link(made)
+        for other in context.selected_objects:
+            other.select_set(False)
+        context.view_layer.objects.active = made
+        made.select_set(True)
+        return {"FINISHED"}
+
+    def _settling(self, context):
+        """(the pile's place, what pile.settle takes of it)."""
+        cursor = context.scene.cursor.location.copy()
+        if self.place == "HEAP":
+            return cursor, {}
+        if self.place == "BOX":
+            return cursor, {"walls": (self.box, self.box)}
+        place, corners, heights = _surface(context)
+        walls = tuple(upper - lower for lower, upper in zip(*corners)) if self.settle_walls else None
+        return place, {"walls": walls, "heights": heights, "corners": corners}
+
+
+class _NoSurface(Exception):
+    """One sentence."""
+
+
+def _sentences():
+    """What can go wrong and says so itself."""
+    errors = (_NoSurface, native_module.Unavailable)
+    try:
+        return (*errors, native_module.get().Error)
+    except native_module.Unavailable:
+        return errors
+
+
+def _surface(context):
+    """(middle, (lower, upper) corners around it, rows of heights over it) of the active mesh, seen from above."""
+    active = context.active_object
+    if active is None or active.type != "MESH":
+        raise _NoSurface("There is no active mesh that grains could fall on: select one, or choose Heap or Box.")
+    depsgraph = context.evaluated_depsgraph_get()
+    evaluated = active.evaluated_get(depsgraph)
+    bounds = np.array([active.matrix_world @ Vector(corner) for corner in evaluated.bound_box])
+    lower, upper = bounds.min(axis=0), bounds.max(axis=0)
+    span = upper - lower
+    if not min(span[0], span[1]) > 0.0 or not evaluated.data.polygons:
+        raise _NoSurface(f"Object '{active.name}' has no surface that grains could fall on from above.")
+    columns, rows = (max(2, int(round(HEIGHT_SAMPLES * span[axis] / max(span[:2])))) for axis in (0, 1))
+    to_local = active.matrix_world.inverted()
+    down = (to_local.to_3x3() @ Vector((0.0, 0.0, -1.0))).normalized()
+    heights = []
+    for y in np.linspace(lower[1], upper[1], rows):
+        row = []
+        for x in np.linspace(lower[0], upper[0], columns):
+            hit, place, _normal, _face = evaluated.ray_cast(to_local @ Vector((x, y, upper[2] + span.max())), down)
+            row.append(float((active.matrix_world @ place).z if hit else lower[2]))
+        heights.append(tuple(row))
+    half = 0.5 * span
+    corners = ((-float(half[0]), -float(half[1])), (float(half[0]), float(half[1])))
+    return Vector((0.5 * (lower[0] + upper[0]), 0.5 * (lower[1] + upper[1]), 0.0)), corners, tuple(heights)
+
+
+def _leave_edit_mode(context):
+    if context.mode != "OBJECT" and context.active_object is not None:
+        bpy.ops.object.mode_set(mode="OBJECT")
+
+
+class MESOGRAIN_MT_add(bpy.types.Menu):
+    bl_idname = "MESOGRAIN_MT_add"
+    bl_label = "Grain"
+
+    def draw(self, _context):
+        layout = self.layout
+        layout.operator_context = "EXEC_REGION_WIN"
+        for kind, name, _description, _number in KIND_ITEMS:
+            layout.operator(MESOGRAIN_OT_add_grain.bl_idname, text=name).kind = kind
+        layout.separator()
+        layout.operator(MESOGRAIN_OT_add_pile.bl_idname, text="Pile", icon="PARTICLES")
+
+
+def _draw_menu(self, _context):
+    self.layout.menu(MESOGRAIN_MT_add.bl_idname, icon="META_BALL")
+
+
+_register, _unregister = bpy.utils.register_classes_factory(
+    (MESOGRAIN_OT_add_grain, MESOGRAIN_OT_add_pile, MESOGRAIN_MT_add))
+
+
+def register():
+    _register()
+    bpy.types.VIEW3D_MT_add.append(_draw_menu)
+
+
+def unregister():
+    bpy.types.VIEW3D_MT_add.remove(_draw_menu)
+    _unregister()

@@ -1,0 +1,17 @@
+// Grains of many colours as arrays of one material each, so that whatever is computed from a material is computed for a
+// few of them.
+#pragma once
+
+#include <vector>
+
+#include "scene/scene.h"
+
+namespace mesograin::scene {
+
+/// Arrays without factors stay as they are. Of one with factors come as many as its instances need to be of a colour
+/// within 1 % of their own, but at most 32, or 16 of a model whose tables depend on the grain's radius, or 8 of one
+/// whose transport depends on the mesh. A class has the mean of its members' factors, so that a heap's mean colour
+/// stays.
+std::vector<InstanceArray> by_colour(const std::vector<InstanceArray>& arrays);
+
+}  // namespace mesograin::scene

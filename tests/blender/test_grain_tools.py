@@ -1,0 +1,120 @@
+# Add > Grain: shapes that are closed, as large as they say, and unwrapped; piles whose grains rest on each other.
+import bpy
+import numpy as np
+import pytest
+from mathutils import Vector
+
+from mesograin.grains import kinds, objects, pile
+from mesograin.scene import export, meshes
+
+
+def read_scene():
+    return export.read_scene(bpy.context.evaluated_depsgraph_get(), meshes.MeshCache())
+
+
+@pytest.mark.parametrize("kind", kinds.KINDS)
+@pytest.mark.parametrize("segments", [4, 13])
+def test_shapes_are_closed_and_as_large_as_the_unit_sphere(kind, segments):
+    shape = kinds.make(kind, seed=3, segments=segments)
+    edges = [(face[corner], face[(corner + 1) % 4]) for face in shape.faces.tolist() for corner in range(4)]
+    assert len(set(edges)) == len(edges) and {(b, a) for a, b in edges} == set(edges)
+    assert len(shape.vertices) - len(edges) // 2 + len(shape.faces) == 2  # Euler: a sphere
+    assert shape.volume() == pytest.approx(4.0 * np.pi / 3.0)
+    again = kinds.make(kind, seed=3, segments=segments)
+    np.testing.assert_array_equal(again.vertices, shape.vertices)
+    if kind != "bead":
+        assert not np.allclose(kinds.make(kind, seed=4, segments=segments).vertices, shape.vertices, atol=1e-3)
+
+
+@pytest.mark.parametrize("kind", kinds.KINDS)
+def test_textures_neither_overlap_nor_stretch_much(native, kind):
+    data = objects.mesh(kind, segments=12)
+    bpy.context.collection.objects.link(bpy.data.objects.new("Grain", data))
+    shape = kinds.make(kind, segments=12)
+    across = shape.uvs[:, 2] - shape.uvs[:, 0], shape.uvs[:, 3] - shape.uvs[:, 1]
+    areas = 0.5 * (across[0][:, 0] * across[1][:, 1] - across[0][:, 1] * across[1][:, 0])
+    assert (areas > 0.0).all(), "each face is the right way round"
+    assert 0.85 < areas.sum() <= 1.0
+    (values,) = read_scene().instances
+    view = native.View(256, 256)
+    sun = native.DirectionalLight((0, 0, 1), (1, 1, 1))
+    view.set_scene(native.Scene(instances=[values.to_native(native, values.material.to_native(native))], lights=[sun]))
+    view.set_bake([0])
+    assert view.uv_use()["overlapping"] == 0
+
+
+def test_sand_is_of_natural_proportions():
+    ratios = []
+    for seed in range(40):
+        vertices = kinds.make("sand", seed=seed, segments=10).vertices
+        axes = np.sqrt(np.linalg.eigvalsh(np.cov(vertices.T)))
+        ratios.append((axes[0] / axes[1], axes[1] / axes[2]))
+    short, middle = np.mean(ratios, axis=0)
+    assert short == pytest.approx(0.77, abs=0.06) and middle == pytest.approx(0.76, abs=0.06)
+
+
+def test_angularity_and_roundness_do_what_they_say():
+    def roughness(**habit):
+        vertices = kinds.make("sand", seed=1, segments=24, **habit).vertices
+        return np.linalg.norm(vertices, axis=1).std()
+
+    def sharpness(roundness):
+        shape = kinds.make("salt", segments=24, roundness=roundness)
+        return np.linalg.norm(shape.vertices, axis=1).max()
+
+    assert roughness(angularity=1.0) > roughness(angularity=0.0)
+    assert sharpness(0.0) > sharpness(0.5) > sharpness(1.0)
+
+
+def test_the_operator_adds_a_grain_that_undo_removes(native):
+    bpy.context.scene.cursor.location = (1.0, 2.0, 3.0)
+    assert bpy.ops.mesograin.add_grain(kind="salt", seed=2, size=0.5) == {"FINISHED"}
+    grain = bpy.context.object
+    assert grain.location == Vector((1.0, 2.0, 3.0)) and grain.data.uv_layers
+    assert grain.data.materials[0].mesograin.model == "model_2"
+    assert not grain.data.validate()
+    (values,) = read_scene().instances
+    assert values.mesh.has_uvs
+    for kind in kinds.KINDS:
+        assert bpy.ops.mesograin.add_grain(kind=kind) == {"FINISHED"}
+
+
+def test_a_pile_is_instances_that_do_not_overlap(native):
+    assert bpy.ops.mesograin.add_pile(kind="bead", count=300, shapes=3, size=0.1, place="HEAP") == {"FINISHED"}
+    values = read_scene()
+    assert not values.instances and sum(len(heap) for heap in values.heaps) == 300 and len(values.heaps) == 3
+    assert not any("no faces" in warning for warning in values.warnings), values.warnings
+    places = np.concatenate([np.frombuffer(heap.placings, np.float32).reshape(-1, 4, 4) for heap in values.heaps])
+    radii = np.linalg.norm(places[:, :3, 0], axis=1)
+    middles = places[:, :3, 3]
+    apart = np.linalg.norm(middles[:, None] - middles[None], axis=-1) - radii[:, None] - radii[None]
+    np.fill_diagonal(apart, 1.0)
+    assert apart.min() > -0.02 * 0.1
+    assert (apart.min(axis=1) < 0.02 * 0.1).mean() > 0.95, "each rests on another"
+    assert (middles[:, 2] - radii).min() > -0.002
+    assert 0.08 <= radii.min() < 0.085 and 0.115 < radii.max() <= 0.12
+    assert middles[:, 2].max() > 0.5, "it is a heap"
+
+
+def test_a_pile_fills_a_box_and_lies_on_a_surface(native):
+    assert bpy.ops.mesograin.add_pile(count=200, size=0.1, place="BOX", box=1.0, seed=4) == {"FINISHED"}
+    box = pile.settle(200, 0.1, 0.2, 3, 4, 0.6, (1.0, 1.0))
+    assert np.abs(box.middles[:, :2]).max() < 0.5
+    bpy.ops.mesh.primitive_plane_add(size=4.0, location=(7.0, 0.0, 1.0), rotation=(0.0, 0.4, 0.0))
+    tilted = bpy.context.object
+    assert bpy.ops.mesograin.add_pile(count=100, size=0.1, place="ACTIVE") == {"FINISHED"}
+    heap = bpy.context.object
+    to_plane = tilted.matrix_world.inverted()
+    heights = [(to_plane @ (heap.matrix_world @ vertex.co)).z for vertex in heap.data.vertices]
+    assert min(heights) > 0.07 and heap.location.x == pytest.approx(7.0, abs=1e-5)
+
+
+def test_mistakes_are_said_in_a_sentence(native):
+    with pytest.raises(RuntimeError, match="no active mesh that grains could fall on"):
+        bpy.ops.mesograin.add_pile(count=10, place="ACTIVE")
+    with pytest.raises(RuntimeError, match="walls leave no room"):
+        bpy.ops.mesograin.add_pile(count=10, size=1.0, place="BOX", box=0.5)
+    bpy.ops.object.empty_add()
+    bpy.context.object.select_set(True)
+    with pytest.raises(RuntimeError, match="no active mesh"):
+        bpy.ops.mesograin.add_pile(count=10, place="ACTIVE")
