@@ -1,4 +1,4 @@
-# Makes sphere.blend and grain.blend; run it with the oldest Blender served, so that every later one can open them:
+# Makes the files beside it; run it with the oldest Blender served, so that every later one can open them:
 #   blender -b --factory-startup --python-exit-code 1 --python blend_files/make_blend_files.py [-- FOLDER]
 import math
 import pathlib
@@ -161,12 +161,113 @@ def make_grain():
     add_sun("Fill", (-0.7, -0.3, 0.8), 1.5)
 
 
+def look_from(place, at, fov_degrees):
+    """A camera at a place, upright, that looks at another."""
+    towards = Vector(place) - Vector(at)
+    add_camera(Matrix.Translation(place) @ towards.to_track_quat("Z", "Y").to_matrix().to_4x4(), fov_degrees)
+
+
+def lit_world(scene, colour):
+    scene.world.color = colour
+    scene.render.film_transparent = False
+    scene.view_settings.exposure = 0.0
+
+
+def plain_material(name, colour):
+    """Of Blender's own nodes: a diffuse surface that is no grain."""
+    material = bpy.data.materials.new(name)
+    material.use_nodes = True
+    nodes = material.node_tree.nodes
+    nodes.clear()
+    output, surface = nodes.new("ShaderNodeOutputMaterial"), nodes.new("ShaderNodeBsdfDiffuse")
+    surface.inputs["Color"].default_value = (*colour, 1.0)
+    material.node_tree.links.new(surface.outputs[0], output.inputs["Surface"])
+    material.diffuse_color = (*colour, 1.0)
+    return material
+
+
+def add_ground(half, material):
+    corners = [(-half, -half, 0.0), (half, -half, 0.0), (half, half, 0.0), (-half, half, 0.0)]
+    ground = bpy.data.meshes.new("Ground")
+    ground.from_pydata(corners, [], [(0, 1, 2, 3)])
+    ground.uv_layers.new(name="UVMap").data.foreach_set("uv", [0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 0.0, 1.0])
+    ground.materials.append(material)
+    return add_object("Ground", ground)
+
+
+def make_heap():
+    """Two thousand grains of sand, three shapes of them, that fell to a heap on the ground; a Blender unit is 10 mm."""
+    from mesograin.grains import objects
+
+    scene = empty_file()
+    scene.render.resolution_x, scene.render.resolution_y = 480, 320
+    scene.mesograin.millimetres_per_unit = 10.0
+    heap = objects.pile_of(["sand"] * 3, 2000, 0.05, "Heap", seed=1, segments=10, variation=0.3)
+    scene.collection.objects.link(heap)
+    sand = next(material for material in bpy.data.materials if material.name == "Sand")
+    sand.mesograin_colours.vary = True
+    sand.mesograin_colours.colour_from, sand.mesograin_colours.colour_to = (0.4, 0.4, 0.4), (1.6, 1.7, 1.9)
+    add_ground(4.0, plain_material("Ground", (0.35, 0.33, 0.3)))
+    add_sun("Sun", (0.6, -0.5, 0.7), 3.0)
+    lit_world(scene, (0.25, 0.3, 0.38))
+    look_from((0.6, -3.6, 1.7), (0.0, 0.0, 0.22), 34.0)
+
+
+def make_studio():
+    """A few grains on a ground with a texture, under an area light, a spot and a point; a Blender unit is 1 mm."""
+    from mesograin.grains import objects
+
+    scene = empty_file()
+    scene.render.resolution_x, scene.render.resolution_y = 480, 320
+    for kind, place, size, seed in (("sand", (-1.6, 0.1, 0.55), 0.75, 3), ("salt", (0.0, -0.3, 0.52), 0.65, 1),
+                                    ("sugar", (1.5, 0.2, 0.62), 0.75, 2), ("bead", (0.3, 1.5, 0.6), 0.6, 0)):
+        grain = objects.add_grain(kind, size=size, seed=seed, segments=24)
+        scene.collection.objects.link(grain)
+        grain.rotation_euler = (0.0, 0.0, 0.4 * seed)
+        lowest = min(vertex.co.z for vertex in grain.data.vertices)
+        grain.location = (place[0], place[1], -lowest)
+    ground = plain_material("Ground", (0.4, 0.38, 0.35))
+    surface = next(node for node in ground.node_tree.nodes if node.type == "BSDF_DIFFUSE")
+    texture = ground.node_tree.nodes.new("ShaderNodeTexImage")
+    texture.image = boards()
+    ground.node_tree.links.new(texture.outputs["Color"], surface.inputs["Color"])
+    add_ground(8.0, ground)
+    for name, kind, place, energy in (("Area", "AREA", (-3.0, -3.0, 5.0), 300.0),
+                                      ("Spot", "SPOT", (4.0, -1.0, 3.5), 400.0),
+                                      ("Point", "POINT", (1.0, 4.0, 2.0), 60.0)):
+        light = bpy.data.lights.new(name, kind)
+        light.energy = energy
+        if kind == "AREA":
+            light.size = 2.0
+        else:
+            light.shadow_soft_size = 0.2
+        add_object(name, light, Matrix.Translation(place) @ Vector(place).to_track_quat("Z", "Y").to_matrix().to_4x4())
+    lit_world(scene, (0.06, 0.07, 0.09))
+    look_from((0.4, -6.5, 3.2), (0.0, 0.2, 0.5), 34.0)
+
+
+def boards():
+    """A small image of boards, packed into the file."""
+    side = 64
+    image = bpy.data.images.new("Boards", side, side)
+    pixels = []
+    for y in range(side):
+        for x in range(side):
+            board = x // 8
+            shade = 0.55 + 0.12 * math.sin(7.0 * board) + 0.05 * noise.noise(Vector((3.0 * board, 0.2 * y, 1.3 * x)))
+            shade *= 0.4 if x % 8 == 0 else 1.0
+            pixels += [shade, 0.78 * shade, 0.55 * shade, 1.0]
+    image.pixels.foreach_set(pixels)
+    image.pack()
+    return image
+
+
 def main():
     import addon_utils
 
     addon_utils.enable("mesograin")
     folder = pathlib.Path(sys.argv[sys.argv.index("--") + 1]) if "--" in sys.argv else HERE
-    for name, make in (("sphere", make_sphere), ("sphere_back_lit", make_sphere_back_lit), ("grain", make_grain)):
+    for name, make in (("sphere", make_sphere), ("sphere_back_lit", make_sphere_back_lit), ("grain", make_grain), ("heap", make_heap), ("studio", make_studio)):
         make()
         bpy.ops.wm.save_as_mainfile(filepath=str(folder / f"{name}.blend"), compress=True)
 

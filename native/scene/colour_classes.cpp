@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstdint>
 #include <glm/common.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
 #include <limits>
 #include <utility>
 
@@ -91,7 +93,22 @@ glm::dvec3 mean(const std::vector<glm::vec3>& factors, const std::vector<std::ui
   return sum / static_cast<double>(members.size());
 }
 
-std::size_t most_classes(const ModelTraits& traits) { return traits.mesh ? 8 : traits.grain_radius ? 16 : 32; }
+// Where tables depend on the grain's size, too, each size that has tables of its own has them for each colour.
+std::size_t most_classes(const InstanceArray& array) {
+  const ModelTraits& traits = traits_of(array.material.model);
+  if (traits.mesh) return 8;
+  if (!traits.grain_radius) return 32;
+  double least = std::numeric_limits<double>::max();
+  double most = 0.0;
+  for (const glm::dmat4& place : array.object_to_world()) {
+    const double volume = std::abs(glm::determinant(glm::dmat3(place)));
+    least = std::min(least, volume);
+    most = std::max(most, volume);
+  }
+  constexpr double sizes_an_octave = 8.0;
+  const double sizes = 1.0 + sizes_an_octave * std::log2(std::cbrt(most / least));
+  return static_cast<std::size_t>(std::clamp(64.0 / sizes, 4.0, 16.0));
+}
 
 }  // namespace
 
@@ -104,7 +121,7 @@ std::vector<InstanceArray> by_colour(const std::vector<InstanceArray>& arrays) {
       plain.push_back(array);
       continue;
     }
-    for (const Class& one : Splitting(factors, places.size()).run(most_classes(traits_of(array.material.model)))) {
+    for (const Class& one : Splitting(factors, places.size()).run(most_classes(array))) {
       Material material = array.material;
       material.sigma_a *= mean(factors.sigma_a, one.members);
       material.sigma_s *= mean(factors.sigma_s, one.members);
