@@ -210,7 +210,7 @@ def make_heap():
     add_ground(4.0, plain_material("Ground", (0.35, 0.33, 0.3)))
     add_sun("Sun", (0.6, -0.5, 0.7), 3.0)
     lit_world(scene, (0.25, 0.3, 0.38))
-    look_from((0.6, -3.6, 1.7), (0.0, 0.0, 0.22), 34.0)
+    look_from((0.9, -5.4, 2.7), (0.0, 0.0, 0.2), 36.0)
 
 
 def make_studio():
@@ -243,7 +243,7 @@ def make_studio():
             light.shadow_soft_size = 0.2
         add_object(name, light, Matrix.Translation(place) @ Vector(place).to_track_quat("Z", "Y").to_matrix().to_4x4())
     lit_world(scene, (0.06, 0.07, 0.09))
-    look_from((0.4, -6.5, 3.2), (0.0, 0.2, 0.5), 34.0)
+    look_from((0.6, -10.0, 5.0), (0.0, 0.2, 0.4), 32.0)
 
 
 def boards():
@@ -267,7 +267,8 @@ def main():
 
     addon_utils.enable("mesograin")
     folder = pathlib.Path(sys.argv[sys.argv.index("--") + 1]) if "--" in sys.argv else HERE
-    for name, make in (("sphere", make_sphere), ("sphere_back_lit", make_sphere_back_lit), ("grain", make_grain), ("heap", make_heap), ("studio", make_studio)):
+    for name, make in (("sphere", make_sphere), ("sphere_back_lit", make_sphere_back_lit), ("grain", make_grain),
+                       ("heap", make_heap), ("studio", make_studio)):
         make()
         bpy.ops.wm.save_as_mainfile(filepath=str(folder / f"{name}.blend"), compress=True)
 

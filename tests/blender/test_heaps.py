@@ -163,3 +163,56 @@ def test_few_grains_vary_as_well():
     grain.data.materials.append(material)
     reds = {dict(each.material.values)["reflectance"][0] for each in read_scene().instances if each.name == "Grain"}
     assert len(reds) >= 20
+
+
+class Updates(list):
+    """What export.with_new_materials takes of a dependency graph."""
+
+    @property
+    def updates(self):
+        return self
+
+    @property
+    def scene(self):
+        return bpy.context.scene
+
+
+class Update:
+    def __init__(self, thing):
+        self.id = thing
+
+
+def test_a_slider_reads_no_placing_and_sends_no_mesh(native):
+    _, grain = scatter(grid())
+    add_camera((0.0, 0.0, 20.0))
+    add_sun((0.0, 0.0, 1.0), 1.0)
+    material = bpy.data.materials.new("Sand")
+    material.mesograin.model = "lambert"
+    grain.data.materials.append(material)
+    before = read_scene()
+    view = native.View(32, 32)
+    view.set_scene(before.to_native())
+    view.render(1)
+    material.mesograin.reflectance = (0.1, 0.2, 0.3)
+    after = export.with_new_materials(before, Updates([Update(material)]))
+    assert after == read_scene() != before
+    assert after.heaps[0].placings is before.heaps[0].placings, "not even copied"
+    sent = native.sent()
+    view.set_scene(after.to_native())
+    view.render(1)
+    assert native.sent()["meshes"] == sent["meshes"] and native.sent()["materials"] == sent["materials"] + 1
+
+
+def test_whatever_may_be_more_than_a_slider_is_read_anew():
+    _, grain = scatter(grid())
+    material, plain = bpy.data.materials.new("Sand"), bpy.data.materials.new("Plain")
+    material.mesograin.model = "lambert"
+    grain.data.materials.append(material)
+    before = read_scene()
+    for changed in ([], [grain], [material, grain], [bpy.context.scene], [plain]):
+        assert export.with_new_materials(before, Updates(map(Update, changed))) is None
+    material.mesograin_colours.vary = True
+    assert export.with_new_materials(before, Updates([Update(material)])) is None
+    varied = read_scene()
+    material.mesograin_colours.vary = False
+    assert export.with_new_materials(varied, Updates([Update(material)])) is None

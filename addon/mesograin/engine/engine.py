@@ -133,7 +133,10 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
             _sessions.add(self._session)
         if any(_replaces_geometry(update) for update in depsgraph.updates):
             self._session.cache.forget()
-        values = export.read_scene(depsgraph, self._session.cache)
+        before = self._session.values
+        values = before and export.with_new_materials(before, depsgraph)
+        if values is None:
+            values = export.read_scene(depsgraph, self._session.cache)
         self._session.set_scene(values)
         self._warnings = values.warnings
 

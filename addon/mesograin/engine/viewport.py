@@ -64,6 +64,11 @@ class Session:
         return self._view.width, self._view.height
 
     @property
+    def values(self):
+        """export.SceneValues as last taken, or None."""
+        return self._values
+
+    @property
     def has_scene(self):
         return self._values is not None
 

@@ -3,6 +3,7 @@ import dataclasses
 import math
 import typing
 
+import bpy
 import numpy as np
 
 from .. import native_module
@@ -210,6 +211,23 @@ def read_scene(depsgraph, cache, varied=True):
     reader = _Reader(depsgraph.scene.mesograin.millimetres_per_unit, cache, varied)
     reader.read_all(depsgraph)
     return reader.scene_values(depsgraph.scene)
+
+
+def with_new_materials(values, depsgraph):
+    """`values`, read before, with the materials that have changed since, or None if anything else may have: then all is
+    to be read again. A slider of a material does not read a hundred thousand placings."""
+    changed = {}
+    for update in depsgraph.updates:
+        material = update.id
+        if not isinstance(material, bpy.types.Material) or plain_materials.is_plain(material):
+            return None
+        told = f"Material '{material.name}'"
+        if material.mesograin_colours.vary or any(told in warning for warning in values.warnings):
+            return None
+        changed[material.name_full] = material_values(material, depsgraph.scene.mesograin.millimetres_per_unit)
+    if not changed or any(heap.factors and heap.material.name in changed for heap in values.heaps):
+        return None
+    return values.with_materials(lambda material: changed.get(material.name, material))
 
 
 def _parameters(grain, millimetres_per_unit):

@@ -90,7 +90,7 @@ def _drawable(placings):
     with np.errstate(invalid="ignore", over="ignore"):
         linear = placings[:, :3, :3].astype(np.float64)
         lengths = np.sqrt((linear * linear).sum(axis=1))
-        volume = np.linalg.det(np.where(np.isfinite(linear), linear, 0.0))
+        volume = np.einsum("ij,ij->i", linear[:, 0], np.cross(linear[:, 1], linear[:, 2]))
         finite = np.isfinite(placings).all(axis=(1, 2))
         return finite & (volume != 0.0) & (lengths.min(axis=1) >= meshes.THINNEST * lengths.max(axis=1))
 
