@@ -183,16 +183,19 @@ void bind_scene(py::module_& module) {
   bind_lights(module);
   py::class_<scene::Scene>(module, "Scene", "Instances, lights and the world around them.")
       .def(py::init([](std::vector<scene::Instance> instances, std::vector<scene::Light> lights,
-                       const std::optional<scene::World>& world, std::vector<scene::InstanceArray> arrays) {
+                       const std::optional<scene::World>& world, std::vector<scene::InstanceArray> arrays,
+                       const std::string& exchange) {
              scene::Scene scene{std::move(instances), std::move(lights), world.value_or(scene::World{}),
-                                std::move(arrays)};
+                                std::move(arrays), scene::parse_exchange(exchange)};
              validate(scene);
              return scene;
            }),
            py::kw_only(), py::arg("instances") = std::vector<scene::Instance>{},
            py::arg("lights") = std::vector<scene::Light>{}, py::arg("world") = py::none(),
-           py::arg("arrays") = std::vector<scene::InstanceArray>{},
-           "arrays: InstanceArrays, drawn beside the instances. Raises Error for a transform that cannot be inverted.")
+           py::arg("arrays") = std::vector<scene::InstanceArray>{}, py::arg("exchange") = "off",
+           "arrays: InstanceArrays, drawn beside the instances. exchange: 'order_1', and light goes from grain to "
+           "grain; "
+           "'off', and it does not. Raises Error for a transform that cannot be inverted.")
       .def_readonly("instances", &scene::Scene::instances)
       .def_readonly("arrays", &scene::Scene::arrays)
       .def_readonly("lights", &scene::Scene::lights)

@@ -196,6 +196,7 @@ const gl::Program& DeviceCache::shading(const DeviceMaterial& material, const Sh
   if (shading.instanced) defines.emplace_back("INSTANCED");
   if (shading.shadows != Shadows::none) defines.emplace_back("SHADOWS");
   if (shading.shadows == Shadows::cast) defines.emplace_back("CAST_SHADOWS");
+  if (shading.exchange) defines.emplace_back("EXCHANGE");
   if (shading.lights_at_place) defines.emplace_back("LIGHTS_AT_PLACE");
   return program(fmt::format("{} {} {}", pass, model, fmt::join(defines, " ")), gl::ShaderSource({vertex}, {}),
                  gl::ShaderSource({"passes/" + pass + ".frag", "models/" + model + ".glsl"}, defines));

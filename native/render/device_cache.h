@@ -33,6 +33,7 @@ struct Shading {
   bool unwrapped = false;  ///< at its UVs; else as the camera sees it
   bool instanced = false;  ///< one of an array of instances
   Shadows shadows = Shadows::none;
+  bool exchange = false;         ///< light goes from grain to grain
   bool lights_at_place = false;  ///< the place that is shaded draws its own directions of lights that have a place
 };
 

@@ -16,6 +16,7 @@ Draw::Draw(DeviceCache& cache, const scene::Instance& from, std::size_t index)
     : instance(index),
       source(from.mesh),
       mesh(cache.mesh(from.mesh)),
+      look(from.material),
       object_to_world(from.object_to_world),
       convex(cache.convex(from.mesh)) {
   const glm::dvec3 lower(from.mesh->lower());

@@ -25,6 +25,7 @@ struct Draw {
   scene::MeshPointer source;
   std::shared_ptr<gl::VertexArray> mesh;
   std::shared_ptr<DeviceMaterial> material;
+  scene::Material look;  // of the material
   glm::dmat4 object_to_world;
   glm::dvec3 centre;                      // middle of its bounds, world space
   double radius;                          // of the sphere around its bounds

@@ -81,6 +81,7 @@ void Frame::set_scene(scene::Scene scene) {
   content_ = std::make_unique<Content>(cache_, scene, std::move(*content_));
   version_ = content_->version();
   lighting_.set(scene);
+  exchange_.set(*content_, scene);
   scene_ = std::move(scene);
   baked_.clear();
   bake_.reset();
@@ -110,6 +111,7 @@ void Frame::set_bake(const Bake& bake) {
   casters_.clear();
   content_ = std::make_unique<Content>(cache_, scene_, std::move(*content_), bake.instances);
   version_ = content_->version();
+  exchange_.set(*content_, scene_);
   baked_.clear();
   receivers_.clear();
   selection_.reset();
@@ -196,6 +198,7 @@ bool Frame::knows_shadows_by_pixel() const {
 }
 
 bool Frame::add_sample(const GoOn& go_on) {
+  if (!exchange_.wait(go_on)) return false;
   if (casts() && !cast_) cast_ = std::make_unique<CastContent>(cache_, *content_);
   // Light maps are as fine as the largest grain in the picture.
   if (content_->instances() != nullptr && !selection_ && !(casts() && !reads_light_maps()))
@@ -448,7 +451,7 @@ void Frame::shade_unwrapped(const glm::vec2& jitter) {
 
 Shading Frame::shading(const DeviceMaterial& material, bool unwrapped, bool instanced) const {
   const Shadows shadows = !content_->shadows() ? Shadows::none : shadows_by_pixel_ ? Shadows::cast : Shadows::maps;
-  return {unwrapped, instanced, shadows, lights_at_place(material, instanced)};
+  return {unwrapped, instanced, shadows, exchange_.any(), lights_at_place(material, instanced)};
 }
 
 bool Frame::lights_at_place(const DeviceMaterial& material, bool instanced) const {
@@ -479,6 +482,7 @@ void Frame::set_common(const gl::Program& program) const {
   program.set("taps", taps_);
   if (shadows_drawn_ && shadows_by_pixel_) cast_shadows_.bind(program);
   if (shadows_drawn_ && !shadows_by_pixel_) shadow_maps_.bind(program);
+  if (exchange_.any()) exchange_.bind();
 }
 
 void Frame::set_viewer(const gl::Program& program, const glm::dvec3& origin) const {
@@ -573,6 +577,7 @@ void Frame::read(float* pixels) {
 std::vector<PassTiming> Frame::timings() const {
   if (!timed_) return {};
   std::vector<PassTiming> passes;
+  if (exchange_.milliseconds() > 0.0) passes.push_back({"exchange", exchange_.milliseconds()});
   if (light_maps_drawn_ > 0) passes.push_back({"light_maps", light_map_timer_.milliseconds()});
   if (casts()) {
     passes.push_back({"surfaces", surface_milliseconds_});

@@ -22,6 +22,7 @@
 #include "render/cast_surfaces.h"
 #include "render/content.h"
 #include "render/device_cache.h"
+#include "render/exchange.h"
 #include "render/lighting.h"
 #include "render/receivers.h"
 #include "render/shadow_maps.h"
@@ -181,7 +182,8 @@ class Frame {
   std::optional<gl::Buffer> device_randoms_;
   scene::Scene scene_;
   std::unique_ptr<Content> content_ = std::make_unique<Content>();
-  std::vector<std::size_t> baked_;              // draws
+  std::vector<std::size_t> baked_;  // draws
+  Exchange exchange_;
   std::unique_ptr<DeviceSelection> selection_;  // for the camera; null if not known yet or without instances
   Receivers receivers_;                         // empty if not known yet
   ShadowMaps shadow_maps_;

@@ -74,6 +74,7 @@ void Instances::add(DeviceCache& cache, const scene::InstanceArray& array, const
     group.typical_scale = std::exp2(size / sizes_an_octave);
     const double radius = std::max(mesh.equivalent_radius() * group.typical_scale, 1e-30);
     group.material = cache.material(array.material, radius);
+    group.source = array.material;
     if (group.material->light_maps() && !prototypes_[of].light_maps)
       prototypes_[of].light_maps = std::make_unique<LightMapAtlas>(array.mesh);
     const glm::dvec3 reduced =

@@ -37,6 +37,7 @@ struct Prototype {
 struct InstanceGroup {
   std::size_t prototype;
   std::shared_ptr<DeviceMaterial> material;
+  scene::Material source;         // of the material
   double typical_scale;           // of the instances that the material's tables were made for
   double mean_free_paths_across;  // reduced, in the densest channel
   std::uint32_t first;            // instance; they lie one after the other

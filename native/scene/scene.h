@@ -3,6 +3,7 @@
 
 #include <glm/mat4x4.hpp>
 #include <memory>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -40,11 +41,19 @@ class InstanceArray {
   std::shared_ptr<const ColourFactors> factors_;
 };
 
+/// Whether light goes from grain to grain: not, or as four numbers a channel for each grain (spherical harmonics to
+/// order 1).
+enum class Exchange { off, order_1 };
+
+/// Throws Error that lists the names allowed.
+Exchange parse_exchange(std::string_view name);
+
 struct Scene {
   std::vector<Instance> instances;
   std::vector<Light> lights;
   World world{};
   std::vector<InstanceArray> arrays{};
+  Exchange exchange = Exchange::off;
 };
 
 /// The materials of all that is drawn, each once, in the order of the scene.

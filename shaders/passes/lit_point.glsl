@@ -11,6 +11,7 @@
 #include "models/interface.glsl"
 #include "scene/grain.glsl"
 #include "scene/shadows.glsl"
+#include "heap/light_from_grains.glsl"
 #include "models/pixel_random.glsl"
 
 // One direction of a light, drawn for the whole grain.
@@ -108,8 +109,12 @@ vec3 locally_lit(SurfacePoint point, Outwards outwards) {
 #endif
 
 vec3 lit_point(SurfacePoint point) {
-  vec3 sum = vec3(0.0);
   Outwards outwards = look_outwards(point);
+#ifdef EXCHANGE
+  vec3 sum = light_from_grains(grain_instance, point.normal, dot(point.normal, point.to_viewer));
+#else
+  vec3 sum = vec3(0.0);
+#endif
 #ifdef LIGHTS_AT_PLACE
   sum += locally_lit(point, outwards);
 #endif

@@ -1,0 +1,36 @@
+// Light from grain to grain: what each grain of a heap sends out because of what the others send (Moon, Walter and
+// Marschner 2007, "Rendering discrete random media using precomputed scattering solutions", for paths; here solved for
+// all grains at once).
+#pragma once
+
+#include <vector>
+
+#include "heap/coefficients.h"
+#include "heap/heap.h"
+
+namespace mesograin::heap {
+
+/// How much work goes into it.
+struct Quality {
+  int rays = 128;       ///< from each grain to others
+  int light_rays = 64;  ///< to each light
+  int seen_rays = 64;   ///< straight through each transparent grain
+  float tolerance = 3e-4F;
+};
+
+/// Of every grain, in their order. Radiance that leaves a grain at a normal and a cosine: that of `answer` times the
+/// lobe of its kind's table, and that of `behind` times what crosses the grain there.
+struct HeapLight {
+  Field answer;  ///< exitance over pi, but for what answers to light that comes straight from a light
+  Field behind;  ///< what is seen through a transparent grain
+  Field sent;    ///< exitance over pi because of all light, to begin the next solution from
+  std::vector<Kind> kinds;
+  int steps = 0;
+  float residual = 0.0F;
+};
+
+/// `before` may be a solution for other lights, materials or places. Throws transport::Stopped.
+HeapLight solve_exchange(const Heap& heap, const Quality& quality, const Field& before,
+                         const transport::Effort& effort);
+
+}  // namespace mesograin::heap

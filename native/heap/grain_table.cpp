@@ -1,0 +1,196 @@
+// Many walks for each interval of cosines; of them as many are kept as the table has room for, so that each stands for
+// as much light: rare heavy outcomes would be noise in every grain of the heap.
+#include "heap/grain_table.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/exponential.hpp>
+#include <glm/geometric.hpp>
+#include <list>
+#include <mutex>
+
+namespace mesograin::heap {
+namespace {
+
+constexpr int walks_an_entry = 4096;
+
+float mean(const glm::vec3& colour) { return (colour.r + colour.g + colour.b) / 3.0F; }
+
+glm::dvec3 straight_through(const glm::vec3& sigma_t, double mu) { return glm::exp(-2.0 * mu * glm::dvec3(sigma_t)); }
+
+/// 1 - e^-x, exact where it is small.
+glm::dvec3 met_at(const glm::vec3& sigma_t, double mu) {
+  const glm::dvec3 depth = 2.0 * mu * glm::dvec3(sigma_t);
+  return -glm::dvec3(std::expm1(-depth.r), std::expm1(-depth.g), std::expm1(-depth.b));
+}
+
+/// 2 int (1 - e^(-2 sigma mu)) mu dmu from 0 to 1, of a sphere of radius 1 (van de Hulst, "Light Scattering by Small
+/// Particles", 1957, section 11.22: the efficiency of geometric extinction).
+double met_from_everywhere(double sigma_t) {
+  const double depth = 2.0 * sigma_t;
+  if (depth < 0.02) return depth * (2.0 / 3.0 - depth / 4.0 + depth * depth / 15.0);
+  return 1.0 + 2.0 * (std::exp(-depth) * (depth + 1.0) - 1.0) / (depth * depth);
+}
+
+/// A subset in which every walk is as likely as it was heavy (systematic resampling: Kitagawa 1996, "Monte Carlo filter
+/// and smoother for non-Gaussian nonlinear state space models", appendix), all of the same mean weight.
+void resample(const std::vector<Outcome>& walks, transport::Random& random, std::vector<Outcome>& kept) {
+  double all = 0.0;
+  for (const Outcome& outcome : walks) all += mean(outcome.weight);
+  if (!(all > 0.0)) {
+    kept.insert(kept.end(), GrainTable::outcomes, Outcome{{0.0F, 0.0F, 1.0F}, {0.0F, 0.0F, 1.0F}, glm::vec3(0.0F)});
+    return;
+  }
+  const double step = all / GrainTable::outcomes;
+  const float each = static_cast<float>(all / walks_an_entry);
+  double next = step * random.uniform();
+  double until = 0.0;
+  int drawn = 0;
+  for (const Outcome& outcome : walks) {
+    until += mean(outcome.weight);
+    for (; next < until && drawn < GrainTable::outcomes; next += step, ++drawn)
+      kept.push_back({outcome.normal, outcome.direction, outcome.weight * (each / mean(outcome.weight))});
+  }
+  while (drawn++ < GrainTable::outcomes) kept.push_back(kept.back());
+}
+
+/// One channel, as if all were like it.
+Optics grey(const Optics& optics, int channel) {
+  Optics grey = optics;
+  grey.reflectance = glm::dvec3(optics.reflectance[channel]);
+  grey.sigma_t = glm::dvec3(optics.sigma_t[channel]);
+  grey.albedo = glm::dvec3(optics.albedo[channel]);
+  return grey;
+}
+
+bool is_grey(const Optics& optics) {
+  return optics.opaque() || (grey(optics, 0).sigma_t == optics.sigma_t && grey(optics, 0).albedo == optics.albedo);
+}
+
+}  // namespace
+
+GrainTable::GrainTable(const Optics& optics, Sense sense, const transport::Effort& effort)
+    : transparent_(optics.transparent()), sigma_t_(optics.sigma_t) {
+  if (transparent_)
+    for (int channel = 0; channel < 3; ++channel)
+      met_[channel] = static_cast<float>(met_from_everywhere(optics.sigma_t[channel]));
+  trace(optics, sense, effort);
+  if (is_grey(optics)) return;
+  // Walks that are shared by channels are noisier in each than its own.
+  for (int channel = 0; channel < 3; ++channel) take_albedo(GrainTable(grey(optics, channel), sense, effort), channel);
+}
+
+void GrainTable::take_albedo(const GrainTable& grey, int channel) {
+  for (int entry = 0; entry < entries; ++entry) {
+    const auto index = static_cast<std::size_t>(entry);
+    const float had = albedos_[index][channel];
+    const float factor = had > 0.0F ? grey.albedos_[index][channel] / had : 0.0F;
+    albedos_[index][channel] = grey.albedos_[index][channel];
+    for (int outcome = 0; outcome < outcomes; ++outcome)
+      outcomes_[index * outcomes + static_cast<std::size_t>(outcome)].weight[channel] *= factor;
+  }
+  albedo_[channel] = grey.albedo_[channel];
+  for (std::size_t node = 0; node < lobe_nodes; ++node) lobe_[node][channel] = grey.lobe_[node][channel];
+}
+
+void GrainTable::trace(const Optics& optics, Sense sense, const transport::Effort& effort) {
+  std::vector<std::vector<Outcome>> kept(entries);
+  std::vector<std::array<glm::dvec3, lobe_nodes>> leaving(entries);
+  transport::run_pieces(effort, entries, [&](std::size_t entry) {
+    transport::Random random(effort.seed, entry);
+    std::vector<Outcome> walks;
+    glm::dvec3 sum(0.0);
+    leaving[entry].fill(glm::dvec3(0.0));
+    for (int i = 0; i < walks_an_entry; ++i) {
+      // Light from everywhere comes in evenly over the squared cosine.
+      const float squared =
+          (static_cast<float>(entry) + (static_cast<float>(i) + random.uniform()) / walks_an_entry) / entries;
+      const float mu = std::sqrt(squared);
+      std::optional<Outcome> outcome = walk(optics, sense, mu, random);
+      if (!outcome) continue;
+      const glm::vec3 light = outcome->weight;
+      if (transparent_) outcome->weight /= glm::max(glm::vec3(met_at(sigma_t_, mu)), 1e-30F);
+      sum += glm::dvec3(outcome->weight);
+      // Flux in each interval of cosines outside.
+      const float leaves = std::clamp(glm::dot(outcome->normal, outcome->direction), 0.0F, 1.0F);
+      leaving[entry][static_cast<std::size_t>(std::min(static_cast<int>(leaves * lobe_nodes), lobe_nodes - 1))] +=
+          glm::dvec3(light);
+      walks.push_back(*outcome);
+    }
+    albedos_[entry] = glm::vec3(sum / static_cast<double>(walks_an_entry));
+    resample(walks, random, kept[entry]);
+  });
+  outcomes_.reserve(static_cast<std::size_t>(entries) * outcomes);
+  glm::dvec3 all(0.0);
+  std::array<glm::dvec3, lobe_nodes> flux{};
+  for (int entry = 0; entry < entries; ++entry) {
+    const auto index = static_cast<std::size_t>(entry);
+    outcomes_.insert(outcomes_.end(), kept[index].begin(), kept[index].end());
+    for (std::size_t node = 0; node < lobe_nodes; ++node) {
+      flux[node] += leaving[index][node];
+      all += leaving[index][node];
+    }
+  }
+  albedo_ = glm::vec3(all / static_cast<double>(walks_an_entry * entries));
+  // Radiance is flux over 2 mu dmu; between the intervals' middles it is linear, and flat beyond the last ones.
+  for (int channel = 0; channel < 3; ++channel)
+    for (int node = 0; node < lobe_nodes; ++node) {
+      const double share = static_cast<double>(2 * node + 1) / (lobe_nodes * lobe_nodes);
+      const auto index = static_cast<std::size_t>(node);
+      lobe_[index][channel] =
+          all[channel] > 0.0 ? static_cast<float>(flux[index][channel] / all[channel] / share) : 1.0F;
+    }
+  constexpr int steps = 64 * lobe_nodes;
+  glm::vec3 exitance(0.0F);
+  for (int step = 0; step < steps; ++step) {
+    const float mu = (static_cast<float>(step) + 0.5F) / steps;
+    exitance += lobe_at(mu) * (2.0F * mu / steps);
+  }
+  for (glm::vec3& node : lobe_) node /= exitance;
+}
+
+Outcome GrainTable::draw(float mu, float choice) const {
+  const int entry = std::min(static_cast<int>(mu * mu * entries), entries - 1);
+  const int index = std::min(static_cast<int>(choice * outcomes), outcomes - 1);
+  Outcome outcome = outcomes_[static_cast<std::size_t>(entry) * outcomes + static_cast<std::size_t>(index)];
+  if (transparent_) outcome.weight *= glm::vec3(met_at(sigma_t_, mu));
+  return outcome;
+}
+
+glm::vec3 GrainTable::lobe_at(float mu) const {
+  const float node = std::clamp(mu * lobe_nodes - 0.5F, 0.0F, static_cast<float>(lobe_nodes - 1));
+  const auto below = static_cast<std::size_t>(std::min(node, static_cast<float>(lobe_nodes - 2)));
+  return glm::mix(lobe_[below], lobe_[below + 1], node - static_cast<float>(below));
+}
+
+glm::vec3 GrainTable::crossing(float mu) const {
+  return transparent_ ? glm::vec3(straight_through(sigma_t_, mu)) : glm::vec3(0.0F);
+}
+
+std::shared_ptr<const GrainTable> grain_table(const Optics& optics, Sense sense, const transport::Effort& effort) {
+  struct Entry {
+    Optics optics;
+    Sense sense;
+    std::shared_ptr<const GrainTable> table;
+  };
+  constexpr std::size_t most_kept = 64;
+  static std::mutex mutex;
+  static std::list<Entry> kept;  // the last used first
+  // Only there do the two differ.
+  if (optics.surface != Surface::lambert_refracted) sense = Sense::from_light;
+  {
+    const std::lock_guard lock(mutex);
+    for (auto entry = kept.begin(); entry != kept.end(); ++entry)
+      if (entry->optics == optics && entry->sense == sense) {
+        kept.splice(kept.begin(), kept, entry);
+        return entry->table;
+      }
+  }
+  auto table = std::make_shared<const GrainTable>(optics, sense, effort);
+  const std::lock_guard lock(mutex);
+  kept.push_front({optics, sense, table});
+  if (kept.size() > most_kept) kept.pop_back();
+  return table;
+}
+
+}  // namespace mesograin::heap

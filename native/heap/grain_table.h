@@ -1,0 +1,58 @@
+// What one grain of a kind does to light, as a table of equally likely outcomes for each angle at which light comes in.
+#pragma once
+
+#include <array>
+#include <glm/vec3.hpp>
+#include <memory>
+#include <vector>
+
+#include "heap/optics.h"
+#include "heap/sphere_walk.h"
+#include "transport/effort.h"
+
+namespace mesograin::heap {
+
+class GrainTable {
+ public:
+  static constexpr int entries = 16;    ///< intervals of the squared cosine
+  static constexpr int outcomes = 512;  ///< of each
+  static constexpr int lobe_nodes = 16;
+
+  /// Seconds for thick white media, milliseconds else.
+  GrainTable(const Optics& optics, Sense sense, const transport::Effort& effort);
+
+  /// What becomes of light that comes in at this cosine, in the frame of sphere_walk.h; `choice` in [0, 1). Its weight
+  /// is what is not left to crossing().
+  Outcome draw(float mu, float choice) const;
+
+  /// The share of light at this cosine that goes straight through, without scattering.
+  glm::vec3 crossing(float mu) const;
+
+  /// The share that leaves otherwise, of light from everywhere.
+  const glm::vec3& albedo() const { return albedo_; }
+
+  /// The share of light from everywhere that does not go straight through, 2 int (1 - crossing) mu dmu.
+  const glm::vec3& met() const { return met_; }
+
+  /// Radiance of light that leaves, over exitance / pi, for light from everywhere: at the middles of intervals of the
+  /// cosine, linear between them, flat beyond.
+  const std::array<glm::vec3, lobe_nodes>& lobe() const { return lobe_; }
+
+ private:
+  glm::vec3 lobe_at(float mu) const;
+  void take_albedo(const GrainTable& grey, int channel);
+  void trace(const Optics& optics, Sense sense, const transport::Effort& effort);
+
+  bool transparent_;
+  glm::vec3 sigma_t_;
+  glm::vec3 met_{1.0F};
+  glm::vec3 albedo_{0.0F};
+  std::array<glm::vec3, entries> albedos_{};  // of what light of each interval meets
+  std::vector<Outcome> outcomes_;
+  std::array<glm::vec3, lobe_nodes> lobe_{};
+};
+
+/// Tables that were made before are kept, by what they were made of.
+std::shared_ptr<const GrainTable> grain_table(const Optics& optics, Sense sense, const transport::Effort& effort);
+
+}  // namespace mesograin::heap

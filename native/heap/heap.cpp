@@ -1,0 +1,68 @@
+// Rays go from grain to grain, through those that let them.
+#include "heap/heap.h"
+
+#include <algorithm>
+#include <glm/geometric.hpp>
+
+namespace mesograin::heap {
+namespace {
+
+// Through more grains nothing is followed.
+constexpr int most_crossed = 4096;
+
+float mean(const glm::vec3& colour) { return (colour.r + colour.g + colour.b) / 3.0F; }
+
+}  // namespace
+
+std::vector<Kind> kinds_of(const Grains& grains, const transport::Effort& effort) {
+  std::vector<Kind> kinds;
+  for (const Optics& optics : grains.kinds)
+    kinds.push_back({grain_table(optics, Sense::from_light, effort), grain_table(optics, Sense::from_viewer, effort)});
+  return kinds;
+}
+
+void Space::cross(Ray& ray, const Meeting& meeting, float cosine) const {
+  const Grain& grain = grains_[meeting.grain];
+  ray.origin = place(grain, meeting.normal + 2.0F * cosine * ray.direction);
+  ray.crossed = true;
+}
+
+std::optional<Meeting> Space::follow(Ray& ray, transport::Random& random) const {
+  Meeting meeting{};
+  for (int crossed = 0; crossed < most_crossed; ++crossed) {
+    if (!neighbourhood_.first(ray.origin, ray.direction, meeting)) return std::nullopt;
+    const float cosine = std::clamp(-glm::dot(meeting.normal, ray.direction), 0.0F, 1.0F);
+    const glm::vec3 crossing = kind(meeting.grain).from_light->crossing(cosine);
+    const glm::vec3 passed = ray.weight * crossing;
+    const float all = mean(ray.weight);
+    const float share = all > 0.0F ? mean(passed) / all : 0.0F;
+    if (!(share > 0.0F)) return meeting;
+    if (share < 1.0F && random.uniform() >= share) {
+      ray.weight = (ray.weight - passed) / (1.0F - share);
+      return meeting;
+    }
+    ray.weight = passed / share;
+    cross(ray, meeting, cosine);
+  }
+  ray.weight = glm::vec3(0.0F);
+  return std::nullopt;
+}
+
+glm::vec3 Space::passed(Ray& ray, float reach) const {
+  constexpr float nothing = 1e-5F;
+  const glm::vec3 start = ray.origin;
+  glm::vec3 left(1.0F);
+  Meeting meeting{};
+  for (int crossed = 0; crossed < most_crossed; ++crossed) {
+    if (!neighbourhood_.first(ray.origin, ray.direction, meeting)) return left;
+    const Grain& grain = grains_[meeting.grain];
+    if (glm::distance(start, grain.middle + grain.radius * meeting.normal) > reach) return left;
+    const float cosine = std::clamp(-glm::dot(meeting.normal, ray.direction), 0.0F, 1.0F);
+    left *= kind(meeting.grain).from_light->crossing(cosine);
+    cross(ray, meeting, cosine);
+    if (std::max({left.r, left.g, left.b}) < nothing) break;
+  }
+  return glm::vec3(0.0F);
+}
+
+}  // namespace mesograin::heap

@@ -1,0 +1,72 @@
+// A heap and the light on it: what the exchange is solved for.
+#pragma once
+
+#include <glm/vec3.hpp>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "heap/grain_table.h"
+#include "heap/grains.h"
+#include "scene/light.h"
+#include "scene/world.h"
+
+namespace mesograin::heap {
+
+struct Heap {
+  Grains grains;
+  glm::dvec3 anchor{0.0};  ///< where the grains' places are told from
+  std::vector<scene::Light> lights;
+  scene::World world;
+
+  bool operator==(const Heap&) const = default;
+};
+
+/// What the grains of one kind do to light.
+struct Kind {
+  std::shared_ptr<const GrainTable> from_light;
+  std::shared_ptr<const GrainTable> from_viewer;
+};
+
+std::vector<Kind> kinds_of(const Grains& grains, const transport::Effort& effort);
+
+/// A straight line between grains, with what is left of its weight.
+struct Ray {
+  glm::vec3 origin;
+  glm::vec3 direction;
+  glm::vec3 weight;
+  bool crossed = false;  ///< whether it has gone straight through a grain
+};
+
+/// The heap as rays go through it.
+class Space {
+ public:
+  Space(const Grains& grains, const std::vector<Kind>& kinds)
+      : grains_(grains.grains), kinds_(kinds), neighbourhood_(grains) {}
+
+  const std::vector<Grain>& grains() const { return grains_; }
+  const Kind& kind(std::uint32_t grain) const { return kinds_[grains_[grain].kind]; }
+
+  /// Just outside a grain's surface.
+  glm::vec3 place(const Grain& grain, const glm::vec3& normal) const {
+    return grain.middle + grain.radius * (1.0F + 1e-4F) * normal;
+  }
+
+  /// On to the grain that it meets; nothing if it leaves the heap. Where a grain lets a part straight through, one of
+  /// the two ways is taken at random.
+  std::optional<Meeting> follow(Ray& ray, transport::Random& random) const;
+
+  /// What is left of light that comes from `reach` away, against `ray`'s direction, straight through all in between.
+  /// Does not change its weight.
+  glm::vec3 passed(Ray& ray, float reach) const;
+
+ private:
+  /// To where it leaves the grain that it met.
+  void cross(Ray& ray, const Meeting& meeting, float cosine) const;
+
+  const std::vector<Grain>& grains_;
+  const std::vector<Kind>& kinds_;
+  Neighbourhood neighbourhood_;
+};
+
+}  // namespace mesograin::heap

@@ -1,0 +1,43 @@
+// Which grains send light to which: G of S = D + G S, as the rays it was found by.
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "heap/coefficients.h"
+#include "heap/heap.h"
+
+namespace mesograin::heap {
+
+/// A ray that leaves a grain at a normal because of light that another grain sent out at one of its own.
+struct Link {
+  std::uint32_t from;
+  std::int16_t sent_at[3];
+  std::int16_t leaves_at[3];
+  float weight[3];
+};
+
+struct Links {
+  std::vector<std::size_t> first;  ///< of each grain, and one past the last
+  std::vector<Link> links;
+
+  /// What light sent out by others makes the grains send out.
+  void gather(const Field& sent, Field& answer, const transport::Effort& effort) const;
+};
+
+/// What leaves the grains because of an even world: without and with other grains on the way.
+struct WorldLit {
+  Field direct;
+  Field crossed;
+};
+
+/// `rays` of each grain; `radiance` from outside the heap wherever a ray leaves it.
+Links find_links(const Space& space, int rays, const glm::vec3& radiance, WorldLit& lit,
+                 const transport::Effort& effort);
+
+/// The light that is seen straight through transparent grains, mean over the directions in which it leaves: what others
+/// send, 0 where no grain stands behind.
+Field seen_through(const Space& space, const Field& sent, int rays, const transport::Effort& effort);
+
+}  // namespace mesograin::heap

@@ -1,0 +1,59 @@
+// From a material's numbers to those of a unit sphere.
+#include "heap/optics.h"
+
+#include <algorithm>
+
+namespace mesograin::heap {
+namespace {
+
+// Reduced mean free paths to the radius beyond which light leaves where it entered, as seen from another grain.
+constexpr double thickest = 50.0;
+
+// Mean free paths to the radius beyond which light has forgotten the phase function before it reaches another grain.
+constexpr double most_flights = 150.0;
+
+Surface surface_of(const scene::Material& material) {
+  if (material.model == scene::Model::lambert) return Surface::lambert;
+  if (material.model == scene::Model::conductor) return Surface::mirror;
+  switch (material.boundary) {
+    case scene::Boundary::dielectric:
+      return material.eta == 1.0 ? Surface::index_matched : Surface::dielectric;
+    case scene::Boundary::lambert_lambert:
+      return Surface::lambert_lambert;
+    case scene::Boundary::lambert_refracted:
+      return Surface::lambert_refracted;
+    default:
+      return Surface::index_matched;
+  }
+}
+
+}  // namespace
+
+Optics optics_of(const scene::Material& material, double radius) {
+  Optics optics;
+  optics.surface = surface_of(material);
+  if (optics.opaque()) {
+    optics.reflectance = material.reflectance;
+    if (optics.surface == Surface::mirror) optics.roughness = material.roughness;
+    return optics;
+  }
+  optics.eta =
+      optics.surface == Surface::dielectric || optics.surface == Surface::lambert_refracted ? material.eta : 1.0;
+  optics.g = material.g;
+  const double unit = material.scale * radius;
+  const glm::dvec3 reduced = unit * (material.sigma_a + (1.0 - material.g) * material.sigma_s);
+  const glm::dvec3 unreduced = unit * (material.sigma_a + material.sigma_s);
+  const bool thick = std::max({reduced.r, reduced.g, reduced.b}) > thickest ||
+                     std::max({unreduced.r, unreduced.g, unreduced.b}) > most_flights;
+  // The medium that is similar and scatters isotropically (van de Hulst 1980, section 14.1.3).
+  if (thick) optics.g = 0.0;
+  for (int channel = 0; channel < 3; ++channel) {
+    const double sigma_s = unit * (thick ? 1.0 - material.g : 1.0) * material.sigma_s[channel];
+    const double sigma_t = unit * material.sigma_a[channel] + sigma_s;
+    optics.sigma_t[channel] = thick ? std::min(sigma_t, thickest) : sigma_t;
+    optics.albedo[channel] = sigma_t > 0.0 ? sigma_s / sigma_t : 0.0;
+  }
+  return optics;
+}
+
+}  // namespace mesograin::heap

@@ -1,0 +1,34 @@
+// What a spherical grain is made of, as light meets it: lengths are in its radius.
+#pragma once
+
+#include <glm/vec3.hpp>
+
+#include "scene/material.h"
+
+namespace mesograin::heap {
+
+/// What happens at the surface. The last two are the boundaries of scene::Boundary with a cosine lobe.
+enum class Surface { lambert, mirror, index_matched, dielectric, lambert_lambert, lambert_refracted };
+
+struct Optics {
+  Surface surface = Surface::lambert;
+  glm::dvec3 reflectance{0.0};  ///< of an opaque surface
+  glm::dvec3 sigma_t{0.0};      ///< of the medium, per radius
+  glm::dvec3 albedo{0.0};       ///< of one scattering
+  double g = 0.0;
+  double eta = 1.0;
+  double roughness = 0.0;  ///< of a mirror
+
+  bool opaque() const { return surface == Surface::lambert || surface == Surface::mirror; }
+
+  /// Whether light may go straight through without meeting anything.
+  bool transparent() const { return surface == Surface::index_matched; }
+
+  bool operator==(const Optics&) const = default;
+};
+
+/// Of a sphere of `radius` in scene units. What is too thick for its depth to matter is made as thick as that.
+/// A rough dielectric surface counts as smooth.
+Optics optics_of(const scene::Material& material, double radius);
+
+}  // namespace mesograin::heap

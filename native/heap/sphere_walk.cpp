@@ -1,0 +1,197 @@
+// Free flights are drawn for one channel and weighed for all three by the balance heuristic (Wilkie et al., "Hero
+// wavelength spectral sampling", 2014, eq. 6), so that grey media have no noise in colour.
+#include "heap/sphere_walk.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/exponential.hpp>
+#include <glm/geometric.hpp>
+#include <numbers>
+
+#include "physics/physics.h"
+#include "physics/visible_normals.h"
+#include "transport/directions.h"
+
+namespace mesograin::heap {
+namespace {
+
+using transport::Random;
+
+// Light that is totally reflected for ever is given up.
+constexpr int most_steps = 1 << 16;
+
+glm::vec3 cosine_lobe(const glm::vec3& normal, Random& random) {
+  const float cosine = std::sqrt(1.0F - random.uniform());
+  const float sine = std::sqrt(std::max(0.0F, (1.0F - cosine) * (1.0F + cosine)));
+  const float azimuth = 2.0F * std::numbers::pi_v<float> * random.uniform();
+  glm::vec3 first, second;
+  transport::make_frame(normal, first, second);
+  return cosine * normal + sine * (std::cos(azimuth) * first + std::sin(azimuth) * second);
+}
+
+Outcome mirrored(const Optics& optics, const glm::vec3& travelling, Random& random) {
+  const glm::dvec3 view(-travelling);
+  const double alpha = std::max(optics.roughness, 1e-4);
+  const double azimuth = 2.0 * std::numbers::pi * random.uniform();
+  const glm::dvec3 facet = physics::visible_normal(glm::dvec3(-view.x, 0.0, view.z), alpha,
+                                                   std::sqrt(static_cast<double>(random.uniform())), azimuth);
+  const glm::vec3 normal(static_cast<float>(-facet.x), static_cast<float>(facet.y), static_cast<float>(facet.z));
+  glm::vec3 direction = travelling - 2.0F * glm::dot(travelling, normal) * normal;
+  // What a second facet would catch leaves along the surface.
+  direction.z = std::max(direction.z, 1e-3F);
+  return {{0.0F, 0.0F, 1.0F}, glm::normalize(direction), glm::vec3(optics.reflectance)};
+}
+
+/// A walk inside the unit sphere.
+class Inside {
+ public:
+  Inside(const Optics& optics, Sense sense, Random& random)
+      : optics_(optics), sense_(sense), random_(random), sigma_t_(optics.sigma_t), albedo_(optics.albedo) {
+    channel_ = std::min(static_cast<int>(3.0F * random.uniform()), 2);
+  }
+
+  std::optional<Outcome> follow(glm::vec3 place, glm::vec3 direction) {
+    bool scattered = !optics_.transparent();
+    for (int step = 0; step < most_steps; ++step) {
+      const float along = glm::dot(place, direction);
+      const float chord = -along + std::sqrt(std::max(along * along + 1.0F - glm::dot(place, place), 0.0F));
+      const float flight = scattered ? fly(chord) : fly_within(chord);
+      if (flight < chord) {
+        scattered = true;
+        place += flight * direction;
+        direction =
+            transport::scattered(direction, static_cast<float>(optics_.g), random_.uniform(), random_.uniform());
+        if (!survives()) return std::nullopt;
+        continue;
+      }
+      place = glm::normalize(place + chord * direction);
+      if (std::optional<Outcome> outcome = leave(place, direction)) return outcome;
+      if (done_) return std::nullopt;
+    }
+    return std::nullopt;
+  }
+
+ private:
+  // `passed` of each channel, relative to the density that all three together have for it.
+  void weigh(const glm::vec3& passed, const glm::vec3& density) {
+    weight_ *= passed;
+    density_ *= density;
+    // Only their ratio counts.
+    const float mean = (density_.r + density_.g + density_.b) / 3.0F;
+    if (!(mean > 0.0F)) {
+      weight_ = density_ = glm::vec3(0.0F);
+      return;
+    }
+    weight_ /= mean;
+    density_ /= mean;
+  }
+
+  float fly(float chord) {
+    const float sigma_t = sigma_t_[channel_];
+    const float flight = sigma_t > 0.0F ? -std::log1p(-random_.uniform()) / sigma_t : chord;
+    const glm::vec3 passed = glm::exp(-sigma_t_ * std::min(flight, chord));
+    if (flight < chord)
+      weigh(passed * sigma_t_ * albedo_, passed * sigma_t_);
+    else
+      weigh(passed, passed);
+    return flight;
+  }
+
+  // The first flight ends before the other side.
+  float fly_within(float chord) {
+    const glm::vec3 within =
+        -glm::vec3(std::expm1(-sigma_t_.r * chord), std::expm1(-sigma_t_.g * chord), std::expm1(-sigma_t_.b * chord));
+    if (!(within[channel_] > 0.0F)) {
+      weight_ = glm::vec3(0.0F);
+      return 0.0F;
+    }
+    const float u = random_.uniform();
+    const float sigma_t = sigma_t_[channel_];
+    // A chord of so few mean free paths that its exponential is a straight line.
+    const float flight = sigma_t * chord > 1e-3F ? -std::log1p(-u * within[channel_]) / sigma_t : u * chord;
+    const glm::vec3 passed = glm::exp(-sigma_t_ * flight) * sigma_t_;
+    weigh(passed * albedo_, passed / glm::max(within, 1e-30F));
+    begun_with_ = std::max({weight_.r, weight_.g, weight_.b});
+    return std::min(flight, 0.999999F * chord);
+  }
+
+  bool survives() {
+    const float most = std::max({weight_.r, weight_.g, weight_.b});
+    if (!(most > 0.0F)) return false;
+    const float faint = 0.05F * begun_with_;
+    if (most > faint) return true;
+    if (random_.uniform() * faint >= most) return false;
+    weight_ *= faint / most;
+    return true;
+  }
+
+  // Nothing where it is reflected inside, or where `done_`.
+  std::optional<Outcome> leave(const glm::vec3& normal, glm::vec3& direction) {
+    switch (optics_.surface) {
+      case Surface::lambert_lambert:
+        return Outcome{normal, cosine_lobe(normal, random_), weight_};
+      case Surface::lambert_refracted: {
+        if (sense_ == Sense::from_viewer) return Outcome{normal, cosine_lobe(normal, random_), weight_};
+        // A view ray is refracted without Fresnel, and radiance is not focused: only what lies in its cone is seen.
+        const auto eta = static_cast<float>(optics_.eta);
+        const float cosine = glm::dot(normal, direction);
+        if (eta * eta * (1.0F - cosine) * (1.0F + cosine) >= 1.0F) {
+          done_ = true;
+          return std::nullopt;
+        }
+        return Outcome{normal, transport::refracted(direction, -normal, 1.0F / eta), eta * eta * weight_};
+      }
+      case Surface::dielectric: {
+        const float cosine = std::min(glm::dot(normal, direction), 1.0F);
+        if (random_.uniform() < physics::fresnel_reflectance(cosine, 1.0 / optics_.eta)) {
+          direction = glm::normalize(direction - 2.0F * cosine * normal);
+          return std::nullopt;
+        }
+        return Outcome{normal, transport::refracted(direction, -normal, static_cast<float>(1.0 / optics_.eta)),
+                       weight_};
+      }
+      default:
+        return Outcome{normal, direction, weight_};
+    }
+  }
+
+  const Optics& optics_;
+  Sense sense_;
+  Random& random_;
+  glm::vec3 sigma_t_;
+  glm::vec3 albedo_;
+  glm::vec3 weight_{1.0F};   // of each channel, over the mean density
+  glm::vec3 density_{1.0F};  // with which each channel would have drawn the walk, over their mean
+  float begun_with_ = 1.0F;
+  int channel_;
+  bool done_ = false;
+};
+
+}  // namespace
+
+std::optional<Outcome> walk(const Optics& optics, Sense sense, float mu, Random& random) {
+  const glm::vec3 normal(0.0F, 0.0F, 1.0F);
+  const glm::vec3 travelling(std::sqrt(std::max(0.0F, (1.0F - mu) * (1.0F + mu))), 0.0F, -mu);
+  const bool lambert_entry = optics.surface == Surface::lambert_lambert ||
+                             (optics.surface == Surface::lambert_refracted && sense == Sense::from_light);
+  switch (optics.surface) {
+    case Surface::lambert:
+      return Outcome{normal, cosine_lobe(normal, random), glm::vec3(optics.reflectance)};
+    case Surface::mirror:
+      return mirrored(optics, travelling, random);
+    case Surface::dielectric:
+      if (random.uniform() < physics::fresnel_reflectance(mu, optics.eta))
+        return Outcome{normal, {travelling.x, 0.0F, mu}, glm::vec3(1.0F)};
+      break;
+    default:
+      break;
+  }
+  Inside inside(optics, sense, random);
+  if (lambert_entry) return inside.follow(normal, -cosine_lobe(normal, random));
+  if (optics.eta != 1.0)
+    return inside.follow(normal, transport::refracted(travelling, normal, static_cast<float>(optics.eta)));
+  return inside.follow(normal, travelling);
+}
+
+}  // namespace mesograin::heap

@@ -1,0 +1,129 @@
+// Light between grains against what must hold of it: nothing is won or lost, and two grains are two grains.
+#include "heap/exchange.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+#include <numbers>
+
+namespace mesograin::heap {
+namespace {
+
+Optics medium(double sigma_t, double albedo) {
+  Optics optics;
+  optics.surface = Surface::index_matched;
+  optics.sigma_t = glm::dvec3(sigma_t);
+  optics.albedo = glm::dvec3(albedo);
+  return optics;
+}
+
+Optics lambert(double reflectance) {
+  Optics optics;
+  optics.reflectance = glm::dvec3(reflectance);
+  return optics;
+}
+
+/// Spheres of radius 1 on a cubic lattice, a little apart.
+Heap lattice(int side, const Optics& optics, double spacing = 2.05) {
+  Heap heap;
+  heap.grains.kinds = {optics};
+  for (int x = 0; x < side; ++x)
+    for (int y = 0; y < side; ++y)
+      for (int z = 0; z < side; ++z)
+        heap.grains.grains.push_back({glm::vec3(x, y, z) * static_cast<float>(spacing), 1.0F, 0});
+  return heap;
+}
+
+TEST(Exchange, KeepsAWhiteFurnaceEven) {
+  for (const double sigma_t : {0.01, 1.0, 10.0}) {
+    Heap heap = lattice(6, medium(sigma_t, 1.0));
+    heap.world.radiance = glm::dvec3(2.0);
+    const HeapLight light = solve_exchange(heap, {}, {}, {});
+    const float met = light.kinds[0].from_light->met().r;
+    double sum = 0.0;
+    for (const Coefficients& sent : light.sent) {
+      sum += static_cast<double>(sent.channels[0].w) / static_cast<double>(light.sent.size());
+      EXPECT_NEAR(sent.channels[0].w, 2.0F * met, 0.1F * met) << sigma_t;
+      EXPECT_LT(glm::length(glm::vec3(sent.channels[0])), 0.25F * met) << sigma_t;
+    }
+    EXPECT_NEAR(sum, 2.0 * met, 0.01 * met) << sigma_t;
+  }
+}
+
+TEST(Exchange, DarkensAFurnaceOfGreyGrainsInside) {
+  Heap heap = lattice(7, lambert(0.8));
+  heap.world.radiance = glm::dvec3(1.0);
+  const HeapLight light = solve_exchange(heap, {}, {}, {});
+  const auto at = [&](std::size_t x, std::size_t y, std::size_t z) {
+    return light.sent[(x * 7 + y) * 7 + z].channels[0].w;
+  };
+  EXPECT_LT(at(3, 3, 3), 0.5F * at(0, 0, 0));
+  EXPECT_GT(at(3, 3, 3), 0.0F);
+}
+
+// Two Lambert spheres, far apart: what one gets of the other is the other's light over the squared distance.
+TEST(Exchange, OfTwoGrainsFarApartIsThatOfTwoPoints) {
+  Heap heap;
+  heap.grains.kinds = {lambert(0.5)};
+  heap.grains.grains = {{glm::vec3(0.0F), 1.0F, 0}, {glm::vec3(8.0F, 0.0F, 0.0F), 1.0F, 0}};
+  heap.lights.emplace_back(scene::DirectionalLight{{0.0, 0.0, 1.0}, glm::dvec3(1.0)});
+  Quality quality;
+  quality.rays = 1 << 20;
+  quality.light_rays = 1 << 14;
+  const HeapLight light = solve_exchange(heap, quality, {}, {});
+  // To order 1 a sphere that is lit from above is as bright from the side as if its light were even: the power pi E rho
+  // into 4 pi. (A Lambert sphere's phase function has 2/3 pi there instead of 1/4, 15 % less.)
+  const double radiant_intensity = 0.25 * 0.5;
+  const double irradiance = radiant_intensity / 64.0;
+  const double sent = 0.5 * irradiance / (4.0 * std::numbers::pi);
+  EXPECT_NEAR(light.answer[0].channels[0].w, sent, 0.06 * sent);
+  EXPECT_NEAR(light.answer[0].channels[0].w, light.answer[1].channels[0].w, 0.05 * sent);
+  EXPECT_GT(light.answer[0].channels[0].x, 0.0F);
+  EXPECT_LT(light.answer[1].channels[0].x, 0.0F);
+}
+
+TEST(Exchange, IsTheSameWhateverItBeginsWithAndOnHoweverManyThreads) {
+  Heap heap = lattice(4, medium(3.0, 0.99));
+  heap.lights.emplace_back(scene::DirectionalLight{{0.0, 0.6, 0.8}, glm::dvec3(3.0)});
+  transport::Effort one;
+  one.threads = 1;
+  transport::Effort three;
+  three.threads = 3;
+  const HeapLight light = solve_exchange(heap, {}, {}, one);
+  const HeapLight again = solve_exchange(heap, {}, {}, three);
+  const HeapLight warm = solve_exchange(heap, {}, light.sent, one);
+  EXPECT_LE(warm.steps, 1);
+  for (std::size_t i = 0; i < light.sent.size(); ++i) {
+    EXPECT_EQ(light.sent[i].channels[1], again.sent[i].channels[1]);
+    EXPECT_NEAR(light.sent[i].channels[1].w, warm.sent[i].channels[1].w, 2e-3F * light.sent[i].channels[1].w);
+  }
+}
+
+TEST(Exchange, IsFiniteForTouchingOverlappingNestedAndTinyGrains) {
+  for (const Optics& optics :
+       {lambert(1.0), medium(1e-6, 1.0), medium(200.0, 1.0), medium(1.0, 0.0), medium(0.0, 0.0)}) {
+    Heap heap = lattice(3, optics, 1.5);
+    heap.grains.grains.push_back({glm::vec3(0.0F), 0.5F, 0});
+    heap.grains.grains.push_back({glm::vec3(0.0F), 0.5F, 0});
+    heap.grains.grains.push_back({glm::vec3(5.0F), 1e-20F, 0});
+    heap.lights.emplace_back(scene::PointLight{{0.1, 0.0, 0.0}, glm::dvec3(1.0)});
+    heap.lights.emplace_back(scene::DirectionalLight{{0.0, 0.0, 1.0}, glm::dvec3(1.0)});
+    heap.world.radiance = glm::dvec3(0.3);
+    const HeapLight light = solve_exchange(heap, {}, {}, {});
+    for (const Field* field : {&light.answer, &light.behind, &light.sent})
+      for (const Coefficients& numbers : *field)
+        for (const glm::vec4& channel : numbers.channels)
+          for (int i = 0; i < 4; ++i) ASSERT_TRUE(std::isfinite(channel[i]));
+  }
+}
+
+TEST(Exchange, EndsWhereItIsStopped) {
+  std::atomic<bool> stop{true};
+  transport::Effort effort;
+  effort.stop = &stop;
+  EXPECT_THROW(solve_exchange(lattice(3, lambert(0.5)), {}, {}, effort), transport::Stopped);
+}
+
+}  // namespace
+}  // namespace mesograin::heap

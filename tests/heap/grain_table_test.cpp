@@ -1,0 +1,92 @@
+// What one grain does to light against what is known of it in closed form.
+#include "heap/grain_table.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+
+namespace mesograin::heap {
+namespace {
+
+Optics medium(Surface surface, const glm::dvec3& sigma_t, const glm::dvec3& albedo) {
+  Optics optics;
+  optics.surface = surface;
+  optics.sigma_t = sigma_t;
+  optics.albedo = albedo;
+  optics.eta = surface == Surface::dielectric || surface == Surface::lambert_refracted ? 1.5 : 1.0;
+  return optics;
+}
+
+TEST(GrainTable, LosesNoLightWithoutAbsorption) {
+  for (const Surface surface : {Surface::index_matched, Surface::dielectric, Surface::lambert_lambert})
+    for (const double radius : {1e-6, 1e-2, 1.0, 30.0}) {
+      const GrainTable table(medium(surface, glm::dvec3(radius), glm::dvec3(1.0)), Sense::from_light, {});
+      for (int channel = 0; channel < 3; ++channel)
+        EXPECT_NEAR(table.albedo()[channel], table.met()[channel], 1e-4F * table.met()[channel])
+            << static_cast<int>(surface) << " " << radius;
+    }
+}
+
+TEST(GrainTable, MeetsLightAsGeometricExtinctionHasIt) {
+  for (const double radius : {1e-6, 1e-3, 0.03, 1.0, 10.0, 1e6}) {
+    const GrainTable table(medium(Surface::index_matched, glm::dvec3(radius), glm::dvec3(0.0)), Sense::from_light, {});
+    double sum = 0.0;
+    constexpr int steps = 20000;
+    for (int i = 0; i < steps; ++i) {
+      const double mu = (i + 0.5) / steps;
+      sum -= std::expm1(-2.0 * radius * mu) * 2.0 * mu / steps;
+    }
+    EXPECT_NEAR(table.met().r, sum, 1e-4 * sum) << radius;
+    EXPECT_EQ(table.albedo(), glm::vec3(0.0F));
+  }
+}
+
+TEST(GrainTable, ChannelsDoNotKnowOfEachOther) {
+  const GrainTable mixed(medium(Surface::index_matched, {0.5, 3.0, 8.0}, {0.9, 0.5, 0.99}), Sense::from_light, {});
+  for (int channel = 0; channel < 3; ++channel) {
+    const glm::dvec3 sigma_t{0.5, 3.0, 8.0};
+    const glm::dvec3 albedo{0.9, 0.5, 0.99};
+    const GrainTable grey(medium(Surface::index_matched, glm::dvec3(sigma_t[channel]), glm::dvec3(albedo[channel])),
+                          Sense::from_light, {});
+    EXPECT_NEAR(mixed.albedo()[channel], grey.albedo()[channel], 0.01F * grey.albedo()[channel]) << channel;
+    for (std::size_t node = 2; node < GrainTable::lobe_nodes; ++node)
+      EXPECT_NEAR(mixed.lobe()[node][channel], grey.lobe()[node][channel], 0.12F) << channel << " " << node;
+  }
+}
+
+TEST(GrainTable, OutcomesAreEquallyHeavyAndSumUp) {
+  const GrainTable table(medium(Surface::dielectric, glm::dvec3(3.0), glm::dvec3(0.9)), Sense::from_light, {});
+  glm::vec3 sum(0.0F);
+  for (int entry = 0; entry < GrainTable::entries; ++entry) {
+    const float mu = std::sqrt((static_cast<float>(entry) + 0.5F) / GrainTable::entries);
+    const float first = table.draw(mu, 0.0F).weight.r;
+    for (int i = 0; i < GrainTable::outcomes; ++i) {
+      const Outcome outcome = table.draw(mu, (static_cast<float>(i) + 0.5F) / GrainTable::outcomes);
+      EXPECT_NEAR(outcome.weight.r, first, 1e-5F);
+      EXPECT_NEAR(glm::length(outcome.normal), 1.0F, 1e-4F);
+      EXPECT_GE(glm::dot(outcome.normal, outcome.direction), -1e-4F);
+      sum += outcome.weight;
+    }
+  }
+  sum /= GrainTable::entries * GrainTable::outcomes;
+  EXPECT_NEAR(sum.r, table.albedo().r, 1e-4F);
+}
+
+TEST(GrainTable, IsFiniteAtExtremes) {
+  for (const Surface surface : {Surface::lambert, Surface::mirror, Surface::index_matched, Surface::dielectric,
+                                Surface::lambert_lambert, Surface::lambert_refracted})
+    for (const double radius : {0.0, 1e-30, 1e-6, 3.0})
+      for (const double albedo : {0.0, 1.0}) {
+        const GrainTable table(medium(surface, {radius, 0.0, 2.0 * radius}, {albedo, 0.0, 1.0}), Sense::from_light, {});
+        for (int channel = 0; channel < 3; ++channel) {
+          EXPECT_TRUE(std::isfinite(table.albedo()[channel]));
+          EXPECT_LE(table.albedo()[channel], surface == Surface::lambert_refracted ? 2.3F : 1.0001F);
+          for (const glm::vec3& node : table.lobe()) EXPECT_TRUE(std::isfinite(node[channel]));
+        }
+      }
+}
+
+}  // namespace
+}  // namespace mesograin::heap
