@@ -194,7 +194,7 @@ def test_a_slider_reads_no_placing_and_sends_no_mesh(native):
     view.set_scene(before.to_native())
     view.render(1)
     material.mesograin.reflectance = (0.1, 0.2, 0.3)
-    after = export.with_new_materials(before, Updates([Update(material)]))
+    after = export.with_new_materials(before, Updates([Update(material), Update(bpy.context.scene)]))
     assert after == read_scene() != before
     assert after.heaps[0].placings is before.heaps[0].placings, "not even copied"
     sent = native.sent()
@@ -211,6 +211,14 @@ def test_whatever_may_be_more_than_a_slider_is_read_anew():
     before = read_scene()
     for changed in ([], [grain], [material, grain], [bpy.context.scene], [plain]):
         assert export.with_new_materials(before, Updates(map(Update, changed))) is None
+    both = Updates([Update(material), Update(bpy.context.scene)])
+    bpy.context.scene.mesograin.millimetres_per_unit = 2.0
+    assert export.with_new_materials(before, both) is None
+    bpy.context.scene.mesograin.millimetres_per_unit = 1.0
+    assert export.with_new_materials(before, both) is not None
+    bpy.context.scene.world = bpy.data.worlds.new("Bright")
+    bpy.context.scene.world.color = (1.0, 0.5, 0.2)
+    assert export.with_new_materials(before, both) is None
     material.mesograin_colours.vary = True
     assert export.with_new_materials(before, Updates([Update(material)])) is None
     varied = read_scene()

@@ -19,6 +19,7 @@ LAUNCHES = {  # what is checked, in which environment, on a screen of which size
     "viewport": ("checks_viewport", {}, SMALL, SIMULATED),
     "upheaval": ("checks_upheaval", {}, TALL, SIMULATED),
     "cancel": ("checks_cancel", {}, SMALL, []),
+    "heap": ("checks_heap", {}, SMALL, SIMULATED),
     "compare": ("checks_compare", {}, TALL, SIMULATED),
     "bake": ("checks_bake", {}, TALLER, SIMULATED),
     "no_native_module": ("checks_unavailable", {"MESOGRAIN_NATIVE_DIR": EMPTY_FOLDER}, SMALL, SIMULATED),

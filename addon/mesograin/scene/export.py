@@ -65,6 +65,7 @@ class SceneValues:
     warnings: tuple
     world: surroundings.WorldValues = surroundings.WorldValues()
     heaps: tuple = ()  # heaps.HeapValues, drawn beside the instances
+    millimetres_per_unit: float = 1.0
 
     @property
     def materials(self):
@@ -217,15 +218,20 @@ def with_new_materials(values, depsgraph):
     """`values`, read before, with the materials that have changed since, or None if anything else may have: then all is
     to be read again. A slider of a material does not read a hundred thousand placings."""
     changed = {}
+    scene = depsgraph.scene
     for update in depsgraph.updates:
         material = update.id
+        if isinstance(material, bpy.types.Scene):
+            continue  # which Blender tags for mouse and keys; what counts of it is looked at below
         if not isinstance(material, bpy.types.Material) or plain_materials.is_plain(material):
             return None
         told = f"Material '{material.name}'"
         if material.mesograin_colours.vary or any(told in warning for warning in values.warnings):
             return None
-        changed[material.name_full] = material_values(material, depsgraph.scene.mesograin.millimetres_per_unit)
-    if not changed or any(heap.factors and heap.material.name in changed for heap in values.heaps):
+        changed[material.name_full] = material_values(material, scene.mesograin.millimetres_per_unit)
+    as_before = (values.millimetres_per_unit == scene.mesograin.millimetres_per_unit
+                 and values.world == surroundings.read(scene)[0])
+    if not changed or not as_before or any(heap.factors and heap.material.name in changed for heap in values.heaps):
         return None
     return values.with_materials(lambda material: changed.get(material.name, material))
 
@@ -356,7 +362,7 @@ class _Reader:
         if camera is not None and camera.type == "CAMERA" and camera.data.type == "PANO":
             self._warn(f"Camera '{camera.name}' is panoramic, which Mesograin draws as perspective.")
         return SceneValues(tuple(self._instances), tuple(self._lights), tuple(self._warnings), around,
-                           gathered)
+                           gathered, self._millimetres_per_unit)
 
     def _read_drawable(self, evaluated_object, matrix_world):
         parts = self._cache.parts(evaluated_object)
