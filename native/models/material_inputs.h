@@ -17,7 +17,7 @@ namespace mesograin::models {
 using physics::Table;
 using UniformValue = std::variant<int, float, glm::vec2, glm::vec3, glm::vec4>;
 
-/// Texels with 1 or 4 channels in half precision, x fastest, then y; sampled linearly, clamped.
+/// Texels with 1 to 4 channels in half precision, x fastest, then y; sampled linearly, clamped.
 struct Volume {
   int width = 0;
   int height = 0;

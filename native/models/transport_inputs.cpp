@@ -18,6 +18,9 @@ using transport::StoredTransport;
 
 constexpr int terms_a_texel = 4;
 
+// Mean free paths across a grain that nothing to be seen crosses unscattered.
+constexpr double most_clear = 6.0;
+
 // The medium that is similar to the material's and scatters isotropically (van de Hulst 1980, section 14.1.3).
 transport::StoredMedium stored_medium(const scene::Material& material) {
   const glm::dvec3 sigma_s = material.scale * (1.0 - material.g) * material.sigma_s;
@@ -33,18 +36,15 @@ transport::StoredMedium stored_medium(const scene::Material& material) {
 Volume sources_volume(const StoredTransport& stored) {
   const bool grey = stored.channels == 1;
   const int blocks = grey ? stored.terms / terms_a_texel : stored.terms;
-  Volume volume{stored.size.x, stored.size.y, stored.size.z * blocks, 4, {}};
-  volume.texels.reserve(stored.nodes() * static_cast<std::size_t>(blocks) * 4);
+  const int components = grey ? terms_a_texel : 3;
+  Volume volume{stored.size.x, stored.size.y, stored.size.z * blocks, components, {}};
+  volume.texels.reserve(stored.nodes() * static_cast<std::size_t>(blocks * components));
   for (int block = 0; block < blocks; ++block)
     for (std::size_t node = 0; node < stored.nodes(); ++node)
-      for (int component = 0; component < 4; ++component) {
+      for (int component = 0; component < components; ++component) {
         const auto term = static_cast<std::size_t>(grey ? block * terms_a_texel + component : block);
         const std::size_t index = term * stored.nodes() + node;
-        if (grey)
-          volume.texels.push_back(stored.sources[index]);
-        else
-          volume.texels.push_back(component < 3 ? stored.sources[3 * index + static_cast<std::size_t>(component)]
-                                                : 0.0F);
+        volume.texels.push_back(stored.sources[grey ? index : 3 * index + static_cast<std::size_t>(component)]);
       }
   return volume;
 }
@@ -120,6 +120,9 @@ transport::Order transport_order(const scene::Material& material, scene::MeshPoi
 
 MaterialInputs prototype_inputs(const scene::Material& material, const StoredTransport& stored) {
   MaterialInputs inputs = material_inputs(material);
+  const glm::dvec3 sigma_t = stored.unit * stored_medium(material).sigma_t;
+  if (stored.mean_chord * std::min({sigma_t.r, sigma_t.g, sigma_t.b}) < most_clear)
+    inputs.defines.emplace_back("CLEAR");
   inputs.uniforms["stored.x_axis"] = stored.axes[0];
   inputs.uniforms["stored.y_axis"] = stored.axes[1];
   inputs.uniforms["stored.z_axis"] = stored.axes[2];
@@ -127,7 +130,7 @@ MaterialInputs prototype_inputs(const scene::Material& material, const StoredTra
   inputs.uniforms["stored.nodes_a_unit"] = 1.0F / stored.spacing;
   inputs.uniforms["stored.last_node"] = glm::vec3(stored.size - 1);
   inputs.uniforms["stored.units"] = static_cast<float>(1.0 / stored.unit);
-  inputs.uniforms["stored.sigma_t"] = glm::vec3(stored.unit * stored_medium(material).sigma_t);
+  inputs.uniforms["stored.sigma_t"] = glm::vec3(sigma_t);
   inputs.tables["lobes"] = lobes_table(stored);
   inputs.volumes["sources"] = sources_volume(stored);
   inputs.volumes["distances"] = {stored.size.x, stored.size.y, stored.size.z, 1, stored.distances};

@@ -11,9 +11,6 @@
 namespace mesograin::render {
 namespace {
 
-// What depends on the mesh's own transport is told how each instance is turned, which an array does not.
-bool fits_array(const scene::Material& material) { return !scene::traits_of(material.model).mesh; }
-
 // Instances of one mesh and material that are as many as an array deserves are drawn as one; the others are added to
 // `alone`, whose own are left out.
 std::vector<scene::InstanceArray> gathered(const scene::Scene& scene, std::vector<std::size_t>& alone) {
@@ -23,10 +20,6 @@ std::vector<scene::InstanceArray> gathered(const scene::Scene& scene, std::vecto
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     if (taken[i]) continue;
     const scene::Instance& instance = scene.instances[i];
-    if (!fits_array(instance.material)) {
-      alone.push_back(i);
-      continue;
-    }
     std::vector<std::vector<std::size_t>>& of_mesh = alike[instance.mesh.get()];
     const auto same = std::find_if(of_mesh.begin(), of_mesh.end(), [&](const std::vector<std::size_t>& members) {
       return scene.instances[members.front()].material == instance.material;
@@ -75,9 +68,8 @@ Content::Content(DeviceCache& cache, const scene::Scene& scene, Content before,
     : anchor_(amid(scene)) {
   std::vector<std::size_t> alone = alone_too;
   std::vector<scene::InstanceArray> arrays = gathered(scene, alone);
-  const std::vector<scene::InstanceArray> of_colours = scene::by_colour(scene.arrays);
-  for (const scene::InstanceArray& array : of_colours)
-    if (!array.object_to_world().empty() && fits_array(array.material)) arrays.push_back(array);
+  for (const scene::InstanceArray& array : scene::by_colour(scene.arrays))
+    if (!array.object_to_world().empty()) arrays.push_back(array);
   if (!arrays.empty()) {
     instances_.emplace(cache, arrays, anchor_);
     if (before.instances_) {
@@ -88,13 +80,6 @@ Content::Content(DeviceCache& cache, const scene::Scene& scene, Content before,
   for (const std::size_t index : alone) {
     draws_.emplace_back(cache, scene.instances[index], index);
     draws_.back().take_light_maps(before.draws_);
-  }
-  for (const scene::InstanceArray& array : of_colours) {
-    if (fits_array(array.material)) continue;
-    for (const glm::dmat4& object_to_world : array.object_to_world()) {
-      draws_.emplace_back(cache, scene::Instance{array.mesh, array.material, object_to_world}, Draw::of_an_array);
-      draws_.back().take_light_maps(before.draws_);
-    }
   }
   // Neighbours that share a material need it bound once.
   std::stable_sort(draws_.begin(), draws_.end(),
@@ -122,22 +107,28 @@ void Content::find_shadows() {
 void Content::take_news() {
   for (Draw& draw : draws_)
     if (!draw.material->light_maps()) draw.light_maps.reset();
+  if (instances_) instances_->drop_light_maps();
   find_shadows();
 }
 
 int Content::version() const {
   int sum = 0;
   for (const Draw& draw : draws_) sum += draw.material->version();
+  if (instances_)
+    for (const InstanceGroup& group : instances_->groups()) sum += group.material->version();
   return sum;
 }
 
 std::vector<std::shared_ptr<const transport::Computation>> Content::computations(const DeviceCache& cache) const {
   std::vector<std::shared_ptr<const transport::Computation>> found;
-  for (const Draw& draw : draws_) {
-    std::shared_ptr<const transport::Computation> computation = cache.computation(*draw.material);
+  const auto add = [&](const DeviceMaterial& material) {
+    std::shared_ptr<const transport::Computation> computation = cache.computation(material);
     if (computation && std::find(found.begin(), found.end(), computation) == found.end())
       found.push_back(std::move(computation));
-  }
+  };
+  for (const Draw& draw : draws_) add(*draw.material);
+  if (instances_)
+    for (const InstanceGroup& group : instances_->groups()) add(*group.material);
   return found;
 }
 

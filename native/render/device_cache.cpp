@@ -45,8 +45,10 @@ DeviceMaterial::DeviceMaterial(scene::Model model, models::MaterialInputs inputs
     tables_.emplace(name, std::move(texture));
   }
   for (const auto& [name, volume] : inputs.volumes) {
-    gl::Volume texture(volume.channels == 1 ? GL_R16F : GL_RGBA16F, volume.width, volume.height, volume.depth);
-    texture.upload(volume.channels == 1 ? GL_RED : GL_RGBA, volume.texels.data());
+    constexpr GLenum formats[] = {GL_R16F, GL_RG16F, GL_RGB16F, GL_RGBA16F};
+    constexpr GLenum components[] = {GL_RED, GL_RG, GL_RGB, GL_RGBA};
+    gl::Volume texture(formats[volume.channels - 1], volume.width, volume.height, volume.depth);
+    texture.upload(components[volume.channels - 1], volume.texels.data());
     volumes_.emplace(name, std::move(texture));
   }
 }
@@ -114,12 +116,18 @@ std::shared_ptr<DeviceMaterial> DeviceCache::material(const scene::Material& mat
   for (const PrototypeEntry& entry : prototypes_)
     if (entry.source == material && entry.mesh.lock() == mesh && is_same(entry.stretch, stretch)) return entry.device;
   models::material_inputs(material);  // throws for what the model cannot answer
-  const double radius = mesh->equivalent_radius() * std::cbrt(std::abs(glm::determinant(stretch)));
-  models::StandIn stand_in = models::stand_in(material, typical(std::max(radius, 1e-30)));
-  prototypes_.push_back({material, mesh, stretch,
-                         transport::Works::instance().ask(models::transport_order(material, mesh, stretch)), 0,
-                         send(stand_in.model, std::move(stand_in.inputs))});
-  take_news(prototypes_.back());
+  PrototypeEntry entry{material, mesh, stretch,
+                       transport::Works::instance().ask(models::transport_order(material, mesh, stretch))};
+  const transport::News news = entry.computation->news();
+  if (news.stored) {
+    entry.news = news.number;
+    entry.device = send(material.model, models::prototype_inputs(material, *news.stored));
+  } else {
+    const double radius = mesh->equivalent_radius() * std::cbrt(std::abs(glm::determinant(stretch)));
+    models::StandIn stand_in = models::stand_in(material, typical(std::max(radius, 1e-30)));
+    entry.device = send(stand_in.model, std::move(stand_in.inputs));
+  }
+  prototypes_.push_back(std::move(entry));
   return prototypes_.back().device;
 }
 
@@ -197,6 +205,8 @@ const gl::Program& DeviceCache::shading(const DeviceMaterial& material, const Sh
   if (shading.shadows != Shadows::none) defines.emplace_back("SHADOWS");
   if (shading.shadows == Shadows::cast) defines.emplace_back("CAST_SHADOWS");
   if (shading.exchange) defines.emplace_back("EXCHANGE");
+  if (shading.world && std::find(defines.begin(), defines.end(), "CLEAR") != defines.end())
+    defines.emplace_back("WORLD");
   if (shading.lights_at_place) defines.emplace_back("LIGHTS_AT_PLACE");
   return program(fmt::format("{} {} {}", pass, model, fmt::join(defines, " ")), gl::ShaderSource({vertex}, {}),
                  gl::ShaderSource({"passes/" + pass + ".frag", "models/" + model + ".glsl"}, defines));

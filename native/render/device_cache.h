@@ -34,6 +34,7 @@ struct Shading {
   bool instanced = false;  ///< one of an array of instances
   Shadows shadows = Shadows::none;
   bool exchange = false;         ///< light goes from grain to grain
+  bool world = false;            ///< there is a world to be seen through it
   bool lights_at_place = false;  ///< the place that is shaded draws its own directions of lights that have a place
 };
 
@@ -145,7 +146,7 @@ class DeviceCache {
     glm::dmat3 stretch;
     std::shared_ptr<const transport::Computation> computation;
     int news = 0;  // taken in
-    std::shared_ptr<DeviceMaterial> device;
+    std::shared_ptr<DeviceMaterial> device = nullptr;
   };
 
   void take_news(PrototypeEntry& entry);

@@ -389,10 +389,7 @@ void Frame::draw_background(const glm::vec2& jitter) {
   background_program_.set("clip_to_world", glm::mat4(glm::inverse(world_to_clip)));
   background_program_.set("jitter", jitter);
   background_program_.set("size", glm::vec2(width_, height_));
-  background_program_.set("world_radiance", glm::vec3(lighting_.world().radiance));
-  background_program_.set("has_image", static_cast<int>(lighting_.world_image() != nullptr));
-  background_program_.set("world_to_image", glm::mat3(lighting_.world().world_to_image));
-  if (lighting_.world_image() != nullptr) background_program_.set("world_image", *lighting_.world_image());
+  set_world(background_program_);
   full_screen_.draw();
 }
 
@@ -451,7 +448,8 @@ void Frame::shade_unwrapped(const glm::vec2& jitter) {
 
 Shading Frame::shading(const DeviceMaterial& material, bool unwrapped, bool instanced) const {
   const Shadows shadows = !content_->shadows() ? Shadows::none : shadows_by_pixel_ ? Shadows::cast : Shadows::maps;
-  return {unwrapped, instanced, shadows, exchange_.any(), lights_at_place(material, instanced)};
+  return {
+      unwrapped, instanced, shadows, exchange_.any(), lighting_.world().shines(), lights_at_place(material, instanced)};
 }
 
 bool Frame::lights_at_place(const DeviceMaterial& material, bool instanced) const {
@@ -477,7 +475,15 @@ void Frame::set_lights(const gl::Program& program, const std::vector<LightDirect
   program.set("distant_light_count", static_cast<int>(sampled_lights_.distant.size()));
 }
 
+void Frame::set_world(const gl::Program& program) const {
+  program.set("world_radiance", glm::vec3(lighting_.world().radiance));
+  program.set("has_image", static_cast<int>(lighting_.world_image() != nullptr));
+  program.set("world_to_image", glm::mat3(lighting_.world().world_to_image));
+  if (lighting_.world_image() != nullptr) program.set("world_image", *lighting_.world_image());
+}
+
 void Frame::set_common(const gl::Program& program) const {
+  if (lighting_.world().shines()) set_world(program);
   program.set("sample_index", samples_);
   program.set("taps", taps_);
   if (shadows_drawn_ && shadows_by_pixel_) cast_shadows_.bind(program);
@@ -517,6 +523,7 @@ void Frame::set_group(const gl::Program& program, const InstanceGroup& group) {
   instances.bind();
   if (group.material->light_maps()) prototype.light_maps->bind(program);
   program.set("typical_scale", static_cast<float>(group.typical_scale));
+  program.set("unstretch", group.unstretch);
   program.set("grain_reach", static_cast<float>(prototype.mesh->reach() * group.typical_scale));
   program.set("shades_itself", static_cast<int>(instances.shades_itself(group)));
   set_viewer(program, content_->anchor());

@@ -147,6 +147,8 @@ class Frame {
   /// Shades the instances that are baked, where their UVs lie.
   void shade_unwrapped(const glm::vec2& jitter);
 
+  void set_world(const gl::Program& program) const;
+
   /// Makes everything ready but for the geometry.
   void set_common(const gl::Program& program) const;
   void set_viewer(const gl::Program& program, const glm::dvec3& origin) const;

@@ -7,26 +7,12 @@
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 #include <iterator>
-#include <map>
 #include <utility>
+
+#include "render/instance_classes.h"
 
 namespace mesograin::render {
 namespace {
-
-// Sizes to an octave that have tables of their own; an instance takes one of the two nearest, so that on average all is
-// as for its own size.
-constexpr double sizes_an_octave = 8.0;
-
-// In [0, 1), of an instance's number alone (the golden ratio's additive recurrence).
-double random_of(std::size_t number) {
-  constexpr double golden = 0.61803398874989484820;
-  const double product = golden * static_cast<double>(number + 1);
-  return product - std::floor(product);
-}
-
-double scale_of(const glm::dmat4& object_to_world) {
-  return std::cbrt(std::abs(glm::determinant(glm::dmat3(object_to_world))));
-}
 
 // As in make_draw: a bound of how much a length grows.
 double largest_stretch(const glm::dmat3& linear) {
@@ -59,21 +45,16 @@ void Instances::add(DeviceCache& cache, const scene::InstanceArray& array, const
   const scene::Mesh& mesh = *array.mesh;
   const glm::dvec3 middle = 0.5 * (glm::dvec3(mesh.lower()) + glm::dvec3(mesh.upper()));
 
-  // One group where size plays no part.
-  std::map<int, std::vector<std::size_t>> by_size;
-  const bool sized = scene::traits_of(array.material.model).grain_radius;
-  for (std::size_t i = 0; i < array.object_to_world().size(); ++i) {
-    const double size =
-        sized ? sizes_an_octave * std::log2(std::max(scale_of(array.object_to_world()[i]), 1e-300)) + random_of(i)
-              : 0.0;
-    by_size[static_cast<int>(std::floor(size))].push_back(i);
-  }
-  for (const auto& [size, members] : by_size) {
+  for (const InstanceClass& alike : instance_classes(array)) {
     InstanceGroup group;
     group.prototype = of;
-    group.typical_scale = std::exp2(size / sizes_an_octave);
-    const double radius = std::max(mesh.equivalent_radius() * group.typical_scale, 1e-30);
-    group.material = cache.material(array.material, radius);
+    group.typical_scale = alike.typical_scale;
+    if (scene::traits_of(array.material.model).mesh) {
+      group.unstretch = glm::mat3(glm::inverse(alike.stretch));
+      group.material = cache.material(array.material, array.mesh, alike.stretch);
+    } else {
+      group.material = cache.material(array.material, std::max(mesh.equivalent_radius() * group.typical_scale, 1e-30));
+    }
     group.source = array.material;
     if (group.material->light_maps() && !prototypes_[of].light_maps)
       prototypes_[of].light_maps = std::make_unique<LightMapAtlas>(array.mesh);
@@ -82,9 +63,9 @@ void Instances::add(DeviceCache& cache, const scene::InstanceArray& array, const
     group.mean_free_paths_across =
         2.0 * mesh.reach() * group.typical_scale * std::max({reduced.r, reduced.g, reduced.b});
     group.first = static_cast<std::uint32_t>(balls_.size());
-    group.count = static_cast<std::uint32_t>(members.size());
+    group.count = static_cast<std::uint32_t>(alike.members.size());
     groups_.push_back(std::move(group));
-    for (const std::size_t member : members) {
+    for (const std::size_t member : alike.members) {
       const glm::dmat4& object_to_world = array.object_to_world()[member];
       const glm::dmat3 linear(object_to_world);
       const glm::dvec3 place = glm::dvec3(object_to_world * glm::dvec4(middle, 1.0)) - anchor;
@@ -114,6 +95,13 @@ void Instances::take_places(Instances& before) {
 void Instances::bind() const {
   if (!device_) device_.emplace(rows_);
   device_->bind_storage(2);
+}
+
+void Instances::drop_light_maps() {
+  for (std::size_t i = 0; i < prototypes_.size(); ++i)
+    if (std::none_of(groups_.begin(), groups_.end(),
+                     [i](const InstanceGroup& group) { return group.prototype == i && group.material->light_maps(); }))
+      prototypes_[i].light_maps.reset();
 }
 
 void Instances::take_light_maps(Instances& before) {

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
@@ -40,6 +41,7 @@ struct InstanceGroup {
   scene::Material source;         // of the material
   double typical_scale;           // of the instances that the material's tables were made for
   double mean_free_paths_across;  // reduced, in the densest channel
+  glm::mat3 unstretch{1.0F};      // of a material that depends on the mesh: what makes an instance's transform a turn
   std::uint32_t first;            // instance; they lie one after the other
   std::uint32_t count;
 };
@@ -65,6 +67,9 @@ class Instances {
   /// Takes over what was made for the same instances in the same order, whatever their materials are: a material's
   /// change costs no tree and sends nothing.
   void take_places(Instances& before);
+
+  /// Frees those that no material reads any more.
+  void drop_light_maps();
 
   /// Takes over the light maps of prototypes that were there before.
   void take_light_maps(Instances& before);

@@ -30,7 +30,7 @@ void Lighting::set(const scene::Scene& scene) {
   world_light_.reset();
   world_image_.reset();
   if (world_.shines()) world_light_.emplace(world_);
-  if (!world_.seen || !world_.image) return;
+  if (!world_.image) return;
   world_image_.emplace(GL_RGB32F, world_.image->width(), world_.image->height());
   world_image_->upload(GL_RGB, GL_FLOAT, world_.image->texels().data());
   world_image_->sample_linearly(true);

@@ -36,7 +36,7 @@ class Lighting {
 
   const scene::World& world() const { return world_; }
 
-  /// Null unless the world is an image that is seen.
+  /// Null unless the world is an image.
   const gl::Texture* world_image() const { return world_image_ ? &*world_image_ : nullptr; }
 
   /// Whether any light has a place.
@@ -59,7 +59,7 @@ class Lighting {
   std::vector<scene::Light> local_;
   scene::World world_;
   std::optional<lights::WorldLight> world_light_;  // if it shines
-  std::optional<gl::Texture> world_image_;         // if it is seen
+  std::optional<gl::Texture> world_image_;
 };
 
 }  // namespace mesograin::render

@@ -14,7 +14,8 @@
 namespace mesograin::transport {
 namespace {
 
-constexpr int most_reflections = 64;
+// What is reflected more often is trapped, and scattered somewhere on the way that is known by then.
+constexpr int most_reflections = 12;
 // Beyond so many mean free paths nothing counts.
 constexpr float deepest = 10.0F;
 constexpr int samples_a_way = 2;

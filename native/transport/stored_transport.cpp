@@ -65,9 +65,26 @@ double node_spacing(const Body& body, const Quality& quality) {
 StoredTransport compute_transport(const Body& body, const StoredMedium& medium, const Quality& quality,
                                   const Effort& effort) {
   const Grid grid(body, quality.nodes, part_of(effort, 0.0, 0.1));
+  StoredTransport stored{.size = grid.size(),
+                         .lower = grid.lower(),
+                         .spacing = grid.spacing(),
+                         .unit = body.unit(),
+                         .axes = glm::mat3(glm::transpose(body.axes())),
+                         .mean_chord = 4.0 * body.volume() / body.area(),  // Cauchy
+                         .terms = medium.grey() ? grey_terms : coloured_terms,
+                         .channels = medium.grey() ? 1 : 3,
+                         .distances = grid.distances(),
+                         .sources = {},
+                         .lobes = {}};
+  const int kept = stored.terms;
+  const int channels = stored.channels;
+  stored.sources.resize(static_cast<std::size_t>(kept * channels) * stored.nodes(), 0.0F);
+  if (medium.albedo == glm::dvec3(0.0)) {  // clear: nothing is scattered
+    stored.lobes.resize(static_cast<std::size_t>(kept) * octahedron_texels, 0.0F);
+    return stored;
+  }
   std::vector<double> extinctions;
   std::array<std::size_t, 3> extinction_of{};
-  const int channels = medium.grey() ? 1 : 3;
   for (int channel = 0; channel < channels; ++channel) {
     const auto found = std::find(extinctions.begin(), extinctions.end(), medium.sigma_t[channel]);
     extinction_of[static_cast<std::size_t>(channel)] = static_cast<std::size_t>(found - extinctions.begin());
@@ -108,20 +125,8 @@ StoredTransport compute_transport(const Body& body, const StoredMedium& medium, 
       weights[channel * nodes + node] = 0.05F + std::exp(-0.5F * depth);
     }
   }
-  const int kept = medium.grey() ? grey_terms : coloured_terms;
   terms = fewer_terms(terms, weights, kept);
 
-  StoredTransport stored{.size = grid.size(),
-                         .lower = grid.lower(),
-                         .spacing = grid.spacing(),
-                         .unit = body.unit(),
-                         .axes = glm::mat3(glm::transpose(body.axes())),
-                         .terms = kept,
-                         .channels = channels,
-                         .distances = grid.distances(),
-                         .sources = {},
-                         .lobes = {}};
-  stored.sources.resize(static_cast<std::size_t>(kept * channels) * stored.nodes(), 0.0F);
   for (int term = 0; term < kept; ++term)
     for (std::size_t node = 0; node < stored.nodes(); ++node) {
       const int used = grid.used()[node];

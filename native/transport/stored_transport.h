@@ -36,6 +36,7 @@ struct StoredTransport {
   glm::vec3 spacing{1.0F};       ///< between nodes
   double unit = 1.0;             ///< scene units a unit of the body
   glm::mat3 axes{1.0F};          ///< the body's axes in the stretched mesh's
+  double mean_chord = 1.0;       ///< through the body, in its units
   int terms = 0;                 ///< products that are summed
   int channels = 3;              ///< 1 for a grey medium
   std::vector<float> distances;  ///< from the surface at every node, negative inside; x runs fastest

@@ -12,7 +12,7 @@
 namespace mesograin::transport {
 namespace {
 
-constexpr std::string_view title = "mesograin transport 1\n";
+constexpr std::string_view title = "mesograin transport 2\n";
 constexpr std::size_t name_length = 32;
 
 template <typename Value>
@@ -76,6 +76,7 @@ std::string to_bytes(const StoredTransport& stored, std::string_view about) {
   put(bytes, stored.spacing);
   put(bytes, stored.unit);
   put(bytes, stored.axes);
+  put(bytes, stored.mean_chord);
   put(bytes, stored.terms);
   put(bytes, stored.channels);
   put_floats(bytes, stored.distances);
@@ -98,6 +99,7 @@ std::optional<StoredTransport> from_bytes(std::string_view bytes, std::string_vi
   reader.take(&stored.spacing, 1);
   reader.take(&stored.unit, 1);
   reader.take(&stored.axes, 1);
+  reader.take(&stored.mean_chord, 1);
   reader.take(&stored.terms, 1);
   reader.take(&stored.channels, 1);
   if (reader.failed()) return std::nullopt;

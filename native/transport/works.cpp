@@ -17,7 +17,13 @@ namespace {
 
 // About a third of a second, a few per cent from the final answer.
 constexpr Quality coarse{.nodes = 1500, .light_across = 20, .way_across = 8};
-constexpr Quality fine{};
+
+// Half a megabyte of the device's memory for each prototype.
+Quality fine(const StoredMedium& medium) {
+  Quality quality;
+  if (!medium.grey()) quality.nodes = 9000;
+  return quality;
+}
 
 // Drawing goes first where there are few cores.
 constexpr int background_niceness = 5;
@@ -33,12 +39,13 @@ std::string describe(const Order& order) {
   for (int column = 0; column < 3; ++column)
     for (int row = 0; row < 3; ++row) stretch += fmt::format(" {:.9g}", order.stretch[column][row]);
   const StoredMedium& medium = order.medium;
+  const Quality quality = fine(medium);
   return fmt::format(
       "computed by: {}\nmesh: {} vertices, {} triangles, {}\nstretch:{}\nsigma_t: {} {} {}\nalbedo: {} {} {}\n"
       "eta: {}\nnodes: {}\nrays: {} {}\n",
       text_digest, order.mesh->positions().size(), order.mesh->triangles().size(), shape.name(), stretch,
       medium.sigma_t.r, medium.sigma_t.g, medium.sigma_t.b, medium.albedo.r, medium.albedo.g, medium.albedo.b,
-      medium.eta, fine.nodes, fine.light_across, fine.way_across);
+      medium.eta, quality.nodes, quality.light_across, quality.way_across);
 }
 
 }  // namespace
@@ -126,14 +133,15 @@ void Works::work(const Job& job, const std::stop_token& stop) const {
     const Body body(*job.order.mesh, job.order.stretch);
     StoredMedium medium = job.order.medium;
     medium.sigma_t *= body.unit();
+    const Quality quality = fine(medium);
     const double densest = std::max({medium.sigma_t.r, medium.sigma_t.g, medium.sigma_t.b});
-    if (densest * node_spacing(body, fine) > widest_spacing)
+    if (densest * node_spacing(body, quality) > widest_spacing)
       throw Error(
           "Light's transport is stored for grains up to about {:.0f} mean free paths across; this one has {:.0f}.",
-          2.0 * widest_spacing / node_spacing(body, fine), 2.0 * densest);
+          2.0 * widest_spacing / node_spacing(body, quality), 2.0 * densest);
     if (densest * node_spacing(body, coarse) <= widest_spacing)
       tell(std::make_shared<StoredTransport>(compute_transport(body, medium, coarse, effort)), {}, false);
-    const auto stored = std::make_shared<StoredTransport>(compute_transport(body, medium, fine, effort));
+    const auto stored = std::make_shared<StoredTransport>(compute_transport(body, medium, quality, effort));
     cache_.keep(job.name, job.about, *stored);
     tell(stored, {}, true);
   } catch (const Stopped&) {

@@ -30,3 +30,6 @@ Outwards look_outwards(SurfacePoint point);
 
 // Radiance that leaves the point towards the viewer because of this light; the cosine on the light's side is inside.
 vec3 evaluate_model(SurfacePoint point, Outwards outwards, LightSample light);
+
+// Radiance of the world that comes through the grain unscattered; of models that define CLEAR.
+vec3 crossing_light(SurfacePoint point, Outwards outwards);

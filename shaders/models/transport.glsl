@@ -3,12 +3,16 @@
 // Not physical: a rough surface is smooth from inside; light that has left does not come back; scattering is isotropic, by similarity.
 //
 // What is chosen at compile time (models::transport_inputs), besides what dielectric.glsl names:
+//   CLEAR                so much crosses the grain unscattered that it is seen
 //   GREY                 red, green and blue are the same medium: a texel of `sources` holds four terms, else one in three colours
 #include "models/dielectric.glsl"
 #include "models/interface.glsl"
 #include "physics/prelude.glsl"
 #include "physics/elementary.glsl"
 #include "physics/fresnel.glsl"
+#if defined(CLEAR) && defined(WORLD)
+#include "scene/world.glsl"
+#endif
 
 struct Stored {
   vec3 x_axis;  // of the body, in the prototype's
@@ -22,7 +26,9 @@ struct Stored {
   float eta;
 };
 uniform Stored stored;
+#ifndef INSTANCED
 uniform mat3 grain_to_prototype;  // a turn
+#endif
 
 #ifdef GREY
 #define Spectrum float
@@ -88,14 +94,25 @@ Spectrum source_at(vec3 place) {
   return max(sum, Spectrum(0.0));
 }
 
+// How far it is to the side of the body's box that a line inside it leaves through.
+float way_to_box(vec3 place, vec3 direction) {
+  vec3 upper = stored.lower + stored.last_node / stored.nodes_a_unit;
+  vec3 steep =
+      vec3(abs(direction.x) > 1e-6 ? direction.x : 1e-6, abs(direction.y) > 1e-6 ? direction.y : 1e-6, abs(direction.z) > 1e-6 ? direction.z : 1e-6);
+  vec3 ways = max((stored.lower - place) / steep, (upper - place) / steep);
+  return max(min(ways.x, min(ways.y, ways.z)), 0.0);
+}
+
 // How far it is through the grain, by steps as long as the surface is away.
 float way_through(vec3 place, vec3 direction) {
+  float furthest = way_to_box(place, direction);  // beyond it the grid tells nothing
   vec3 spacing = 1.0 / stored.nodes_a_unit;
   float shortest = 0.3 * min(spacing.x, min(spacing.y, spacing.z));
   float way = shortest;
   float before = 0.0;
   float below = 0.0;
   for (int i = 0; i < 48; ++i) {
+    if (way >= furthest) return furthest;
     float above = distance_at(place + way * direction);
     // The first step may not have got below the surface yet, where the grid rounds an edge off.
     if (above >= 0.0 && i > 0) return mix(before, way, below / max(below + above, 1e-6));
@@ -131,43 +148,93 @@ Marched march(vec3 place, vec3 direction, float way, int taps) {
   return marched;
 }
 
-Spectrum radiance_inside(vec3 place, vec3 direction) {
-  float way = way_through(place, direction);
-  Marched first = march(place, direction, way, 6);
-#ifdef REFRACTION
-  vec3 end = place + way * direction;
-  vec3 normal = outwards_at(end);
-  float cosine = dot(normal, direction);
-  if (cosine <= 0.0) return first.radiance;
-  Spectrum reflected = first.passed * fresnel_reflectance(min(cosine, 1.0), 1.0 / stored.eta);
+float largest(Spectrum value) {
 #ifdef GREY
-  float most = reflected;
+  return value;
 #else
-  float most = max(reflected.r, max(reflected.g, reflected.b));
+  return max(value.r, max(value.g, value.b));
 #endif
-  if (most > 0.004) {
-    direction = direction - 2.0 * cosine * normal;
-    way = way_through(end, direction);
-    Marched second = march(end, direction, way, 3);
-    vec3 other_end = end + way * direction;
-    float other_cosine = clamp(dot(outwards_at(other_end), direction), 0.0, 1.0);
+}
+
+// What leaves the grain is followed until so little of it is left.
+const float LEAST_PASSED = 0.004;
+const int MOST_WAYS = 4;
+
+Spectrum radiance_inside(vec3 place, vec3 direction) {
+  Spectrum sum = Spectrum(0.0);
+  Spectrum left = Spectrum(1.0);
+  for (int i = 0; i < MOST_WAYS; ++i) {
+    float way = way_through(place, direction);
+    Marched marched = march(place, direction, way, i == 0 ? 6 : 3);
+    sum += left * marched.radiance;
+#ifdef REFRACTION
+    place += way * direction;
+    vec3 normal = outwards_at(place);
+    float cosine = dot(normal, direction);
+    float again = cosine > 0.0 ? fresnel_reflectance(min(cosine, 1.0), 1.0 / stored.eta) : 0.0;
+    left *= marched.passed * again;
+    if (largest(left) < LEAST_PASSED) break;
     // From there on as if every way were like this one and the source as it is there.
-    float again = fresnel_reflectance(other_cosine, 1.0 / stored.eta);
-    Spectrum rest = source_at(other_end) * (1.0 - second.passed) / max(1.0 - again * second.passed, Spectrum(1e-4));
-    first.radiance += reflected * (second.radiance + second.passed * again * rest);
-  }
+    if (i + 1 == MOST_WAYS) sum += left * source_at(place) * (1.0 - marched.passed) / max(1.0 - again * marched.passed, Spectrum(1e-4));
+    direction = direction - 2.0 * cosine * normal;
+#else
+    break;
 #endif
-  return first.radiance;
+  }
+  return sum;
+}
+
+mat3 grain_to_body() {
+#ifdef INSTANCED
+  mat3 grain_to_prototype = transpose(grain_axes);
+#endif
+  return transpose(mat3(stored.x_axis, stored.y_axis, stored.z_axis)) * grain_to_prototype;
 }
 
 vec3 evaluate_model(SurfacePoint point, Outwards outwards, LightSample light) {
-  mat3 to_body = transpose(mat3(stored.x_axis, stored.y_axis, stored.z_axis)) * grain_to_prototype;
+  mat3 to_body = grain_to_body();
   look_up_lobes(to_body * light.to_light);
   vec3 inwards = (outwards.mu * point.normal - point.to_viewer) / stored.eta - outwards.mu_refracted * point.normal;
-  Spectrum inside = radiance_inside(to_body * point.position * stored.units, normalize(to_body * inwards));
+  Spectrum inside = radiance_inside(to_body * point.on_triangle * stored.units, normalize(to_body * inwards));
   vec3 radiance = light.irradiance * (outwards.transmittance / (stored.eta * stored.eta) * inside);
 #ifdef SPECULAR
   radiance += specular_reflection(point, outwards, light);
 #endif
   return radiance;
 }
+
+#if defined(CLEAR) && defined(WORLD)
+// What is refracted out of the grain after each reflection inside; the last takes all that is left. Lengths are too short to tell the world
+// from elsewhere.
+vec3 crossing_light(SurfacePoint point, Outwards outwards) {
+  mat3 to_body = grain_to_body();
+  mat3 to_world = transpose(to_body);
+  vec3 inwards = (outwards.mu * point.normal - point.to_viewer) / stored.eta - outwards.mu_refracted * point.normal;
+  vec3 place = to_body * point.on_triangle * stored.units;
+  vec3 direction = normalize(to_body * inwards);
+  vec3 left = vec3(outwards.transmittance);
+  vec3 sum = vec3(0.0);
+  const int most = 6;
+  for (int i = 0; i < most; ++i) {
+    float way = way_through(place, direction);
+    left *= exp(-stored.sigma_t * way);
+    place += way * direction;
+    vec3 normal = outwards_at(place);
+    float cosine = clamp(dot(normal, direction), 0.0, 1.0);
+#ifdef REFRACTION
+    float again = fresnel_reflectance(cosine, 1.0 / stored.eta);
+    float sine_squared = stored.eta * stored.eta * (1.0 - cosine) * (1.0 + cosine);
+    vec3 outside = normalize(stored.eta * (direction - cosine * normal) + sqrt(max(1.0 - sine_squared, 0.0)) * normal);
+    bool last = i + 1 == most || max(left.r, max(left.g, left.b)) * again < LEAST_PASSED;
+    sum += left * (last ? 1.0 : 1.0 - again) * seen_of_world(to_world * outside);
+    if (last) break;
+    left *= again;
+    direction = direction - 2.0 * cosine * normal;
+#else
+    sum += left * seen_of_world(to_world * direction);
+    break;
+#endif
+  }
+  return sum;
+}
+#endif

@@ -4,6 +4,7 @@
 // What else is chosen at compile time:
 //   LIGHTS_AT_PLACE      the place that is shaded draws its own directions of the lights that have a place themselves: an opaque surface at
 //                        each point, a translucent instance for all of it
+//   CLEAR, WORLD         the model knows what crosses the grain unscattered, and there is a world to be seen through it
 //   WHOLE_GRAIN          the model knows what light does in all of the grain, but not where it enters
 
 #include "physics/prelude.glsl"
@@ -117,6 +118,9 @@ vec3 lit_point(SurfacePoint point) {
 #endif
 #ifdef LIGHTS_AT_PLACE
   sum += locally_lit(point, outwards);
+#endif
+#if defined(CLEAR) && defined(WORLD)
+  sum += crossing_light(point, outwards);
 #endif
   if (light_count == 0) return sum;
   // Software renderers run a loop's body once more, masked, to find that a condition at its head has failed: it is at the foot.

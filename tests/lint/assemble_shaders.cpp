@@ -80,7 +80,7 @@ std::vector<scene::Material> every_choice() {
 void write_shading(Writer& writer) {
   // As render::Shading.
   const std::vector<std::vector<std::string>> shadings = {
-      {"INSTANCED"}, {"SHADOWS"}, {"LIGHTS_AT_PLACE"}, {"INSTANCED", "SHADOWS", "LIGHTS_AT_PLACE"}};
+      {"INSTANCED"}, {"SHADOWS"}, {"CLEAR", "WORLD"}, {"LIGHTS_AT_PLACE"}, {"INSTANCED", "SHADOWS", "LIGHTS_AT_PLACE"}};
   std::set<std::string> written;
   for (const scene::Material& material : every_choice()) {
     const std::string model(scene::model_names[static_cast<std::size_t>(material.model)]);

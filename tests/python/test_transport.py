@@ -184,3 +184,86 @@ def test_a_render_that_waits_can_be_cancelled(cube):
     started = time.monotonic()
     view.render(4)
     assert view.samples == 0 and time.monotonic() - started < 5.0
+
+
+def turns(count):
+    """As many turns, of no pattern."""
+    numbers = numpy.random.default_rng(5).normal(size=(count, 3, 3))
+    turned = [numpy.linalg.qr(matrix)[0] for matrix in numbers]
+    return [turn * numpy.linalg.det(turn) for turn in turned]
+
+
+def heap(spread=0.0):
+    transforms = numpy.tile(numpy.eye(4), (12, 1, 1))
+    for i, turn in enumerate(turns(12)):
+        transforms[i, :3, :3] = 0.35 * turn * (1.0 + spread * (i % 3 - 1))
+        transforms[i, :3, 3] = (0.8 * (i % 4) - 1.2, 0.8 * (i // 4) - 0.8, 0.0)
+    return transforms
+
+
+def picture_of(scene):
+    view = native.View(96, 96)
+    view.set_scene(scene)
+    view.set_camera(native.Camera.look_at((0.0, 0.0, 6.5), (0.0,) * 3, (0.0, 1.0, 0.0), 32.0))
+    view.render(8)
+    return view, view.read()[..., 0]
+
+
+# The cube's vertices and triangles, if they are sent anew.
+SHAPE_BYTES = 60_000
+
+
+@pytest.mark.parametrize("spread", [0.0, 0.2])
+def test_an_array_costs_one_set_of_coefficients(cube, spread):
+    light = native.DirectionalLight(LIGHTS["side"], (1.0,) * 3)
+    transforms = heap(spread)
+    grain = material(3.0)  # at this size as the cube by itself
+    scene = native.Scene(arrays=[native.InstanceArray(cube, grain, transforms)], lights=[light])
+    view, _ = picture_of(scene)
+    del view  # now it is known, and on the device no more
+    sent = native.sent()
+    view, together = picture_of(scene)
+    assert native.sent()["materials"] == sent["materials"] + 1
+    assert native.sent()["bytes"] - sent["bytes"] < 512 * 1024 + SHAPE_BYTES
+    assert view.warnings == []
+    if spread:  # a size that others share is drawn as if it were the middle one
+        return
+    alone = [native.Instance(cube, grain, transform) for transform in transforms[:6]]
+    array = native.InstanceArray(cube, grain, transforms[:6])
+    _, one_by_one = picture_of(native.Scene(instances=alone, lights=[light]))
+    _, of_array = picture_of(native.Scene(arrays=[array], lights=[light]))
+    assert numpy.abs(of_array - one_by_one).sum() / one_by_one.sum() < 0.02
+    assert together.sum() > of_array.sum()
+
+
+# Nothing absorbed, nothing scattered: what is all around goes round every corner, and the grain is not to be seen.
+@pytest.mark.parametrize("boundary, mean, least, most", [("dielectric", 0.01, 0.6, 1.5),
+                                                         ("index_matched", 1e-4, 0.999, 1.001)])
+def test_a_clear_grain_vanishes_in_a_white_furnace(cube, boundary, mean, least, most):
+    clear = material(sigma_s=(0.0,) * 3, sigma_a=(0.0,) * 3, specular=boundary == "dielectric", boundary=boundary)
+    view = native.View(64, 64)
+    view.set_scene(native.Scene(instances=[native.Instance(cube, clear, numpy.eye(4))], lights=[],
+                                world=native.World(radiance=(1.0,) * 3)))
+    view.set_camera(native.Camera.look_at((3.0, 2.5, 5.0), (0.0,) * 3, (0.0, 1.0, 0.0), 35.0))
+    view.render(64)
+    picture = view.read()
+    covered = picture[..., 3] > 0.999
+    assert picture[covered][:, :3].mean() == pytest.approx(1.0, abs=mean)
+    assert picture[covered][:, :3].min() > least and picture[covered][:, :3].max() < most
+
+
+def test_glass_absorbs_as_it_is_thick():
+    """Straight through an index-matched slab, and round it."""
+    half = numpy.array([2.0, 2.0, 0.5])
+    corners = numpy.array([(x, y, z) for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)]) * half
+    faces = numpy.array([(0, 2, 1), (1, 2, 3), (4, 5, 6), (5, 7, 6), (0, 1, 4), (1, 5, 4),
+                         (2, 6, 3), (3, 6, 7), (0, 4, 2), (2, 4, 6), (1, 3, 5), (3, 7, 5)], numpy.uint32)
+    slab = native.Mesh(corners.astype(numpy.float32), None, faces)
+    glass = material(sigma_s=(0.0,) * 3, sigma_a=(0.1, 0.7, 2.0), boundary="index_matched")
+    view = native.View(64, 64)
+    view.set_scene(native.Scene(instances=[native.Instance(slab, glass, numpy.eye(4))], lights=[],
+                                world=native.World(radiance=(1.0, 0.5, 2.0))))
+    view.set_camera(native.Camera.look_at((0.0, 0.0, 60.0), (0.0,) * 3, (0.0, 1.0, 0.0), 2.0))
+    view.render(2)
+    expected = numpy.exp(-numpy.array([0.1, 0.7, 2.0])) * (1.0, 0.5, 2.0)
+    numpy.testing.assert_allclose(view.read()[24:40, 24:40, :3].mean((0, 1)), expected, rtol=0.01)
