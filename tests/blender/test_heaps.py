@@ -77,6 +77,21 @@ def test_a_heap_is_seen(render):
     np.testing.assert_allclose(covered, 0.04, atol=0.005)
 
 
+def test_grains_light_each_other_where_the_scene_says_so(render):
+    scene = bpy.context.scene
+    scene.render.resolution_x = scene.render.resolution_y = 32
+    scene.render.film_transparent = True
+    scene.mesograin.samples = 8
+    add_sun((0.0, 0.6, 0.8), math.pi)
+    add_camera((0.0, 0.0, 20.0), type="ORTHO", ortho_scale=0.25 * SIDE)
+    scatter([(0.25 * x, 0.25 * y, z) for x, y, z in grid()])
+    alone = render()
+    scene.mesograin.exchange = True
+    together = render()
+    assert np.isfinite(together).all()
+    assert together[..., :3].sum() > 1.02 * alone[..., :3].sum()
+
+
 def makes_point_clouds():
     return "POINTCLOUD" in bpy.ops.object.convert.get_rna_type().properties["target"].enum_items
 

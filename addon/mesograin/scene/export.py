@@ -66,6 +66,7 @@ class SceneValues:
     world: surroundings.WorldValues = surroundings.WorldValues()
     heaps: tuple = ()  # heaps.HeapValues, drawn beside the instances
     millimetres_per_unit: float = 1.0
+    exchange: bool = False  # whether grains send light to each other
 
     @property
     def materials(self):
@@ -86,7 +87,8 @@ class SceneValues:
                              for group in (self.instances, self.heaps))
         return native.Scene(
             instances=instances, arrays=arrays,
-            lights=[light.to_native(native) for light in self.lights], world=self.world.to_native(native))
+            lights=[light.to_native(native) for light in self.lights], world=self.world.to_native(native),
+            exchange="order_1" if self.exchange else "off")
 
 
 def scene_from_depsgraph(depsgraph, cache=None):
@@ -230,6 +232,7 @@ def with_new_materials(values, depsgraph):
             return None
         changed[material.name_full] = material_values(material, scene.mesograin.millimetres_per_unit)
     as_before = (values.millimetres_per_unit == scene.mesograin.millimetres_per_unit
+                 and values.exchange == scene.mesograin.exchange
                  and values.world == surroundings.read(scene)[0])
     if not changed or not as_before or any(heap.factors and heap.material.name in changed for heap in values.heaps):
         return None
@@ -362,7 +365,7 @@ class _Reader:
         if camera is not None and camera.type == "CAMERA" and camera.data.type == "PANO":
             self._warn(f"Camera '{camera.name}' is panoramic, which Mesograin draws as perspective.")
         return SceneValues(tuple(self._instances), tuple(self._lights), tuple(self._warnings), around,
-                           gathered, self._millimetres_per_unit)
+                           gathered, self._millimetres_per_unit, scene.mesograin.exchange)
 
     def _read_drawable(self, evaluated_object, matrix_world):
         parts = self._cache.parts(evaluated_object)

@@ -195,6 +195,7 @@ class MESOGRAIN_PT_sampling(MesograinPanel, bpy.types.Panel):
         column.prop(settings, "samples", text="Render")
         column.prop(settings, "viewport_samples", text="Viewport")
         layout.prop(settings, "millimetres_per_unit", text="mm per Unit")
+        layout.prop(settings, "exchange")
         layout.prop(context.scene.render, "film_transparent", text="Transparent Film")
 
 
