@@ -108,6 +108,23 @@ Pixels read(render::View& view, std::optional<Pixels> out) {
   return *std::move(out);
 }
 
+py::dict read_surfaces(render::View& view) {
+  const auto height = static_cast<py::ssize_t>(view.height());
+  const auto width = static_cast<py::ssize_t>(view.width());
+  Pixels positions({height, width, py::ssize_t{4}});
+  Pixels normals({height, width, py::ssize_t{3}});
+  {
+    float* const places = positions.mutable_data();
+    float* const facing = normals.mutable_data();
+    const py::gil_scoped_release release;
+    view.read_surfaces(places, facing);
+  }
+  py::dict result;
+  result["position"] = std::move(positions);
+  result["normal"] = std::move(normals);
+  return result;
+}
+
 py::list timings(render::View& view) {
   std::vector<render::PassTiming> passes;
   {
@@ -261,6 +278,10 @@ void bind_view(py::module_& module) {
       .def("statistics", &statistics,
            "What of the scene's arrays the last sample took the trouble of: {'instances': there are, 'drawn': that the "
            "device drew for the camera, 'cast': that rays were cast at, 'seen': of those, that rays met}.")
+      .def("read_surfaces", &read_surfaces,
+           "What rays through the pixels' middles meet, whatever the samples so far: {'position': (height, width, 4) "
+           "float32, in the world, and 1, or 0 where they meet nothing; 'normal': (height, width, 3), of unit length, "
+           "on the side that is seen}; row 0 at the top. Raises Error for a bake.")
       .def("timings", &timings, "[{'pass', 'milliseconds'}, ...] of the last sample, in the order the passes ran.");
 }
 

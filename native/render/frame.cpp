@@ -197,13 +197,17 @@ bool Frame::knows_shadows_by_pixel() const {
                      [](const InstanceGroup& group) { return is_opaque(*group.material); });
 }
 
-bool Frame::add_sample(const GoOn& go_on) {
-  if (!exchange_.wait(go_on)) return false;
+void Frame::prepare_visibility() {
   if (casts() && !cast_) cast_ = std::make_unique<CastContent>(cache_, *content_);
   // Light maps are as fine as the largest grain in the picture.
   if (content_->instances() != nullptr && !selection_ && !(casts() && !reads_light_maps()))
     selection_ = std::make_unique<DeviceSelection>(
         content_->instances()->select(anchor_to_clip(*content_, camera_), width_, height_));
+}
+
+bool Frame::add_sample(const GoOn& go_on) {
+  if (!exchange_.wait(go_on)) return false;
+  prepare_visibility();
   const std::vector<Draw>& draws = content_->draws();
   const bool own_maps =
       std::any_of(draws.begin(), draws.end(), [](const Draw& draw) { return draw.light_maps != nullptr; });
@@ -579,6 +583,36 @@ void Frame::read(float* pixels) {
   resolve_program_.set("samples", static_cast<float>(samples_));
   full_screen_.draw();
   targets_->shade.read(pixels);
+}
+
+void Frame::read_surfaces(float* positions, float* normals) {
+  if (bake_) throw Error("A bake has no view whose surfaces could be read: set a camera and a scene without bake.");
+  prepare_visibility();
+  find_surfaces(glm::vec2(0.0F), 0, [] { return true; });
+  const std::size_t count = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
+  const glm::dvec4 eye(viewer(glm::dvec3(0.0)));
+  std::vector<glm::vec4> on_triangle(count);
+  std::vector<glm::vec4> facing(count);
+  targets_->surfaces.read(glm::value_ptr(on_triangle.front()), 0);
+  targets_->surfaces.read(glm::value_ptr(facing.front()), 1);
+  for (std::size_t i = 0; i < count; ++i) {
+    glm::vec4 position(0.0F);
+    glm::vec3 normal(0.0F);
+    if (facing[i].w != 0.0F) {
+      const auto number = static_cast<std::size_t>(std::abs(facing[i].w)) - 1;
+      const glm::dvec3 origin = content_->anchor() + glm::dvec3(content_->receiver(number).ball);
+      normal = glm::vec3(facing[i]);
+      const glm::dvec3 place = glm::dvec3(on_triangle[i]) + static_cast<double>(on_triangle[i].w) * glm::dvec3(normal);
+      position = glm::vec4(glm::vec3(origin + place), 1.0F);
+      if (facing[i].w < 0.0F && glm::dot(glm::dvec3(normal), glm::dvec3(eye) - eye.w * (origin + place)) < 0.0)
+        normal = -normal;
+    }
+    // The device's rows begin at the bottom.
+    const auto width = static_cast<std::size_t>(width_);
+    const std::size_t pixel = (static_cast<std::size_t>(height_) - 1 - i / width) * width + i % width;
+    std::copy_n(glm::value_ptr(position), 4, positions + 4 * pixel);
+    std::copy_n(glm::value_ptr(normal), 3, normals + 3 * pixel);
+  }
 }
 
 std::vector<PassTiming> Frame::timings() const {

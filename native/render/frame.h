@@ -97,6 +97,11 @@ class Frame {
   /// The mean of the samples so far, (height, width, 4), first row at the top. Zero where there are none yet.
   void read(float* pixels);
 
+  /// What rays through the pixels' middles meet, first row at the top. `positions`, (height, width, 4): in the world,
+  /// and 1; 0 where they meet nothing. `normals`, (height, width, 3): of unit length, on the side that is seen. Throws
+  /// Error for a bake, which has no view.
+  void read_surfaces(float* positions, float* normals);
+
   std::vector<PassTiming> timings() const;
 
   Statistics statistics() const;
@@ -134,6 +139,8 @@ class Frame {
   const DeviceSelection* casters(const glm::dmat4& anchor_to_clip, const ShadowEye& eye, std::size_t layer,
                                  int resolution);
 
+  /// Makes ready what find_surfaces needs of the content.
+  void prepare_visibility();
   bool find_surfaces(const glm::vec2& jitter, std::size_t first, const GoOn& go_on);
   glm::vec4 viewer(const glm::dvec3& origin) const;
   bool shade(const GoOn& go_on);

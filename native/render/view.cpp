@@ -157,6 +157,10 @@ void View::read(float* pixels) {
   gl::ContextThread::instance().run([&] { frame(id_).read(pixels); });
 }
 
+void View::read_surfaces(float* positions, float* normals) {
+  gl::ContextThread::instance().run([&] { frame(id_).read_surfaces(positions, normals); });
+}
+
 std::vector<PassTiming> View::timings() {
   return gl::ContextThread::instance().run([&] { return frame(id_).timings(); });
 }

@@ -81,6 +81,11 @@ class View {
   /// in a bake is v = 1.
   void read(float* pixels);
 
+  /// What rays through the pixels' middles meet, whatever the samples so far: (height, width, 4) floats, where in the
+  /// world, and 1, or 0 where they meet nothing; and (height, width, 3), the normal on the side that is seen. First row
+  /// at the top. Throws Error for a bake.
+  void read_surfaces(float* positions, float* normals);
+
   /// Milliseconds of each pass of the last sample, in the order they ran; empty before the first.
   std::vector<PassTiming> timings();
 

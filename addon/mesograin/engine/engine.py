@@ -7,7 +7,7 @@ import numpy as np
 
 from .. import compat, native_module
 from ..scene import export
-from . import status, viewport, viewport_text
+from . import passes, status, viewport, viewport_text
 
 # How long a final render may go without looking whether it was cancelled, and without showing how far it is.
 POLL_SECONDS = 0.05
@@ -34,6 +34,7 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
     def update_render_passes(self, scene, view_layer):
         # The compositor's Render Layers node has a socket for each pass that is registered, and for no other.
         self.register_pass(scene, view_layer, "Combined", 4, "RGBA", "COLOR")
+        passes.tell_compositor(self, scene, view_layer)
 
     # Final renders
 
@@ -58,7 +59,9 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
         opaque = not depsgraph.scene.render.film_transparent
         eyes = _eyes(depsgraph.scene.render)
         for number, name in enumerate(eyes):
-            view.set_camera(self._camera(depsgraph, width, height, region, name))
+            camera = self._camera(depsgraph, width, height, region, name)
+            view.set_camera(camera)
+            passes.add(self, depsgraph.view_layer)
             result = self.begin_result(0, 0, region.width, region.height, layer=depsgraph.view_layer.name, view=name)
             try:
                 for samples in self._render_samples(view, target):
@@ -67,14 +70,17 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
                     self.update_progress((number + samples / target) / len(eyes))
                 if view.samples:  # a cancelled render keeps what it has
                     self._show(result, view, opaque)
+                    beside = passes.pixels(view, depsgraph.view_layer, camera.world_to_camera)
+                    for name_, pixels in beside.items():
+                        _set_pass(result, name_, pixels)
             except Exception:  # whatever it is: Blender must not be left with a result that never ends
                 self.end_result(result, cancel=True)
                 raise
             self.end_result(result)
         for warning in view.warnings:
             self.report({"WARNING"}, warning)
-        passes = tuple((timing["pass"], timing["milliseconds"]) for timing in view.timings())
-        status.put(status.RENDER, status.Status(view.samples, region.width, region.height, passes,
+        timings = tuple((timing["pass"], timing["milliseconds"]) for timing in view.timings())
+        status.put(status.RENDER, status.Status(view.samples, region.width, region.height, timings,
                                                 (*warnings, *view.warnings)))
 
     def _camera(self, depsgraph, width, height, region, eye):
@@ -113,8 +119,7 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
         pixels = view.read()
         if opaque:
             pixels[..., 3] = 1.0  # premultiplied, so this is the picture over black
-        # Blender's rows begin at the bottom.
-        compat.set_pass_pixels(result.layers[0].passes["Combined"], np.ascontiguousarray(pixels[::-1]))
+        _set_pass(result, "Combined", pixels)
 
     # Rendered viewports
 
@@ -206,6 +211,11 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
 
 def _preparing(share):
     return f"Light's transport in the grain: {share or 0.0:.0%}"
+
+
+def _set_pass(result, name, pixels):
+    # Blender's rows begin at the bottom.
+    compat.set_pass_pixels(result.layers[0].passes[name], np.ascontiguousarray(pixels[::-1]))
 
 
 def _line(samples, target, warnings):

@@ -111,16 +111,6 @@ def hint(material, thing, millimetres_per_unit):
     return f"{thick:.2g} mean free paths thick: {thick_layer.looks(thick)}."
 
 
-def advise(material, thing, millimetres_per_unit):
-    """advice.Advice for a mesh object of this material; None for what has no volume."""
-    shape = _shape(thing)
-    if shape is None:
-        return None
-    volume, area, closed = shape
-    radius = (0.75 * volume / np.pi) ** (1.0 / 3.0) * millimetres_per_unit / sorted(_paths(material.mesograin_look))[1]
-    return advice.advise(max(radius, 1e-6), 36.0 * np.pi * volume**2 / area**3 > ROUND, closed)
-
-
 def _shape(thing):
     """(volume, area, whether it is closed) of a mesh object in the scene's units."""
     if thing is None or thing.type != "MESH" or not thing.data.polygons:
@@ -139,6 +129,36 @@ def _shape(thing):
     edges = np.sort(corners.reshape(-1, 3)[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
     closed = bool((np.unique(edges, axis=0, return_counts=True)[1] == 2).all())
     return (volume, area, closed) if volume > 0.0 and area > 0.0 else None
+
+
+_seen = {}  # {key of a mesh object: its shape}, for the last one: panels are drawn often
+
+
+def _shape_as_seen(thing):
+    """_shape, but of a mesh as it was when its numbers were others."""
+    if thing is None or thing.type != "MESH":
+        return None
+    key = (thing.name_full, thing.data.name_full, len(thing.data.vertices), len(thing.data.polygons),
+           *map(tuple, thing.matrix_world.to_3x3()))
+    if key not in _seen:
+        _seen.clear()
+        _seen[key] = _shape(thing)
+    return _seen[key]
+
+
+def advise(material, thing, millimetres_per_unit, shape_of=_shape):
+    """advice.Advice for a mesh object of this material; None for what has no volume."""
+    shape = shape_of(thing)
+    if shape is None:
+        return None
+    volume, area, closed = shape
+    radius = (0.75 * volume / np.pi) ** (1.0 / 3.0) * millimetres_per_unit / sorted(_paths(material.mesograin_look))[1]
+    return advice.advise(max(radius, 1e-6), 36.0 * np.pi * volume**2 / area**3 > ROUND, closed)
+
+
+def advise_as_seen(material, thing, millimetres_per_unit):
+    """advise, fast enough for a panel."""
+    return advise(material, thing, millimetres_per_unit, _shape_as_seen)
 
 
 class MESOGRAIN_OT_choose_model(bpy.types.Operator):

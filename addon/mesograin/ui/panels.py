@@ -4,7 +4,7 @@ import textwrap
 import bpy
 
 from .. import native_module
-from ..engine import engine, status
+from ..engine import engine, passes, status
 from ..scene import export, plain_materials
 from ..schema import models, parameters
 from . import conversion, look, presets
@@ -100,10 +100,14 @@ class MESOGRAIN_PT_material(MesograinPanel, bpy.types.Panel):
         thing = getattr(context, "object", None)
         if thing is None or native_module.problem():
             return
-        sentence = look.hint(context.material, thing, context.scene.mesograin.millimetres_per_unit)
-        if sentence:
-            draw_sentence(self.layout, context, sentence, icon="LIGHT")
-        self.layout.operator(look.MESOGRAIN_OT_choose_model.bl_idname)
+        unit = context.scene.mesograin.millimetres_per_unit
+        advised = look.advise_as_seen(context.material, thing, unit)
+        for sentence in (look.hint(context.material, thing, unit), advised and advised.sentence):
+            if sentence:
+                draw_sentence(self.layout, context, sentence, icon="LIGHT")
+        row = self.layout.row()
+        row.enabled = advised is not None and advised.model != context.material.mesograin.model
+        row.operator(look.MESOGRAIN_OT_choose_model.bl_idname)
 
     def _draw_medium(self, context, grain):
         layout, said = self.layout, context.material.mesograin_look
@@ -199,6 +203,18 @@ class MESOGRAIN_PT_sampling(MesograinPanel, bpy.types.Panel):
         layout.prop(context.scene.render, "film_transparent", text="Transparent Film")
 
 
+class MESOGRAIN_PT_passes(MesograinPanel, bpy.types.Panel):
+    bl_label = "Passes"
+    bl_context = "view_layer"
+
+    def draw(self, context):
+        layout = self.layout
+        layout.use_property_split = True
+        column = layout.column(heading="Data")
+        for one in passes.PASSES:
+            column.prop(context.view_layer, one.asked_for, text=one.name)
+
+
 class MESOGRAIN_PT_statistics(MesograinPanel, bpy.types.Panel):
     bl_label = "Device and Timings"
     bl_context = "render"
@@ -231,4 +247,5 @@ class MESOGRAIN_PT_statistics(MesograinPanel, bpy.types.Panel):
 
 
 register, unregister = bpy.utils.register_classes_factory(
-    (MESOGRAIN_MT_profiles, MESOGRAIN_PT_material, MESOGRAIN_PT_light, MESOGRAIN_PT_sampling, MESOGRAIN_PT_statistics))
+    (MESOGRAIN_MT_profiles, MESOGRAIN_PT_material, MESOGRAIN_PT_light, MESOGRAIN_PT_sampling, MESOGRAIN_PT_passes,
+     MESOGRAIN_PT_statistics))
