@@ -112,3 +112,22 @@ def test_every_preset_can_be_applied(native):
         assert tuple(grain.sigma_s) == pytest.approx(preset.sigma_s)
         assert (grain.g, grain.eta, grain.roughness) == pytest.approx((preset.g, preset.eta, preset.roughness))
         assert grain.boundary == preset.boundary
+
+
+def test_an_artist_s_own_preset_is_kept_and_found_again(native, tmp_path, monkeypatch):
+    monkeypatch.setattr(bpy.utils, "user_resource",
+                        lambda kind, path="", create=False: str(tmp_path / kind.lower() / path))
+    bpy.ops.mesh.primitive_uv_sphere_add()
+    thing = bpy.context.object
+    thing.data.materials.append(bpy.data.materials.new("Grain"))
+    grain = thing.active_material.mesograin
+    presets.apply(known.BY_IDENTIFIER["rice"], grain)
+    grain.g, grain.boundary = 0.25, "index_matched"
+    (tmp_path / "scripts/presets/mesograin/materials").mkdir(parents=True)
+    assert bpy.ops.mesograin.add_preset(name="My rice") == {"FINISHED"}
+    kept = list(tmp_path.rglob("*.py"))
+    assert [path.stem for path in kept] == ["My_rice"]
+    presets.apply(known.BY_IDENTIFIER["ice"], grain)
+    exec(compile(kept[0].read_text(), str(kept[0]), "exec"), {"bpy": bpy})  # as script.execute_preset does in a window
+    assert (grain.g, grain.boundary, grain.eta) == (pytest.approx(0.25), "index_matched", pytest.approx(1.53))
+    assert tuple(grain.sigma_s) == pytest.approx((2.0, 2.0, 2.0))

@@ -1,8 +1,10 @@
 # The menu of materials that an artist starts from.
 import bpy
+from bl_operators.presets import AddPresetBase
 from bpy.props import EnumProperty
 
 from ..schema import models
+from ..schema.parameters import PARAMETERS
 from ..schema.presets import BY_IDENTIFIER, GROUPS
 
 
@@ -59,6 +61,24 @@ def apply(preset, grain):
         look.forget_surroundings()
 
 
+class MESOGRAIN_OT_add_preset(AddPresetBase, bpy.types.Operator):
+    bl_idname = "mesograin.add_preset"
+    bl_label = "Save Own Material"
+    bl_description = "Keep this grain among your own materials, for every file"
+    preset_menu = "MESOGRAIN_MT_own_presets"
+    preset_subdir = "mesograin/materials"
+    preset_defines = ["material = getattr(bpy.context, 'material', None) or bpy.context.object.active_material",
+                      "grain = material.mesograin"]
+    preset_values = [f"grain.{name}" for name in PARAMETERS]
+
+
+class MESOGRAIN_MT_own_presets(bpy.types.Menu):
+    bl_label = "Own Materials"
+    preset_subdir = "mesograin/materials"
+    preset_operator = "script.execute_preset"
+    draw = bpy.types.Menu.draw_preset
+
+
 class MESOGRAIN_MT_presets(bpy.types.Menu):
     bl_idname = "MESOGRAIN_MT_presets"
     bl_label = "Materials"
@@ -70,6 +90,9 @@ class MESOGRAIN_MT_presets(bpy.types.Menu):
             for preset in group.presets:
                 column.operator(MESOGRAIN_OT_apply_preset.bl_idname, text=preset.name).preset = preset.identifier
             column.separator()
+        column.menu(MESOGRAIN_MT_own_presets.__name__)
+        column.operator(MESOGRAIN_OT_add_preset.bl_idname)
 
 
-register, unregister = bpy.utils.register_classes_factory((MESOGRAIN_OT_apply_preset, MESOGRAIN_MT_presets))
+register, unregister = bpy.utils.register_classes_factory(
+    (MESOGRAIN_OT_apply_preset, MESOGRAIN_OT_add_preset, MESOGRAIN_MT_own_presets, MESOGRAIN_MT_presets))
