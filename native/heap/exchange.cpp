@@ -6,33 +6,22 @@
 #include "heap/solve.h"
 
 namespace mesograin::heap {
-namespace {
-
-/// The same work, whose progress is a part of the whole's.
-transport::Effort part(const transport::Effort& effort, double from, double to) {
-  transport::Effort part = effort;
-  if (effort.progress)
-    part.progress = [&effort, from, to](double share) { effort.progress(from + (to - from) * share); };
-  return part;
-}
-
-}  // namespace
 
 HeapLight solve_exchange(const Heap& heap, const Quality& quality, const Field& before,
                          const transport::Effort& effort) {
   HeapLight light;
-  light.kinds = kinds_of(heap.grains, part(effort, 0.0, 0.1));
+  light.kinds = kinds_of(heap.grains, transport::part_of(effort, 0.0, 0.1));
   const Space space(heap.grains, light.kinds);
   const glm::vec3 radiance(heap.world.image ? glm::dvec3(0.0) : heap.world.radiance);
   WorldLit lit;
-  const Links links = find_links(space, quality.rays, radiance, lit, part(effort, 0.1, 0.5));
-  add_direct_light(space, heap, quality.light_rays, lit.direct, lit.crossed, part(effort, 0.5, 0.7));
+  const Links links = find_links(space, quality.rays, radiance, lit, transport::part_of(effort, 0.1, 0.5));
+  add_direct_light(space, heap, quality.light_rays, lit.direct, lit.crossed, transport::part_of(effort, 0.5, 0.7));
   Field first(lit.direct.size());
   for (std::size_t i = 0; i < first.size(); ++i) first[i] = lit.direct[i] + lit.crossed[i];
-  Solved solved = solve(links, first, before, quality.tolerance, part(effort, 0.7, 0.9));
+  Solved solved = solve(links, first, before, quality.tolerance, transport::part_of(effort, 0.7, 0.9));
   light.answer.resize(first.size());
   for (std::size_t i = 0; i < first.size(); ++i) light.answer[i] = solved.sent[i] - lit.direct[i];
-  light.behind = seen_through(space, solved.sent, quality.seen_rays, part(effort, 0.9, 1.0));
+  light.behind = seen_through(space, solved.sent, quality.seen_rays, transport::part_of(effort, 0.9, 1.0));
   light.sent = std::move(solved.sent);
   light.steps = solved.steps;
   light.residual = solved.residual;

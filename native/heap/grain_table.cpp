@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <glm/exponential.hpp>
 #include <glm/geometric.hpp>
 #include <list>
@@ -11,8 +12,6 @@
 
 namespace mesograin::heap {
 namespace {
-
-constexpr int walks_an_entry = 4096;
 
 float mean(const glm::vec3& colour) { return (colour.r + colour.g + colour.b) / 3.0F; }
 
@@ -34,7 +33,8 @@ double met_from_everywhere(double sigma_t) {
 
 /// A subset in which every walk is as likely as it was heavy (systematic resampling: Kitagawa 1996, "Monte Carlo filter
 /// and smoother for non-Gaussian nonlinear state space models", appendix), all of the same mean weight.
-void resample(const std::vector<Outcome>& walks, transport::Random& random, std::vector<Outcome>& kept) {
+/// `tried`: how many there were, those that ended inside included.
+void resample(const std::vector<Outcome>& walks, int tried, transport::Random& random, std::vector<Outcome>& kept) {
   double all = 0.0;
   for (const Outcome& outcome : walks) all += mean(outcome.weight);
   if (!(all > 0.0)) {
@@ -42,7 +42,7 @@ void resample(const std::vector<Outcome>& walks, transport::Random& random, std:
     return;
   }
   const double step = all / GrainTable::outcomes;
-  const float each = static_cast<float>(all / walks_an_entry);
+  const float each = static_cast<float>(all / tried);
   double next = step * random.uniform();
   double until = 0.0;
   int drawn = 0;
@@ -63,21 +63,35 @@ Optics grey(const Optics& optics, int channel) {
   return grey;
 }
 
+/// Of what a table is made of.
+std::uint64_t seed_of(const Optics& optics) {
+  std::size_t seed = static_cast<std::size_t>(optics.surface);
+  // As Boost's hash_combine does.
+  const auto mix = [&](double number) {
+    seed ^= std::hash<double>{}(number) + 0x9e3779b97f4a7c15U + (seed << 6U) + (seed >> 2U);
+  };
+  for (const glm::dvec3& colour : {optics.reflectance, optics.sigma_t, optics.albedo})
+    for (int channel = 0; channel < 3; ++channel) mix(colour[channel]);
+  for (const double number : {optics.g, optics.eta, optics.roughness}) mix(number);
+  return seed;
+}
+
 bool is_grey(const Optics& optics) {
   return optics.opaque() || (grey(optics, 0).sigma_t == optics.sigma_t && grey(optics, 0).albedo == optics.albedo);
 }
 
 }  // namespace
 
-GrainTable::GrainTable(const Optics& optics, Sense sense, const transport::Effort& effort)
-    : transparent_(optics.transparent()), sigma_t_(optics.sigma_t) {
+GrainTable::GrainTable(const Optics& optics, Sense sense, const transport::Effort& effort, int walks)
+    : walks_(walks), transparent_(optics.transparent()), sigma_t_(optics.sigma_t) {
   if (transparent_)
     for (int channel = 0; channel < 3; ++channel)
       met_[channel] = static_cast<float>(met_from_everywhere(optics.sigma_t[channel]));
   trace(optics, sense, effort);
   if (is_grey(optics)) return;
   // Walks that are shared by channels are noisier in each than its own.
-  for (int channel = 0; channel < 3; ++channel) take_albedo(GrainTable(grey(optics, channel), sense, effort), channel);
+  for (int channel = 0; channel < 3; ++channel)
+    take_albedo(GrainTable(grey(optics, channel), sense, effort, walks), channel);
 }
 
 void GrainTable::take_albedo(const GrainTable& grey, int channel) {
@@ -101,10 +115,9 @@ void GrainTable::trace(const Optics& optics, Sense sense, const transport::Effor
     std::vector<Outcome> walks;
     glm::dvec3 sum(0.0);
     leaving[entry].fill(glm::dvec3(0.0));
-    for (int i = 0; i < walks_an_entry; ++i) {
+    for (int i = 0; i < walks_; ++i) {
       // Light from everywhere comes in evenly over the squared cosine.
-      const float squared =
-          (static_cast<float>(entry) + (static_cast<float>(i) + random.uniform()) / walks_an_entry) / entries;
+      const float squared = (static_cast<float>(entry) + (static_cast<float>(i) + random.uniform()) / walks_) / entries;
       const float mu = std::sqrt(squared);
       std::optional<Outcome> outcome = walk(optics, sense, mu, random);
       if (!outcome) continue;
@@ -117,8 +130,8 @@ void GrainTable::trace(const Optics& optics, Sense sense, const transport::Effor
           glm::dvec3(light);
       walks.push_back(*outcome);
     }
-    albedos_[entry] = glm::vec3(sum / static_cast<double>(walks_an_entry));
-    resample(walks, random, kept[entry]);
+    albedos_[entry] = glm::vec3(sum / static_cast<double>(walks_));
+    resample(walks, walks_, random, kept[entry]);
   });
   outcomes_.reserve(static_cast<std::size_t>(entries) * outcomes);
   glm::dvec3 all(0.0);
@@ -131,7 +144,7 @@ void GrainTable::trace(const Optics& optics, Sense sense, const transport::Effor
       all += leaving[index][node];
     }
   }
-  albedo_ = glm::vec3(all / static_cast<double>(walks_an_entry * entries));
+  albedo_ = glm::vec3(all / static_cast<double>(walks_ * entries));
   // Radiance is flux over 2 mu dmu; between the intervals' middles it is linear, and flat beyond the last ones.
   for (int channel = 0; channel < 3; ++channel)
     for (int node = 0; node < lobe_nodes; ++node) {
@@ -167,13 +180,15 @@ glm::vec3 GrainTable::crossing(float mu) const {
   return transparent_ ? glm::vec3(straight_through(sigma_t_, mu)) : glm::vec3(0.0F);
 }
 
-std::shared_ptr<const GrainTable> grain_table(const Optics& optics, Sense sense, const transport::Effort& effort) {
+std::shared_ptr<const GrainTable> grain_table(const Optics& optics, Sense sense, const transport::Effort& effort,
+                                              int walks) {
   struct Entry {
     Optics optics;
     Sense sense;
+    int walks;
     std::shared_ptr<const GrainTable> table;
   };
-  constexpr std::size_t most_kept = 64;
+  constexpr std::size_t most_kept = 256;  // of 300 KiB
   static std::mutex mutex;
   static std::list<Entry> kept;  // the last used first
   // Only there do the two differ.
@@ -181,14 +196,16 @@ std::shared_ptr<const GrainTable> grain_table(const Optics& optics, Sense sense,
   {
     const std::lock_guard lock(mutex);
     for (auto entry = kept.begin(); entry != kept.end(); ++entry)
-      if (entry->optics == optics && entry->sense == sense) {
+      if (entry->optics == optics && entry->sense == sense && entry->walks == walks) {
         kept.splice(kept.begin(), kept, entry);
         return entry->table;
       }
   }
-  auto table = std::make_shared<const GrainTable>(optics, sense, effort);
+  transport::Effort own = effort;
+  own.seed += seed_of(optics);
+  auto table = std::make_shared<const GrainTable>(optics, sense, own, walks);
   const std::lock_guard lock(mutex);
-  kept.push_front({optics, sense, table});
+  kept.push_front({optics, sense, walks, table});
   if (kept.size() > most_kept) kept.pop_back();
   return table;
 }

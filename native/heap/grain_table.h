@@ -17,9 +17,10 @@ class GrainTable {
   static constexpr int entries = 16;    ///< intervals of the squared cosine
   static constexpr int outcomes = 512;  ///< of each
   static constexpr int lobe_nodes = 16;
+  static constexpr int most_walks = 4096;  ///< for each interval: totals to .2 %
 
-  /// Seconds for thick white media, milliseconds else.
-  GrainTable(const Optics& optics, Sense sense, const transport::Effort& effort);
+  /// Seconds for thick white media, milliseconds else. `walks` for each interval.
+  GrainTable(const Optics& optics, Sense sense, const transport::Effort& effort, int walks = most_walks);
 
   /// What becomes of light that comes in at this cosine, in the frame of sphere_walk.h; `choice` in [0, 1). Its weight
   /// is what is not left to crossing().
@@ -43,6 +44,7 @@ class GrainTable {
   void take_albedo(const GrainTable& grey, int channel);
   void trace(const Optics& optics, Sense sense, const transport::Effort& effort);
 
+  int walks_;
   bool transparent_;
   glm::vec3 sigma_t_;
   glm::vec3 met_{1.0F};
@@ -52,7 +54,9 @@ class GrainTable {
   std::array<glm::vec3, lobe_nodes> lobe_{};
 };
 
-/// Tables that were made before are kept, by what they were made of.
-std::shared_ptr<const GrainTable> grain_table(const Optics& optics, Sense sense, const transport::Effort& effort);
+/// Tables that were made before are kept, by what they were made of. Each has random numbers of its own, so that the
+/// noise of many kinds' tables is none of their heap's.
+std::shared_ptr<const GrainTable> grain_table(const Optics& optics, Sense sense, const transport::Effort& effort,
+                                              int walks);
 
 }  // namespace mesograin::heap

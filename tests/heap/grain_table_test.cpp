@@ -3,9 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
+
+#include "heap/heap.h"
 
 namespace mesograin::heap {
 namespace {
@@ -54,6 +57,24 @@ TEST(GrainTable, ChannelsDoNotKnowOfEachOther) {
     for (std::size_t node = 2; node < GrainTable::lobe_nodes; ++node)
       EXPECT_NEAR(mixed.lobe()[node][channel], grey.lobe()[node][channel], 0.12F) << channel << " " << node;
   }
+}
+
+TEST(GrainTable, TheNoiseOfManyKindsIsNotThatOfTheirMean) {
+  Grains grains;
+  constexpr int kinds = 64;
+  for (int i = 0; i < kinds; ++i)
+    grains.kind(medium(Surface::index_matched, glm::dvec3(3.0 * (1.0 + 1e-9 * i)), glm::dvec3(0.9)));
+  double sum = 0.0;
+  double squares = 0.0;
+  for (const Kind& kind : kinds_of(grains, {})) {
+    const auto albedo = static_cast<double>(kind.from_light->albedo().r);
+    sum += albedo;
+    squares += albedo * albedo;
+  }
+  const double mean = sum / kinds;
+  const GrainTable one(grains.kinds[0], Sense::from_light, {});
+  EXPECT_NEAR(mean, one.albedo().r, 0.003 * mean);
+  EXPECT_GT(std::sqrt(std::max(squares / kinds - mean * mean, 0.0)), 0.0005 * mean) << "all have the same noise";
 }
 
 TEST(GrainTable, OutcomesAreEquallyHeavyAndSumUp) {
