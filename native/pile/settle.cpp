@@ -78,11 +78,12 @@ class Settling {
     std::shuffle(order.begin(), order.end(), random);
     middles_.resize(radii_.size());
     for (std::size_t i = 0; i < order.size(); ++i) {
-      const int in_layer = static_cast<int>(i % static_cast<std::size_t>(columns * rows));
-      const double layer = static_cast<double>(i / static_cast<std::size_t>(columns * rows));
+      const auto of_layer = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
+      const int in_layer = static_cast<int>(i % of_layer);
+      const std::size_t layer = i / of_layer;
       middles_[order[i]] = {along(in_layer % columns, columns, room.x) + jitter(random),
                             along(in_layer / columns, rows, room.y) + jitter(random),
-                            highest + largest_ + layer * spacing};
+                            highest + largest_ + static_cast<double>(layer) * spacing};
       top_ = std::max(top_, middles_[order[i]].z - highest);
     }
     moved_.assign(radii_.size(), glm::dvec3(0.0));

@@ -37,6 +37,7 @@ std::vector<InstanceClass> by_size(const scene::InstanceArray& array) {
               std::floor(sizes_an_octave * std::log2(scale_of(array.object_to_world()[i])) + random_of(i)))]
         .push_back(i);
   std::vector<InstanceClass> classes;
+  classes.reserve(sizes.size());
   for (auto& [size, members] : sizes)
     classes.push_back({std::exp2(size / sizes_an_octave), glm::dmat3(1.0), std::move(members)});
   return classes;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <exception>
 #include <filesystem>
 #include <fstream>
@@ -79,8 +80,11 @@ std::vector<scene::Material> every_choice() {
 
 void write_shading(Writer& writer) {
   // As render::Shading.
+  const std::vector<std::string> clear = {"CLEAR", "WORLD"};
+  const std::vector<std::string> cast = {"SHADOWS", "CAST_SHADOWS"};
   const std::vector<std::vector<std::string>> shadings = {
-      {"INSTANCED"}, {"SHADOWS"}, {"CLEAR", "WORLD"}, {"LIGHTS_AT_PLACE"}, {"INSTANCED", "SHADOWS", "LIGHTS_AT_PLACE"}};
+      {"INSTANCED"}, {"SHADOWS"}, cast, {"EXCHANGE"}, {"LIGHTS_AT_PLACE"}, {"INSTANCED", "SHADOWS", "LIGHTS_AT_PLACE"},
+      clear};
   std::set<std::string> written;
   for (const scene::Material& material : every_choice()) {
     const std::string model(scene::model_names[static_cast<std::size_t>(material.model)]);
@@ -100,6 +104,9 @@ void write_shading(Writer& writer) {
     // What else a program is compiled for asks the same of a model, so one of its choices stands for all of them.
     if (!written.insert(model).second) continue;
     for (const std::vector<std::string>& shading : shadings) {
+      if (shading == clear && !scene::traits_of(material.model).mesh) continue;  // who knows no mesh is never clear
+      // Light is looked up where it enters, in maps.
+      if (shading == cast && std::find(defines.begin(), defines.end(), "LIGHT_MAPS") != defines.end()) continue;
       std::vector<std::string> all = defines;
       all.insert(all.end(), shading.begin(), shading.end());
       const ShaderSource fragment({"passes/shade.frag", "models/" + model + ".glsl"}, all);

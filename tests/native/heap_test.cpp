@@ -201,8 +201,9 @@ TEST_F(HeapTest, ManyCastMaterialsAreEachShadedWithTheirOwn) {
   constexpr int size = side * 5;
   const std::vector<float> pixels = picture(scene, camera, size, size, 1, Visibility::cast);
   for (int i = 0; i < side * side; ++i) {
-    const int x = i % side * 5 + 2, y = size - 1 - (i / side * 5 + 2);
-    const float* pixel = &pixels[static_cast<std::size_t>(4 * (y * size + x))];
+    const auto x = static_cast<std::size_t>(i % side * 5 + 2);
+    const auto y = static_cast<std::size_t>(size - 1 - (i / side * 5 + 2));
+    const float* pixel = &pixels[4 * (y * static_cast<std::size_t>(size) + x)];
     const double expected = (0.2 + 0.6 * i / (side * side)) / 0.5;
     EXPECT_NEAR(pixel[0] / pixel[1], expected, 1e-4) << i;
   }
