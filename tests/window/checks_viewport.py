@@ -231,19 +231,27 @@ def check_an_error_of_a_redraw_is_seen_at_once(window):
     yield from window.converged_picture(area)
     before = yield from window.picture(properties)
     shot = window._screen()
-    render = viewport._render
+    start = viewport._start
 
-    def fail(view, samples):
-        raise window.native.Error("The device is gone: find it.")
+    class Failed:
+        """As a native.Rendering that could not be drawn."""
 
-    viewport._render = fail
+        done = True
+
+        def wait(self, seconds=None):
+            return True
+
+        def result(self):
+            raise window.native.Error("The device is gone: find it.")
+
+    viewport._start = lambda view, samples: Failed()
     try:
         bpy.data.materials["Translucent"].mesograin.reflectance = (0.7, 0.7, 0.7)
         yield from window.until(lambda: status.complaints() == ["The device is gone: find it."])
         yield from window.seconds(1.0)
         changed = np.abs(window._screen() - shot).max(axis=-1) > 0.3
     finally:
-        viewport._render = render
+        viewport._start = start
     after = yield from window.picture(properties)
     region, panel = window.region(area), window.region(properties)
     rows = slice(shot.shape[0] - region.y - region.height, shot.shape[0] - region.y - region.height + 80)
