@@ -156,3 +156,12 @@ def test_another_file_forgets_the_bake(asked):
     bpy.ops.mesograin.bake()
     bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
     assert session.task is None
+
+
+def test_a_bake_that_is_refused_before_the_end_of_another_was_told_disturbs_nothing(asked, tmp_path):
+    session.start(bpy.context)
+    session.task.wait()
+    asked.out = str(tmp_path / "nowhere" / "a.exr")
+    with pytest.raises(session.refusals()):
+        session.start(bpy.context)
+    assert session.task is None and session.poll() is None

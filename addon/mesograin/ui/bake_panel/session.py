@@ -105,6 +105,7 @@ class BakeSession(Session):
         return bake
 
     def start(self, context):
+        self.let_go()
         self.task = None  # what is wrong with this one is not said beside what came of another
         super().start(context)
 

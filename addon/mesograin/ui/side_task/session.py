@@ -45,8 +45,10 @@ class Session:
 
     def start(self, context):
         """Starts what the scene asks for beside the artist. Raises as `launch`."""
-        self.task, self.error = self.launch(context), ""
-        self._under_way = self.task
+        task = self.launch(context)
+        self.let_go()
+        self.task = self._under_way = task
+        self.error = ""
         if not bpy.app.timers.is_registered(self.poll):
             bpy.app.timers.register(self.poll, first_interval=POLL_SECONDS, persistent=True)
 
@@ -68,9 +70,14 @@ class Session:
         """Another file is another scene: what came of the last one's task is none of its own."""
         if self.task is not None:
             self.task.cancel()
+        self.let_go()
+        self.task, self.error = None, ""
+
+    def let_go(self):
+        """The end of the task under way is told to nobody any more; it may clean up."""
         if self._under_way is not None:
             self._leaving.append(self._under_way)
-        self.task, self._under_way, self.error = None, None, ""
+        self._under_way = None
 
     def redraw(self):
         for window in bpy.context.window_manager.windows:
