@@ -16,6 +16,21 @@ struct Quality {
   int light_rays = 64;  ///< to each light
   int seen_rays = 64;   ///< straight through each transparent grain
   float tolerance = 3e-4F;
+  int walks = GrainTable::most_walks;  ///< for each interval of a kind's table, where kinds are few
+  bool quick = false;                  ///< links that were found at other materials will do
+};
+
+/// For a first picture: within a tenth of what the default finds.
+inline constexpr Quality coarse{
+
+    .rays = 16, .light_rays = 16, .seen_rays = 8, .tolerance = 5e-3F, .walks = 512, .quick = true};
+
+/// How often each part of a solution was found anew.
+struct Parts {
+  int tables = 0;
+  int links = 0;
+  int sources = 0;  ///< each light counts
+  int solutions = 0;
 };
 
 /// Of every grain, in their order. Radiance that leaves a grain at a normal and a cosine: that of `answer` times the
@@ -25,8 +40,11 @@ struct HeapLight {
   Field behind;  ///< what is seen through a transparent grain
   Field sent;    ///< exitance over pi because of all light, to begin the next solution from
   std::vector<Kind> kinds;
+  std::size_t links = 0;
   int steps = 0;
   float residual = 0.0F;
+  double milliseconds = 0.0;
+  Parts parts;  ///< since its solver began
 };
 
 /// `before` may be a solution for other lights, materials or places. Throws transport::Stopped.

@@ -28,7 +28,8 @@ struct Kind {
   std::shared_ptr<const GrainTable> from_viewer;
 };
 
-std::vector<Kind> kinds_of(const Grains& grains, const transport::Effort& effort);
+/// `walks` for each interval of a table, or fewer where kinds are many.
+std::vector<Kind> kinds_of(const Grains& grains, int walks, const transport::Effort& effort);
 
 /// A straight line between grains, with what is left of its weight.
 struct Ray {

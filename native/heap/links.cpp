@@ -26,6 +26,15 @@ glm::vec3 unpacked(const std::int16_t (&packed)[3]) {
   return glm::vec3(packed[0], packed[1], packed[2]) * (1.0F / whole);
 }
 
+Link link_to(const Space& space, const Meeting& meeting, const glm::vec3& weight, const glm::vec3& leaves_at) {
+  Link link{meeting.grain, {}, {}, {}};
+  const glm::vec3 sent = weight / space.kind(meeting.grain).from_light->met();
+  pack(meeting.normal, link.sent_at);
+  pack(leaves_at, link.leaves_at);
+  for (int channel = 0; channel < 3; ++channel) link.weight[channel] = sent[channel];
+  return link;
+}
+
 struct Found {
   std::vector<Link> links;
   Coefficients direct;
@@ -91,17 +100,26 @@ Found look_from(const Space& space, std::uint32_t number, int rays, const glm::v
     const Departing& from = departing[i];
     const glm::vec3 weight = from.weight * endings[i].left;
     if (const std::optional<Meeting>& meeting = endings[i].meeting) {
-      Link link{meeting->grain, {}, {}, {}};
-      const glm::vec3 sent = weight / space.kind(meeting->grain).from_light->met();
-      pack(meeting->normal, link.sent_at);
-      pack(from.normal, link.leaves_at);
-      for (int channel = 0; channel < 3; ++channel) link.weight[channel] = sent[channel];
-      found.links.push_back(link);
+      found.links.push_back(link_to(space, *meeting, weight, from.normal));
     } else {
       (endings[i].crossed ? found.crossed : found.direct).add(weight * radiance, from.normal);
     }
   }
   return found;
+}
+
+Links joined(std::vector<std::vector<Link>> found) {
+  Links links;
+  links.first.reserve(found.size() + 1);
+  links.first.push_back(0);
+  std::size_t all = 0;
+  for (const std::vector<Link>& of : found) links.first.push_back(all += of.size());
+  links.links.reserve(all);
+  for (std::vector<Link>& of : found) {
+    links.links.insert(links.links.end(), of.begin(), of.end());
+    of = {};
+  }
+  return links;
 }
 
 }  // namespace
@@ -121,17 +139,7 @@ Links find_links(const Space& space, int rays, const glm::vec3& radiance, WorldL
       lit.crossed[i] = of.crossed;
     }
   });
-  Links links;
-  links.first.reserve(count + 1);
-  links.first.push_back(0);
-  std::size_t all = 0;
-  for (const std::vector<Link>& of : found) links.first.push_back(all += of.size());
-  links.links.reserve(all);
-  for (std::vector<Link>& of : found) {
-    links.links.insert(links.links.end(), of.begin(), of.end());
-    of = {};
-  }
-  return links;
+  return joined(std::move(found));
 }
 
 void Links::gather(const Field& sent, Field& answer, const transport::Effort& effort) const {
@@ -150,9 +158,9 @@ void Links::gather(const Field& sent, Field& answer, const transport::Effort& ef
   });
 }
 
-Field seen_through(const Space& space, const Field& sent, int rays, const transport::Effort& effort) {
+Links find_behind(const Space& space, int rays, const transport::Effort& effort) {
   const std::size_t count = space.grains().size();
-  Field seen(count);
+  std::vector<std::vector<Link>> found(count);
   transport::run_pieces(effort, (count + grains_a_piece - 1) / grains_a_piece, [&](std::size_t piece) {
     for (std::size_t i = piece * grains_a_piece; i < std::min(count, (piece + 1) * grains_a_piece); ++i) {
       const auto number = static_cast<std::uint32_t>(i);
@@ -170,15 +178,14 @@ Field seen_through(const Space& space, const Field& sent, int rays, const transp
         Ray ray{space.place(grain, normal + 2.0F * mu * inwards), inwards, table.crossing(mu)};
         all += ray.weight;
         const std::optional<Meeting> meeting = space.follow(ray, random);
-        if (!meeting) continue;
-        const glm::vec3 weight = ray.weight / space.kind(meeting->grain).from_light->met();
-        seen[i].add(weight * sent[meeting->grain].at(meeting->normal), normal);
+        if (meeting) found[i].push_back(link_to(space, *meeting, ray.weight, normal));
       }
-      for (int channel = 0; channel < 3; ++channel)
-        seen[i].channels[static_cast<std::size_t>(channel)] *= all[channel] > 0.0F ? 1.0F / all[channel] : 0.0F;
+      for (Link& link : found[i])
+        for (int channel = 0; channel < 3; ++channel)
+          link.weight[channel] *= all[channel] > 0.0F ? 1.0F / all[channel] : 0.0F;
     }
   });
-  return seen;
+  return joined(std::move(found));
 }
 
 }  // namespace mesograin::heap

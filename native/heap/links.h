@@ -38,6 +38,6 @@ Links find_links(const Space& space, int rays, const glm::vec3& radiance, WorldL
 
 /// The light that is seen straight through transparent grains, mean over the directions in which it leaves: what others
 /// send, 0 where no grain stands behind.
-Field seen_through(const Space& space, const Field& sent, int rays, const transport::Effort& effort);
+Links find_behind(const Space& space, int rays, const transport::Effort& effort);
 
 }  // namespace mesograin::heap

@@ -141,6 +141,25 @@ py::list timings(render::View& view) {
   return result;
 }
 
+py::dict of_exchange(const render::ExchangeStatistics& exchange) {
+  py::dict result;
+  result["grains"] = exchange.grains;
+  result["others"] = exchange.others;
+  result["kinds"] = exchange.kinds;
+  result["links"] = exchange.links;
+  result["steps"] = exchange.steps;
+  result["residual"] = exchange.residual;
+  result["milliseconds"] = exchange.milliseconds;
+  result["final"] = exchange.final;
+  py::dict found;
+  found["tables"] = exchange.parts.tables;
+  found["links"] = exchange.parts.links;
+  found["sources"] = exchange.parts.sources;
+  found["solutions"] = exchange.parts.solutions;
+  result["found"] = found;
+  return result;
+}
+
 py::dict statistics(render::View& view) {
   const render::Statistics counts = [&] {
     const py::gil_scoped_release release;
@@ -151,6 +170,7 @@ py::dict statistics(render::View& view) {
   result["drawn"] = counts.drawn;
   result["cast"] = counts.cast;
   result["seen"] = counts.seen;
+  result["exchange"] = counts.exchange ? py::object(of_exchange(*counts.exchange)) : py::object(py::none());
   return result;
 }
 
@@ -222,9 +242,9 @@ void bind_view(py::module_& module) {
       "one pixel wide). Many views share one device and what was sent to it.")
       .def(py::init<int, int, std::uint32_t, bool>(), py::arg("width"), py::arg("height"), py::arg("seed") = 0,
            py::arg("patient") = true, Release(),
-           "Light's transport in meshes takes seconds to compute, in the background. A patient view draws nothing "
-           "before "
-           "it is known; another draws what is known, and take_news() tells when it is more.")
+           "Light's transport in meshes and light between grains take seconds to compute, in the background. A patient "
+           "view draws nothing before they are known; another draws what is known, and take_news() tells when it is "
+           "more.")
       .def("resize", &render::View::resize, py::arg("width"), py::arg("height"), Release(),
            "Reallocates the targets and nothing else.")
       .def("set_scene", &render::View::set_scene, py::arg("scene"), Release(),
@@ -254,7 +274,7 @@ void bind_view(py::module_& module) {
            "where they are cut off, 'warnings': sentences about both}. Raises Error if nothing is being baked or no "
            "texel is covered.")
       .def("take_news", &render::View::take_news, Release(),
-           "Takes in what has become known of light's transport since; if anything has, restarts the accumulation. "
+           "Takes in what has become known of light since; if anything has, restarts the accumulation. "
            "Returns whether it did.")
       .def_property_readonly("preparing", &render::View::preparing,
                              "The share that is done of what the scene's picture waits for; None if all is known.")
@@ -277,7 +297,11 @@ void bind_view(py::module_& module) {
           "`out`, if given, is filled and returned.")
       .def("statistics", &statistics,
            "What of the scene's arrays the last sample took the trouble of: {'instances': there are, 'drawn': that the "
-           "device drew for the camera, 'cast': that rays were cast at, 'seen': of those, that rays met}.")
+           "device drew for the camera, 'cast': that rays were cast at, 'seen': of those, that rays met, 'exchange': "
+           "of light from grain to grain, None where there is none: {'grains': that send light to each other, "
+           "'others': objects that do not, 'kinds': of grains, 'links': ways of light between them, 'steps' and "
+           "'residual' of the solution, 'milliseconds' that it took, 'final': no better one is under way, 'found': how "
+           "often its 'tables', 'links', 'sources' and 'solutions' were found so far}}.")
       .def("read_surfaces", &read_surfaces,
            "What rays through the pixels' middles meet, whatever the samples so far: {'position': (height, width, 4) "
            "float32, in the world, and 1, or 0 where they meet nothing; 'normal': (height, width, 3), of unit length, "

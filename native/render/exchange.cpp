@@ -1,7 +1,6 @@
-// Gathers a view's grains, has the exchange between them solved on a thread of its own, and packs the answer.
+// Gathers a view's grains, has the exchange between them solved, and packs the answer.
 #include "render/exchange.h"
 
-#include <chrono>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -72,10 +71,10 @@ class Gatherer {
 
 Gatherer gather(const Content& content) {
   Gatherer gatherer;
-  if (const Instances* instances = content.instances())
-    for (const InstanceGroup& group : instances->groups())
-      for (std::uint32_t i = group.first; i < group.first + group.count; ++i)
-        gatherer.add(instances->prototypes()[group.prototype].mesh, group.source, instances->ball(i));
+  const Instances& instances = *content.instances();
+  for (const InstanceGroup& group : instances.groups())
+    for (std::uint32_t i = group.first; i < group.first + group.count; ++i)
+      gatherer.add(instances.prototypes()[group.prototype].mesh, group.source, instances.ball(i));
   for (const Draw& draw : content.draws())
     gatherer.add(draw.source, draw.look,
                  glm::vec4(glm::vec3(draw.centre - content.anchor()), static_cast<float>(draw.reach)));
@@ -88,68 +87,71 @@ void append(std::vector<glm::vec4>& numbers, const heap::Coefficients& coefficie
 
 }  // namespace
 
-Exchange::~Exchange() { stop(); }
-
-void Exchange::stop() {
-  stop_ = true;
-  if (solving_.valid()) solving_.wait();
-  solving_ = {};
-  stop_ = false;
-}
-
 void Exchange::set(const Content& content, const scene::Scene& scene) {
-  Gatherer gathered = gather(content);
-  if (scene.exchange == scene::Exchange::off || gathered.grains.grains.size() < 2) {
-    stop();
+  Gatherer gathered;
+  if (scene.exchange != scene::Exchange::off && content.instances() != nullptr) gathered = gather(content);
+  if (gathered.grains.grains.size() < 2) {
+    if (heap_) solving_->end();
     heap_.reset();
+    known_.reset();
     device_.reset();
     return;
   }
   heap::Heap heap{std::move(gathered.grains), content.anchor(), scene.lights, scene.world};
-  const bool same = heap_ && grain_of_ == gathered.grain_of && *heap_ == heap;
-  if (same) return;
-  stop();
+  const bool regrouped = !heap_ || grain_of_ != gathered.grain_of;
+  if (!regrouped && *heap_ == heap) return;
+  solving_->begin(heap);
   heap_ = std::move(heap);
   grain_of_ = std::move(gathered.grain_of);
-  solving_ = std::async(std::launch::async, [this, copy = *heap_, before = sent_] {
-    const auto started = std::chrono::steady_clock::now();
-    transport::Effort effort;
-    effort.stop = &stop_;
-    heap::HeapLight light = heap::solve_exchange(copy, {}, before, effort);
-    const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - started;
-    return Solved{std::move(light), took.count()};
-  });
+  if (regrouped) send();
 }
 
-bool Exchange::wait(const GoOn& go_on) {
-  milliseconds_ = 0.0;
-  if (!solving_.valid()) return true;
-  constexpr std::chrono::milliseconds between_questions(5);
-  while (solving_.wait_for(between_questions) != std::future_status::ready)
-    if (!go_on()) return false;
-  Solved solved = solving_.get();
-  send(solved.light);
-  sent_ = std::move(solved.light.sent);
-  milliseconds_ = solved.milliseconds;
+bool Exchange::take_news() {
+  if (!heap_) return false;
+  heap::News news = solving_->news();
+  if (news.number == news_ || !news.light) return false;
+  news_ = news.number;
+  known_ = Known{heap_->grains, std::move(news.light)};
+  send();
   return true;
 }
 
-void Exchange::send(const heap::HeapLight& light) {
+ExchangeStatistics Exchange::statistics() const {
+  ExchangeStatistics result;
+  if (!heap_) return result;
+  result.grains = heap_->grains.grains.size();
+  result.others = grain_of_.size() - result.grains;
+  result.kinds = heap_->grains.kinds.size();
+  result.final = solving_->news().final;
+  if (!known_) return result;
+  const heap::HeapLight& light = *known_->light;
+  result.links = light.links;
+  result.steps = light.steps;
+  result.residual = light.residual;
+  result.milliseconds = light.milliseconds;
+  result.parts = light.parts;
+  return result;
+}
+
+void Exchange::send() {
   std::vector<glm::vec4> numbers;
   numbers.reserve(grain_of_.size() * object_numbers);
   const std::size_t kinds_begin = grain_of_.size() * object_numbers;
   constexpr std::size_t kind_numbers = heap::GrainTable::lobe_nodes + 1;
+  const std::size_t known = known_ ? known_->grains.grains.size() : 0;
   for (const std::optional<std::uint32_t>& grain : grain_of_) {
-    append(numbers, grain ? light.answer[*grain] : heap::Coefficients{});
-    append(numbers, grain ? light.behind[*grain] : heap::Coefficients{});
-    const std::size_t kind = grain ? kinds_begin + kind_numbers * heap_->grains.grains[*grain].kind : 0;
-    numbers.emplace_back(grain ? static_cast<float>(kind) : -1.0F, 0.0F, 0.0F, 0.0F);
+    // A grain that has just come is dark for a moment.
+    const bool lit = grain && *grain < known;
+    append(numbers, lit ? known_->light->answer[*grain] : heap::Coefficients{});
+    append(numbers, lit ? known_->light->behind[*grain] : heap::Coefficients{});
+    const std::size_t kind = lit ? kinds_begin + kind_numbers * known_->grains.grains[*grain].kind : 0;
+    numbers.emplace_back(lit ? static_cast<float>(kind) : -1.0F, 0.0F, 0.0F, 0.0F);
   }
-  for (std::size_t kind = 0; kind < light.kinds.size(); ++kind) {
-    const heap::Optics& optics = heap_->grains.kinds[kind];
+  for (std::size_t kind = 0; known_ && kind < known_->light->kinds.size(); ++kind) {
+    const heap::Optics& optics = known_->grains.kinds[kind];
     // What is not transparent lets nothing through.
     numbers.emplace_back(optics.transparent() ? glm::vec3(optics.sigma_t) : glm::vec3(1e30F), 0.0F);
-    for (const glm::vec3& node : light.kinds[kind].from_light->lobe()) numbers.emplace_back(node, 0.0F);
+    for (const glm::vec3& node : known_->light->kinds[kind].from_light->lobe()) numbers.emplace_back(node, 0.0F);
   }
   device_.emplace(numbers);
 }

@@ -2,57 +2,71 @@
 // and then four numbers a channel for each object that shaders add to what the lights do.
 #pragma once
 
-#include <atomic>
-#include <future>
+#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "gl/buffer.h"
-#include "heap/exchange.h"
+#include "heap/solving.h"
 #include "render/content.h"
-#include "render/surfaces.h"
 #include "scene/scene.h"
 
 namespace mesograin::render {
 
+/// What is drawn of light between grains.
+struct ExchangeStatistics {
+  std::size_t grains = 0;     ///< that send light to each other
+  std::size_t others = 0;     ///< objects that do not
+  std::size_t kinds = 0;      ///< of grains, by material and size
+  std::size_t links = 0;      ///< ways of light between grains
+  int steps = 0;              ///< of the solution
+  float residual = 0.0F;      ///< that they left, of what lights do
+  double milliseconds = 0.0;  ///< that the solution took
+  bool final = true;          ///< no better one is under way
+  heap::Parts parts;          ///< found anew so far
+};
+
 class Exchange {
  public:
   Exchange() = default;
-  ~Exchange();
   Exchange(const Exchange&) = delete;
   Exchange& operator=(const Exchange&) = delete;
 
-  /// Takes what a view draws, and begins to solve if anything has changed that light depends on.
+  /// Takes what a view draws, and begins to solve if anything has changed that light depends on. Until more is known,
+  /// what was known before is drawn.
   void set(const Content& content, const scene::Scene& scene);
 
   /// Whether any light goes from grain to grain.
   bool any() const { return heap_.has_value(); }
 
-  /// Waits for the solution. False if it is not to `go_on`: the solution is not given up for it.
-  bool wait(const GoOn& go_on);
+  /// Takes in what has become known since. Returns whether anything has.
+  bool take_news();
 
-  /// Milliseconds that the last call of wait() found to have gone into a new solution; 0 if there was none.
-  double milliseconds() const { return milliseconds_; }
+  /// What a picture waits for.
+  std::shared_ptr<const heap::Solving> solving() const { return solving_; }
+
+  ExchangeStatistics statistics() const;
 
   /// Makes it what shaders/heap/light_from_grains.glsl reads.
   void bind() const { device_->bind_storage(8); }
 
  private:
-  struct Solved {
-    heap::HeapLight light;
-    double milliseconds;
+  /// What is drawn.
+  struct Known {
+    heap::Grains grains;
+    std::shared_ptr<const heap::HeapLight> light;
   };
 
-  void stop();
-  void send(const heap::HeapLight& light);
+  void send();
 
   std::optional<heap::Heap> heap_;
   std::vector<std::optional<std::uint32_t>> grain_of_;  // the grain that an object is, by its number
-  std::atomic<bool> stop_{false};
-  std::future<Solved> solving_;
-  heap::Field sent_;
+  std::shared_ptr<heap::Solving> solving_ = std::make_shared<heap::Solving>();
+  int news_ = 0;  // taken in
+  std::optional<Known> known_;
   std::optional<gl::Buffer> device_;
-  double milliseconds_ = 0.0;
 };
 
 }  // namespace mesograin::render

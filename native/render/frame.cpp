@@ -155,7 +155,8 @@ UvUse Frame::uv_use() {
 
 bool Frame::take_news() {
   cache_.take_news();
-  if (content_->version() == version_) return false;
+  const bool lit = exchange_.take_news();
+  if (content_->version() == version_ && !lit) return false;
   version_ = content_->version();
   content_->take_news();
   samples_ = 0;
@@ -206,7 +207,6 @@ void Frame::prepare_visibility() {
 }
 
 bool Frame::add_sample(const GoOn& go_on) {
-  if (!exchange_.wait(go_on)) return false;
   prepare_visibility();
   const std::vector<Draw>& draws = content_->draws();
   const bool own_maps =
@@ -618,7 +618,6 @@ void Frame::read_surfaces(float* positions, float* normals) {
 std::vector<PassTiming> Frame::timings() const {
   if (!timed_) return {};
   std::vector<PassTiming> passes;
-  if (exchange_.milliseconds() > 0.0) passes.push_back({"exchange", exchange_.milliseconds()});
   if (light_maps_drawn_ > 0) passes.push_back({"light_maps", light_map_timer_.milliseconds()});
   if (casts()) {
     passes.push_back({"surfaces", surface_milliseconds_});
@@ -637,6 +636,7 @@ std::vector<PassTiming> Frame::timings() const {
 
 Statistics Frame::statistics() const {
   Statistics result;
+  if (exchange_.any()) result.exchange = exchange_.statistics();
   if (content_->instances() == nullptr) return result;
   result.instances = content_->instances()->count();
   if (samples_ == 0 || bake_) return result;

@@ -54,6 +54,7 @@ struct Statistics {
   std::size_t drawn = 0;      ///< that the device drew for the camera, in as few triangles as they deserve
   std::size_t cast = 0;       ///< that rays were cast at
   std::size_t seen = 0;       ///< of those, that rays met
+  std::optional<ExchangeStatistics> exchange;  ///< where light goes from grain to grain
 };
 
 /// Lives on the context's thread.
@@ -90,6 +91,7 @@ class Frame {
   std::vector<std::shared_ptr<const transport::Computation>> computations() const {
     return content_->computations(cache_);
   }
+  std::shared_ptr<const heap::Solving> solving() const { return exchange_.solving(); }
 
   /// Waits until the device has drawn what was asked for.
   void finish() const;

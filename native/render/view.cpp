@@ -36,9 +36,9 @@ std::uint64_t next_id() {
 
 View::View(int width, int height, std::uint32_t seed, bool patient)
     : id_(next_id()), width_(width), height_(height), patient_(patient) {
-  gl::ContextThread::instance().run([&] {
+  solving_ = gl::ContextThread::instance().run([&] {
     Device& here = device();
-    here.frames.try_emplace(id_, here.cache, width, height, seed);
+    return here.frames.try_emplace(id_, here.cache, width, height, seed).first->second.solving();
   });
 }
 
@@ -102,6 +102,7 @@ std::optional<double> View::preparing() const {
     sum += known ? 1.0 : computation->progress();
     final = final && known;
   }
+  if (!solving_->news().final) return (sum + solving_->progress()) / static_cast<double>(computations_.size() + 1);
   if (final) return std::nullopt;
   return sum / static_cast<double>(computations_.size());
 }
@@ -114,6 +115,8 @@ std::vector<std::string> View::warnings() const {
     const std::string sentence = unsuitable + " It is drawn by model_3.";
     if (std::find(sentences.begin(), sentences.end(), sentence) == sentences.end()) sentences.push_back(sentence);
   }
+  const std::string failure = solving_->news().failure;
+  if (!failure.empty()) sentences.push_back(failure + " Light between grains is left out.");
   return sentences;
 }
 
@@ -142,13 +145,17 @@ std::future<double> View::start(int samples) {
   };
   if (!patient_ || !preparing()) return gl::ContextThread::instance().post(draw);
   // The context's thread goes on drawing for others meanwhile.
-  return std::async(std::launch::async, [draw, computations = computations_, cancelled = cancelled_] {
-    constexpr std::chrono::milliseconds patience(20);
-    for (const auto& computation : computations)
-      while (!computation->wait(patience))
-        if (*cancelled) return 0.0;
-    return gl::ContextThread::instance().run(draw);
-  });
+  return std::async(std::launch::async,
+                    [draw, computations = computations_, solving = solving_, cancelled = cancelled_] {
+                      constexpr std::chrono::milliseconds patience(20);
+                      const auto known = [&](const auto& computation) {
+                        while (!computation->wait(patience))
+                          if (*cancelled) return false;
+                        return true;
+                      };
+                      if (!std::all_of(computations.begin(), computations.end(), known) || !known(solving)) return 0.0;
+                      return gl::ContextThread::instance().run(draw);
+                    });
 }
 
 void View::cancel() { *cancelled_ = true; }

@@ -21,8 +21,8 @@ namespace mesograin::render {
 /// Every call posts to the context's thread. Throws Error for what cannot be drawn, always before anything changes.
 class View {
  public:
-  /// Light's transport in meshes is computed for seconds, elsewhere. A patient view draws nothing before it is known;
-  /// another draws what is known, and take_news() tells when it is more.
+  /// Light's transport in meshes and light between grains are computed for seconds, elsewhere. A patient view draws
+  /// nothing before they are known; another draws what is known, and take_news() tells when it is more.
   View(int width, int height, std::uint32_t seed = 0, bool patient = true);
   ~View();
   View(const View&) = delete;
@@ -101,6 +101,7 @@ class View {
   int height_;
   bool patient_;
   std::vector<std::shared_ptr<const transport::Computation>> computations_;
+  std::shared_ptr<const heap::Solving> solving_;
   std::shared_ptr<std::atomic<int>> samples_ = std::make_shared<std::atomic<int>>(0);
   std::shared_ptr<std::atomic<bool>> cancelled_ = std::make_shared<std::atomic<bool>>(false);
 };

@@ -7,33 +7,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "heaps.h"
+
 namespace mesograin::heap {
 namespace {
-
-Optics medium(double sigma_t, double albedo) {
-  Optics optics;
-  optics.surface = Surface::index_matched;
-  optics.sigma_t = glm::dvec3(sigma_t);
-  optics.albedo = glm::dvec3(albedo);
-  return optics;
-}
-
-Optics lambert(double reflectance) {
-  Optics optics;
-  optics.reflectance = glm::dvec3(reflectance);
-  return optics;
-}
-
-/// Spheres of radius 1 on a cubic lattice, a little apart.
-Heap lattice(int side, const Optics& optics, double spacing = 2.05) {
-  Heap heap;
-  heap.grains.kinds = {optics};
-  for (int x = 0; x < side; ++x)
-    for (int y = 0; y < side; ++y)
-      for (int z = 0; z < side; ++z)
-        heap.grains.grains.push_back({glm::vec3(x, y, z) * static_cast<float>(spacing), 1.0F, 0});
-  return heap;
-}
 
 TEST(Exchange, KeepsAWhiteFurnaceEven) {
   for (const double sigma_t : {0.01, 1.0, 10.0}) {

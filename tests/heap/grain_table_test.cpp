@@ -66,7 +66,7 @@ TEST(GrainTable, TheNoiseOfManyKindsIsNotThatOfTheirMean) {
     grains.kind(medium(Surface::index_matched, glm::dvec3(3.0 * (1.0 + 1e-9 * i)), glm::dvec3(0.9)));
   double sum = 0.0;
   double squares = 0.0;
-  for (const Kind& kind : kinds_of(grains, {})) {
+  for (const Kind& kind : kinds_of(grains, GrainTable::most_walks, {})) {
     const auto albedo = static_cast<double>(kind.from_light->albedo().r);
     sum += albedo;
     squares += albedo * albedo;

@@ -3,6 +3,7 @@
 
 import json
 import pathlib
+import time
 
 import mesograin_native as native
 import numpy
@@ -45,17 +46,21 @@ def material(of, model):
                            boundary=of["boundary"])
 
 
-def picture(image, model, exchange, samples=16):
-    """The green channel."""
+def heap(of):
+    """native.InstanceArray of the spheres, of this native.Material."""
     transforms = numpy.zeros((len(SPHERES), 4, 4))
     transforms[:, :3, 3] = SPHERES[:, :3]
     for axis in range(3):
         transforms[:, axis, axis] = SPHERES[:, 3]
     transforms[:, 3, 3] = 1.0
-    heap = native.InstanceArray(sphere(), material(image["material"], model), transforms)
+    return native.InstanceArray(sphere(), of, transforms)
+
+
+def picture(image, model, exchange, samples=16):
+    """The green channel."""
     sun = native.DirectionalLight(tuple(image["light"]["direction_to_light"]), (numpy.pi,) * 3)
     view = native.View(*MANIFEST["resolution"])
-    view.set_scene(native.Scene(arrays=[heap], lights=[sun], exchange=exchange))
+    view.set_scene(native.Scene(arrays=[heap(material(image["material"], model))], lights=[sun], exchange=exchange))
     view.set_camera(camera())
     view.render(samples)
     return view.read()[..., 1]
@@ -78,3 +83,118 @@ def test_a_heap_is_as_bright_as_it_is(file, model):
 def test_an_unknown_exchange_is_refused_with_what_is_allowed():
     with pytest.raises(native.Error, match="off, order_1"):
         native.Scene(exchange="order_9")
+
+
+# As they are seen in a viewport
+
+def white(sigma_s=1.0):
+    return native.Material(model="model_2", sigma_a=(0.001, 0.002, 0.005), sigma_s=(sigma_s,) * 3,
+                           boundary="index_matched")
+
+
+def lit(array, to_light=(0.0, 0.6, 0.8)):
+    return native.Scene(arrays=[array], lights=[native.DirectionalLight(to_light, (numpy.pi,) * 3)], exchange="order_1")
+
+
+def green(view, samples=4):
+    view.render(samples)
+    return blocks(view.read()[..., 1])
+
+
+def patiently(scene):
+    view = native.View(*MANIFEST["resolution"])
+    view.set_scene(scene)
+    view.set_camera(camera())
+    return green(view)
+
+
+def each_news(view):
+    """What a view that waits for nothing draws, whenever more is known."""
+    deadline = time.monotonic() + 60.0
+    while time.monotonic() < deadline:
+        known = view.preparing is None  # asked first, so that the last news is not missed
+        if view.take_news():
+            yield green(view)
+        if known:
+            return
+        time.sleep(0.002)
+    raise AssertionError("The light was not found in a minute.")
+
+
+def apart(found, right):
+    return numpy.abs(found - right).sum() / right.sum()
+
+
+def found(view):
+    return view.statistics()["exchange"]["found"]
+
+
+@pytest.fixture
+def viewport():
+    """(view, array): a viewport at rest that shows a white heap."""
+    view = native.View(*MANIFEST["resolution"], patient=False)
+    array = heap(white())
+    view.set_scene(lit(array))
+    view.set_camera(camera())
+    assert list(each_news(view))
+    return view, array
+
+
+# Measured: a sixth of a second to the coarse answer, which is 3 % from the final one.
+def test_a_viewport_shows_what_is_known_of_a_heaps_light_and_then_more():
+    view = native.View(*MANIFEST["resolution"], patient=False)
+    view.set_scene(lit(heap(white())))
+    view.set_camera(camera())
+    assert view.preparing is not None
+    first = green(view, 1)
+    right = patiently(lit(heap(white())))
+    assert apart(first, right) > 0.3, "it has waited for the light"
+    pictures = list(each_news(view))
+    assert apart(pictures[0], right) < 0.1
+    assert numpy.array_equal(pictures[-1], right)
+    statistics = view.statistics()["exchange"]
+    assert statistics["final"] and statistics["grains"] == len(SPHERES) and statistics["others"] == 0
+    assert statistics["links"] > 50 * len(SPHERES) and statistics["residual"] < 1e-3 < statistics["milliseconds"]
+
+
+def test_a_camera_finds_no_light_anew(viewport):
+    view, _ = viewport
+    before = found(view)
+    view.set_camera(native.Camera.look_at((60.0, 0.0, 80.0), (0.0, 0.0, 0.0), (0.0, 0.0, 1.0), 30.0))
+    assert view.preparing is None and not view.take_news()
+    view.render(1)
+    assert found(view) == before
+
+
+@pytest.mark.parametrize("change, redone", [
+    (lambda array: lit(array, (0.0, 0.5, 0.8)), {"tables": 0, "links": 0, "sources": 2}),
+    (lambda array: lit(array.with_material(white(1.2))), {"tables": 2, "links": 1, "sources": 1}),
+    (lambda array: lit(native.InstanceArray(sphere(), array.material, array.transforms * MOVED)),
+     {"tables": 0, "links": 2, "sources": 2})],
+    ids=["light", "slider", "grains"])
+def test_a_change_finds_anew_what_it_touches(viewport, change, redone):
+    view, array = viewport
+    before = found(view)
+    scene = change(array)
+    view.set_scene(scene)
+    right = patiently(scene)
+    at_once = green(view)
+    pictures = list(each_news(view))
+    assert apart(pictures[0], right) < 0.1
+    assert apart(at_once, right) < 0.2, "what was known before is shown until more is known"
+    # It began from what it had: no further from the answer than the tolerance of either.
+    assert apart(pictures[-1], right) < 1e-3
+    assert {name: found(view)[name] - before[name] for name in redone} == redone
+
+
+MOVED = numpy.ones((len(SPHERES), 4, 4))
+MOVED[::7, :3, 3] = 1.01
+
+
+def test_what_is_no_heap_pays_nothing():
+    view = native.View(16, 16)
+    view.set_scene(native.Scene(instances=[native.Instance(sphere(), white())], exchange="order_1"))
+    view.set_camera(native.Camera.look_at((0.0, 0.0, 5.0), (0.0, 0.0, 0.0), (0.0, 1.0, 0.0), 40.0))
+    assert view.preparing is None
+    view.render(1)
+    assert view.statistics()["exchange"] is None

@@ -81,7 +81,7 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
             self.report({"WARNING"}, warning)
         timings = tuple((timing["pass"], timing["milliseconds"]) for timing in view.timings())
         status.put(status.RENDER, status.Status(view.samples, region.width, region.height, timings,
-                                                (*warnings, *view.warnings)))
+                                                (*warnings, *view.warnings), exchange=status.exchange(view)))
 
     def _camera(self, depsgraph, width, height, region, eye):
         """native.Camera of the eye of this name, or of the camera as it is."""
@@ -179,7 +179,7 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
         share = session.preparing
         self.update_stats("", line if share is None else f"{_preparing(share)} | {line}")
         if status.put(status.VIEWPORT, status.Status(session.samples, region.width, region.height, session.timings(),
-                                                     warnings)):
+                                                     warnings, exchange=session.exchange())):
             _redraw_panels()
 
     def _draw_texture(self, scene, region):
@@ -210,7 +210,7 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
 
 
 def _preparing(share):
-    return f"Light's transport in the grain: {share or 0.0:.0%}"
+    return f"Light in and between grains: {share or 0.0:.0%}"
 
 
 def _set_pass(result, name, pixels):

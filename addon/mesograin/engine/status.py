@@ -5,6 +5,35 @@ RENDER, VIEWPORT = "render", "viewport"
 
 
 @dataclasses.dataclass(frozen=True)
+class Exchange:
+    """What was done for light between grains."""
+
+    grains: int
+    others: int  # objects that send no such light
+    kinds: int
+    links: int
+    steps: int
+    residual: float
+    milliseconds: float
+    final: bool
+
+    def lines(self):
+        """Short lines of text."""
+        if not self.links:
+            return (f"between {self.grains} grains: being found",)
+        others = f", {self.others} other objects without" if self.others else ""
+        return (f"between {self.grains} grains of {self.kinds} kinds: {self.milliseconds:.0f} ms{others}",
+                f"{self.links} links, {self.steps} steps, {self.residual:.1g} left"
+                + ("" if self.final else ", being refined"))
+
+
+def exchange(view):
+    """Exchange of what a native.View draws; None where no light goes from grain to grain."""
+    counts = view.statistics()["exchange"]
+    return counts and Exchange(**{field.name: counts[field.name] for field in dataclasses.fields(Exchange)})
+
+
+@dataclasses.dataclass(frozen=True)
 class Status:
     """A snapshot without references into Blender; `error` is one sentence, or empty."""
 
@@ -14,6 +43,7 @@ class Status:
     passes: tuple = ()  # (name, milliseconds) of the last sample
     warnings: tuple = ()
     error: str = ""
+    exchange: Exchange = None
 
 
 _latest = {}

@@ -5,6 +5,7 @@ import numpy as np
 
 from .. import native_module
 from ..scene import meshes
+from . import status
 
 # A redraw may wait this long for samples under way: short enough for a fluid window, long enough that a fast device
 # answers a change within the same redraw.
@@ -95,6 +96,10 @@ class Session:
 
     def timings(self):
         return tuple((timing["pass"], timing["milliseconds"]) for timing in self._view.timings())
+
+    def exchange(self):
+        """status.Exchange of what is drawn, or None."""
+        return status.exchange(self._view)
 
     @property
     def busy(self):

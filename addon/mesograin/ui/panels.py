@@ -244,6 +244,8 @@ class MESOGRAIN_PT_statistics(MesograinPanel, bpy.types.Panel):
         column.label(text=f"{title}: {latest.width} x {latest.height}, {latest.samples} samples")
         for name, milliseconds in latest.passes:
             column.label(text=f"{name}: {milliseconds:.2f} ms", icon="BLANK1")
+        for line in latest.exchange.lines() if latest.exchange else ():
+            column.label(text=f"light {line}", icon="BLANK1")
 
 
 register, unregister = bpy.utils.register_classes_factory(

@@ -1,0 +1,76 @@
+// The exchange solved again and again while a heap changes: what a change does not touch is kept, and a solution begins
+// from the one before.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "heap/exchange.h"
+#include "heap/links.h"
+
+namespace mesograin::heap {
+
+/// Lives on one thread.
+class Solver {
+ public:
+  Solver() = default;
+
+  /// `sent` may be a solution for other lights, materials or places.
+  explicit Solver(Field sent) : sent_(std::move(sent)) {}
+
+  /// Throws transport::Stopped; what was found until then is kept.
+  HeapLight solve(const Heap& heap, const Quality& quality, const transport::Effort& effort);
+
+ private:
+  /// What grains are made of, and as rays meet them.
+  struct Matter {
+    Grains grains;
+    int walks = 0;  ///< of each interval of their tables
+    std::vector<Kind> kinds;
+    std::optional<Space> space;  ///< of this; made when rays are traced
+  };
+
+  /// What was found of grains by rays.
+  struct Ways {
+    std::shared_ptr<const Matter> matter;
+    int rays = 0;
+    Links links;
+    Links behind;
+    WorldLit world;  ///< of a world whose radiance is 1
+  };
+
+  /// What one light, or a world that is an image, does.
+  struct Source {
+    Heap light;  ///< without grains
+    std::shared_ptr<const Matter> matter;
+    int rays = 0;
+    WorldLit lit;
+  };
+
+  /// How much more, at other materials, each grain sends out of what comes to it, and others' share of what it sends.
+  struct Change {
+    std::vector<glm::vec3> answered;
+    std::vector<glm::vec3> received;
+  };
+
+  void find_matter(const Grains& grains, const Quality& quality, const transport::Effort& effort);
+  const Space& space();
+  void find_ways(const Quality& quality, const transport::Effort& effort);
+  WorldLit find_direct(const Heap& heap, const Quality& quality, const transport::Effort& effort);
+  const Source& find_source(Heap light, const Quality& quality, const transport::Effort& effort);
+
+  /// Whether what was found with `other` and this many rays serves.
+  bool serves(const std::shared_ptr<const Matter>& other, int rays, int wanted, const Quality& quality) const;
+
+  /// From `other` to what there is now; nothing between the same.
+  std::optional<Change> change_from(const Matter& other) const;
+
+  std::shared_ptr<Matter> matter_;
+  std::optional<Ways> ways_;
+  std::vector<Source> sources_;
+  Field sent_;
+  Parts parts_;
+};
+
+}  // namespace mesograin::heap
