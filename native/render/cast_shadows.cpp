@@ -112,7 +112,6 @@ bool CastShadows::cast(const CastContent& cast, const Content& content, const Se
   });
   if (!whole) return false;
   if (!device_ || device_->width() != size.x || device_->height() != size.y) {
-    device_.reset();
     device_.emplace(GL_R32UI, size.x, size.y);
   }
   device_->upload(GL_RED_INTEGER, GL_UNSIGNED_INT, reached_.data());

@@ -110,7 +110,6 @@ bool ShadowMaps::update(const std::vector<ShadowEye>& eyes, const Receivers& rec
                         const Bounds& over_ground, int resolution, const glm::dvec2& jitter, const DrawCasters& draw) {
   const auto layers = static_cast<int>(eyes.size());
   if (!maps_ || maps_->layers() != layers || maps_->width() != resolution) {
-    maps_.reset();
     maps_.emplace(GL_RG32F, resolution, resolution, layers);
     depth_.emplace(GL_DEPTH_COMPONENT32F, resolution, resolution);
   }
