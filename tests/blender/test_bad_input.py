@@ -22,7 +22,9 @@ def scene():
     scene.render.resolution_x = scene.render.resolution_y = 16
     scene.mesograin.samples = 1
     cube = add_cube()
-    cube.data.materials.append(bpy.data.materials.new("Sand"))
+    sand = bpy.data.materials.new("Sand")  # from Blender 5 on with nodes, of which something would be left out
+    sand.mesograin.model = "lambert"
+    cube.data.materials.append(sand)
     add_camera((0.0, 0.0, 6.0))
     add_sun((0.2, 0.1, 1.0), 3.0)
     return scene
