@@ -119,3 +119,12 @@ def has_even_lights():
 
     # That shows in no property; lights for some objects alone came with the same version.
     return "light_linking" in bpy.types.Object.bl_rna.properties
+
+
+def frees_first_instances():
+    """Whether `foreach_get` of a dependency graph's instances frees those of the first object, which it looks at once
+    more beforehand; before Blender 5 it keeps them until Blender quits."""
+    import bpy
+
+    # That shows in no property; scenes' compositing groups came no earlier.
+    return "compositing_node_group" in bpy.types.Scene.bl_rna.properties

@@ -31,7 +31,10 @@ def placings(heap):
     return np.frombuffer(heap.placings, dtype=np.float32).reshape(-1, 4, 4)
 
 
-def test_many_are_one_array_where_blender_has_them():
+@pytest.mark.parametrize("begins_with", ["the instancer", "another object"])
+def test_many_are_one_array_where_blender_has_them(begins_with):
+    if begins_with == "another object":
+        add_sun((0.0, 0.0, 1.0), math.pi)
     scatter(grid())
     values = read_scene()
     [heap] = values.heaps

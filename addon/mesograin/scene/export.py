@@ -1,4 +1,5 @@
 # From Blender's dependency graph to the native module's scene and camera: plain values, copied, nothing borrowed.
+import array
 import dataclasses
 import math
 import typing
@@ -271,39 +272,35 @@ class _Reader:
         self._varied = varied
         self._materials = {}
         self._instances = []
-        self._groups = {}  # {address of a shape: heaps.Group, or None for what is read one by one}
+        self._groups = []  # heaps.Group of each shape that is read with all its placings at once
         self._lights = []
         self._warnings = {}
 
     def read_all(self, depsgraph):
-        """Of instancers' placings there may be a million: what the shape alone tells is found once, and slices are the
-        fastest way out of a Blender matrix."""
-        groups = self._groups
+        """Of instancers' placings there may be a million: of each is asked only which shape it is, and Blender fills an
+        array with their matrices."""
+        numbers, groups = {}, []  # {(instanced object, its data): its number}; heaps.Group or None of each
+        of_instance = array.array("i")
         for instance in depsgraph.object_instances:
-            if not instance.show_self:
-                continue
-            shape = instance.object
-            if not instance.is_instance:
-                self._read(shape, instance.matrix_world)
-                continue
-            data = shape.data
-            # The object may be a passing one, in which several that differ in their data follow each other.
-            key = (shape.original.as_pointer(), data and data.as_pointer())
-            if key in groups:
-                group = groups[key]
-            else:
-                group = groups[key] = self._group(shape)
-            if group is None:
-                self._read(shape, instance.matrix_world)
-                continue
-            # A copy is read once; each row of the original would be read anew.
-            first, second, third, _ = instance.matrix_world.copy()
-            extend = group.extend
-            extend(first[:])
-            extend(second[:])
-            extend(third[:])
-            if group.random_ids is not None:
-                group.random_ids.append(instance.random_id)
+            instanced = instance.instance_object
+            number = heaps.ITSELF if instanced is None else heaps.HIDDEN
+            if instance.show_self:
+                shape = instance.object
+                if instanced is None:
+                    self._read(shape, instance.matrix_world)
+                else:
+                    # `shape` may be a passing object, in which several that differ in their data follow each other.
+                    key = (instanced, shape.data)
+                    number = numbers.get(key, -1)
+                    if number < 0:
+                        number = numbers[key] = len(groups)
+                        groups.append(self._group(shape))
+                    if groups[number] is None:
+                        self._read(shape, instance.matrix_world)
+            of_instance.append(number)
+        self._groups += [group for group in groups if group is not None]
+        if any(groups):
+            heaps.place(depsgraph.object_instances, np.frombuffer(of_instance, dtype=np.int32), groups)
 
     def _group(self, shape):
         """heaps.Group of a shape that can be drawn, else None."""
@@ -331,15 +328,13 @@ class _Reader:
             self._warn(f"Object '{cloud.name}' has no points, so nothing of it is drawn.")
             return
         group = heaps.Group(cloud.name, [heaps.Part(heaps.sphere(), self._material(cloud, 0))])
-        group.extend(heaps.point_placings(cloud.data, matrix_world))
-        self._groups[len(self._groups), cloud.name] = group
+        group.place(heaps.point_placings(cloud.data, matrix_world))
+        self._groups.append(group)
 
     def _gather(self):
         """Few placings become instances, which can be chosen one by one; many become heaps."""
         found = []
-        for group in self._groups.values():
-            if group is None:
-                continue
+        for group in self._groups:
             values, left_out = group.values()
             if left_out:
                 self._warn(f"{left_out} instances of '{group.name}' are scaled to nothing or have a place that is no "

@@ -4,12 +4,15 @@ import dataclasses
 
 import numpy as np
 
-from .. import native_module
+from .. import compat, native_module
 from . import meshes
 
 
 MANY = 64
 """From so many placings on, a shape is a heap."""
+
+ITSELF, HIDDEN = -1, -2
+"""In place of a group's number: an object that is no instance; an instance that is not shown."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -53,23 +56,22 @@ class Part:
 
 
 class Group:
-    """Where one shape stands: the upper 3 rows of its matrix, 12 numbers a placing, collected in one pass over a
-    dependency graph. parts: a Part for each of the shape's material slots; none if it is not drawn.
-    random_ids: Blender's for each placing, or None if no part needs them."""
+    """Where one shape stands. parts: a Part for each of the shape's material slots; none if it is not drawn.
+    needs_random_ids: whether a part's colours vary by Blender's number of each placing."""
 
     def __init__(self, name, parts):
         self.name, self._parts = name, parts
-        self._rows = array.array("f")
-        # One call a row: slices are the fastest way out of a Blender matrix.
-        self.extend = self._rows.extend
-        self.random_ids = array.array("i") if any(part.variation for part in parts) else None
+        self.needs_random_ids = any(part.variation for part in parts)
+        self._placings = np.empty((0, 4, 4), dtype=np.float32)
+        self._random_ids = None
+
+    def place(self, placings, random_ids=None):
+        """placings: (n, 4, 4) float32, row by row. random_ids: (n,) int32, of groups that need them."""
+        self._placings, self._random_ids = placings, random_ids
 
     def values(self):
         """([HeapValues], how many placings have no extent or are no numbers)."""
-        rows = np.frombuffer(self._rows, dtype=np.float32).reshape(-1, 3, 4)
-        placings = np.zeros((len(rows), 4, 4), dtype=np.float32)
-        placings[:, :3] = rows
-        placings[:, 3, 3] = 1.0
+        placings = self._placings
         drawn = _drawable(placings)
         kept = placings if drawn.all() else placings[drawn]
         content = kept.tobytes()
@@ -78,11 +80,46 @@ class Group:
         return heaps, len(placings) - len(kept)
 
     def _factors(self, part, drawn):
-        if part.variation is None or self.random_ids is None:
+        if part.variation is None or self._random_ids is None:
             return ()
         # As Cycles' Object Info has it: the whole range of 32 bits is from 0 to 1.
-        randoms = np.frombuffer(self.random_ids, dtype=np.uint32)[drawn] / np.float32(0xFFFFFFFF)
+        randoms = self._random_ids.view(np.uint32)[drawn] / np.float32(0xFFFFFFFF)
         return part.variation.factors(randoms.astype(np.float32))
+
+
+def place(instances, numbers, groups):
+    """Gives groups their placings. instances: a dependency graph's; numbers: of each the number of its group in
+    `groups`, a list of Groups and None, or ITSELF or HIDDEN."""
+    at_once = compat.frees_first_instances() or (numbers[:2] == ITSELF).all()
+    matrices = (_all_matrices if at_once else _each_matrix)(instances, len(numbers))
+    random_ids = None
+    if any(group is not None and group.needs_random_ids for group in groups):
+        random_ids = np.fromiter((each.random_id for each in instances), dtype=np.int32)
+    in_order = np.argsort(numbers, kind="stable")
+    ends = np.searchsorted(numbers[in_order], np.arange(len(groups) + 1))
+    for group, first, end in zip(groups, ends, ends[1:]):
+        if group is not None:
+            rows = in_order[first:end]
+            group.place(matrices[rows], None if random_ids is None else random_ids[rows])
+
+
+def _all_matrices(instances, count):
+    columns = np.empty((count, 4, 4), dtype=np.float32)
+    instances.foreach_get("matrix_world", columns.ravel())
+    return columns.transpose(0, 2, 1)
+
+
+def _each_matrix(instances, count):
+    numbers = array.array("f")
+    extend = numbers.extend
+    for instance in instances:
+        # A copy is read once; each row of the original would be read anew. Slices are the fastest way out of it.
+        first, second, third, fourth = instance.matrix_world.copy()
+        extend(first[:])
+        extend(second[:])
+        extend(third[:])
+        extend(fourth[:])
+    return np.frombuffer(numbers, dtype=np.float32).reshape(count, 4, 4)
 
 
 def _drawable(placings):
@@ -125,7 +162,7 @@ def _unit_sphere(segments, rings):
 
 
 def point_placings(cloud, matrix_world):
-    """array of floats, as a Group holds them: a unit sphere for each point of a point cloud, of the point's radius."""
+    """Placings of a Group: a unit sphere for each point of a point cloud, of the point's radius."""
     count = len(cloud.points)
     places, radii = np.empty((count, 3), dtype=np.float32), np.empty(count, dtype=np.float32)
     cloud.points.foreach_get("co", places.ravel())
@@ -134,4 +171,4 @@ def point_placings(cloud, matrix_world):
     local[:, (0, 1, 2), (0, 1, 2)] = radii[:, None]
     local[:, :3, 3] = places
     local[:, 3, 3] = 1.0
-    return array.array("f", (np.array(matrix_world, dtype=np.float32) @ local)[:, :3].tobytes())
+    return np.array(matrix_world, dtype=np.float32) @ local
