@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <glm/gtc/type_ptr.hpp>
+#include <regex>
 #include <stdexcept>
 #include <utility>
 
@@ -71,6 +72,7 @@ Program::Program(std::string name, const std::vector<Stage>& stages) : name_(std
   std::vector<ShaderHandle> shaders;
   for (const Stage& stage : stages) {
     shaders.push_back(compile(name_, stage.kind, stage.source));
+    note_declarations(stage.source);
     glAttachShader(handle_.name(), shaders.back().name());
   }
   link();
@@ -83,6 +85,12 @@ Program::Program(std::string name, const ShaderSource& vertex, const ShaderSourc
 
 Program::Program(std::string name, const ShaderSource& compute)
     : Program(std::move(name), {{GL_COMPUTE_SHADER, compute}}) {}
+
+void Program::note_declarations(const ShaderSource& source) {
+  static const std::regex declaration(R"(\buniform\s+\w+\s+(\w+)\s*;)");
+  for (std::sregex_iterator found(source.text().begin(), source.text().end(), declaration), end; found != end; ++found)
+    declared_.insert((*found)[1].str());
+}
 
 void Program::link() {
   glLinkProgram(handle_.name());
@@ -125,9 +133,16 @@ void Program::use() const { glUseProgram(handle_.name()); }
 
 bool Program::has(std::string_view uniform) const { return uniforms_.find(uniform) != uniforms_.end(); }
 
+bool Program::declares(std::string_view uniform) const {
+  return declared_.find(uniform.substr(0, uniform.find('.'))) != declared_.end();
+}
+
 const Program::Uniform* Program::find(std::string_view uniform, GLenum type) const {
   const auto found = uniforms_.find(uniform);
-  if (found == uniforms_.end()) return nullptr;
+  if (found == uniforms_.end()) {
+    if (!declares(uniform)) throw std::logic_error(fmt::format("'{}' has no uniform '{}'", name_, uniform));
+    return nullptr;
+  }
   if (found->second.type != type)
     throw std::logic_error(fmt::format("uniform '{}' of '{}' has type {:#x} and was given {:#x}", uniform, name_,
                                        found->second.type, type));

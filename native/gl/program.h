@@ -7,6 +7,7 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -38,8 +39,12 @@ class Program {
   /// True if the linker kept the uniform (or sampler) of that name.
   bool has(std::string_view uniform) const;
 
-  /// Sets a uniform of the matching type. One that the linker dropped is passed over, since what a material supplies is
-  /// more than each of its programs reads; a wrong type throws std::logic_error.
+  /// True if the program's text declares the uniform (or sampler) of that name, or the struct that it is a member of,
+  /// whether or not the linker kept it.
+  bool declares(std::string_view uniform) const;
+
+  /// Sets a uniform of the matching type. One that the linker dropped is passed over; one that the program does not
+  /// declare, or of another type, throws std::logic_error.
   void set(std::string_view uniform, int value) const;
   void set(std::string_view uniform, float value) const;
   void set(std::string_view uniform, const glm::vec2& value) const;
@@ -53,6 +58,12 @@ class Program {
   void set(std::string_view sampler, const TextureArray& textures) const;
   void set(std::string_view sampler, const Volume& volume) const;
 
+  /// As set(), for what not every program of its kind reads: nothing where the program does not declare it.
+  template <typename Value>
+  void offer(std::string_view uniform, const Value& value) const {
+    if (declares(uniform)) set(uniform, value);
+  }
+
  private:
   struct Traits {
     static GLuint create();
@@ -64,6 +75,7 @@ class Program {
     GLuint unit;  // for samplers
   };
 
+  void note_declarations(const ShaderSource& source);
   void link();
   void reflect();
   const Uniform* find(std::string_view uniform, GLenum type) const;
@@ -71,6 +83,7 @@ class Program {
   std::string name_;
   Handle<Traits> handle_;
   std::map<std::string, Uniform, std::less<>> uniforms_;
+  std::set<std::string, std::less<>> declared_;
 };
 
 }  // namespace mesograin::gl

@@ -62,9 +62,9 @@ void DeviceMaterial::become(scene::Model model, models::MaterialInputs inputs) {
 void DeviceMaterial::bind(const gl::Program& program) const {
   program.use();
   for (const auto& [name, value] : uniforms_)
-    std::visit([&, &uniform = name](const auto& number) { program.set(uniform, number); }, value);
-  for (const auto& [name, table] : tables_) program.set(name, table);
-  for (const auto& [name, volume] : volumes_) program.set(name, volume);
+    std::visit([&, &uniform = name](const auto& number) { program.offer(uniform, number); }, value);
+  for (const auto& [name, table] : tables_) program.offer(name, table);
+  for (const auto& [name, volume] : volumes_) program.offer(name, volume);
 }
 
 DeviceCache::MeshEntry& DeviceCache::mesh_entry(const scene::MeshPointer& mesh) {

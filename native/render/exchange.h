@@ -11,6 +11,7 @@
 #include "gl/buffer.h"
 #include "heap/solving.h"
 #include "render/content.h"
+#include "render/device_layout.h"
 #include "scene/scene.h"
 
 namespace mesograin::render {
@@ -50,7 +51,7 @@ class Exchange {
   ExchangeStatistics statistics() const;
 
   /// Makes it what shaders/heap/light_from_grains.glsl reads.
-  void bind() const { device_->bind_storage(8); }
+  void bind() const { device_->bind_storage(layout::HEAP_LIGHT_BINDING); }
 
  private:
   /// What is drawn.

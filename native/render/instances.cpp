@@ -9,6 +9,7 @@
 #include <iterator>
 #include <utility>
 
+#include "render/device_layout.h"
 #include "render/instance_classes.h"
 
 namespace mesograin::render {
@@ -94,7 +95,7 @@ void Instances::take_places(Instances& before) {
 
 void Instances::bind() const {
   if (!device_) device_.emplace(rows_);
-  device_->bind_storage(2);
+  device_->bind_storage(layout::INSTANCES_BINDING);
 }
 
 void Instances::drop_light_maps() {

@@ -97,8 +97,8 @@ void LightMapAtlas::send_frames() {
 void LightMapAtlas::bind(const gl::Program& program) const {
   if (!device_frames_) return;
   program.set("light_maps", *maps_);
-  device_frames_->bind_storage(1);
-  device_layers_->bind_storage(4);
+  device_frames_->bind_storage(layout::LIGHT_FRAMES_BINDING);
+  device_layers_->bind_storage(layout::LIGHT_MAP_LAYERS_BINDING);
 }
 
 }  // namespace mesograin::render

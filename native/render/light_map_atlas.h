@@ -75,7 +75,7 @@ class LightMapAtlas {
   std::optional<gl::TextureArray> maps_;
   std::optional<gl::Texture> depth_;
   std::vector<int> layers_ = std::vector<int>(LightMapDirections::count, -1);  // by node
-  std::vector<DeviceLightFrame> frames_;                                       // by layer
+  std::vector<layout::StoredLightFrame> frames_;                               // by layer
   std::optional<gl::Buffer> device_frames_;
   std::optional<gl::Buffer> device_layers_;
 };

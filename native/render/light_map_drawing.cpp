@@ -89,9 +89,10 @@ LightMapDrawing::LightSpace LightMapDrawing::fit(const glm::dvec3& to_light, int
   return space;
 }
 
-DeviceLightFrame LightMapDrawing::draw(const gl::VertexArray& device_mesh, const LightMapProgram& program_source,
-                                       const glm::dvec3& to_light, const gl::TextureArray& maps, int layer,
-                                       const gl::Texture& depth) const {
+layout::StoredLightFrame LightMapDrawing::draw(const gl::VertexArray& device_mesh,
+                                               const LightMapProgram& program_source, const glm::dvec3& to_light,
+                                               const gl::TextureArray& maps, int layer,
+                                               const gl::Texture& depth) const {
   const int resolution = maps.width();
   const LightSpace space = fit(to_light, resolution);
   const gl::Framebuffer target(maps, layer, depth);
@@ -110,7 +111,7 @@ DeviceLightFrame LightMapDrawing::draw(const gl::VertexArray& device_mesh, const
   const gl::Program& program = program_source(tessellated);
   const auto draw_mesh = [&] { tessellated ? device_mesh.draw_patches() : device_mesh.draw(); };
   program.use();
-  program.set("largest_rise", static_cast<float>(largest_rise));
+  program.offer("largest_rise", static_cast<float>(largest_rise));
   program.set("light_to_clip", glm::mat4(space.light_to_clip));
   program.set("object_to_light", glm::mat4(space.object_to_light));
   program.set("normal_to_light", glm::mat3(glm::transpose(glm::inverse(linear))));

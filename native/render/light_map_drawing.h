@@ -11,16 +11,10 @@
 #include "gl/texture.h"
 #include "gl/texture_array.h"
 #include "gl/vertex_array.h"
+#include "render/device_layout.h"
 #include "scene/mesh.h"
 
 namespace mesograin::render {
-
-/// What shaders/models/light_map.glsl reads of a map beside its texels.
-struct DeviceLightFrame {
-  glm::vec4 x_axis;  ///< w: texel width
-  glm::vec4 map;     ///< xy: centre; z: resolution
-  glm::vec4 z_axis;  ///< towards the light that the map was drawn for
-};
 
 /// The program that draws a map, of triangles or tessellated.
 using LightMapProgram = std::function<const gl::Program&(bool tessellated)>;
@@ -34,8 +28,9 @@ class LightMapDrawing {
   const glm::dmat4& object_to_grain() const { return object_to_grain_; }
 
   /// Draws what a light in the direction `to_light` (unit length, grain space) sees. `depth` has the maps' size.
-  DeviceLightFrame draw(const gl::VertexArray& device_mesh, const LightMapProgram& program, const glm::dvec3& to_light,
-                        const gl::TextureArray& maps, int layer, const gl::Texture& depth) const;
+  layout::StoredLightFrame draw(const gl::VertexArray& device_mesh, const LightMapProgram& program,
+                                const glm::dvec3& to_light, const gl::TextureArray& maps, int layer,
+                                const gl::Texture& depth) const;
 
  private:
   struct LightSpace;

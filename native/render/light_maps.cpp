@@ -25,7 +25,7 @@ int LightMaps::update(const gl::VertexArray& device_mesh, const LightMapProgram&
     resolution_ = resolution;
   }
   const gl::Texture depth(GL_DEPTH_COMPONENT32F, resolution_, resolution_);
-  std::vector<DeviceLightFrame> frames;
+  std::vector<layout::StoredLightFrame> frames;
   frames.reserve(to_light.size());
   for (int layer = 0; layer < layers; ++layer)
     frames.push_back(
@@ -38,7 +38,7 @@ int LightMaps::update(const gl::VertexArray& device_mesh, const LightMapProgram&
 void LightMaps::bind(const gl::Program& program) const {
   if (!maps_) return;
   program.set("light_maps", *maps_);
-  frames_->bind_storage(1);
+  frames_->bind_storage(layout::LIGHT_FRAMES_BINDING);
 }
 
 std::vector<float> LightMaps::read(int light) const {

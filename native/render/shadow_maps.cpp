@@ -9,6 +9,8 @@
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 
+#include "render/device_layout.h"
+
 namespace mesograin::render {
 namespace {
 
@@ -116,7 +118,7 @@ bool ShadowMaps::update(const std::vector<ShadowEye>& eyes, const Receivers& rec
   const glm::dmat4 to_unit =
       glm::translate(glm::dmat4(1.0), glm::dvec3(0.5)) * glm::scale(glm::dmat4(1.0), glm::dvec3(0.5));
   const double error = rounding * glm::length(casters.upper - casters.lower);
-  std::vector<DeviceView> views;
+  std::vector<layout::ShadowView> views;
   for (int layer = 0; layer < layers; ++layer) {
     const ShadowEye& eye = eyes[static_cast<std::size_t>(layer)];
     const auto fit = eye.w > 0.0 ? fit_place : fit_parallel;
@@ -131,7 +133,7 @@ bool ShadowMaps::update(const std::vector<ShadowEye>& eyes, const Receivers& rec
 void ShadowMaps::bind(const gl::Program& program) const {
   if (!views_) return;
   program.set("shadow_maps", *maps_);
-  views_->bind_storage(5);
+  views_->bind_storage(layout::SHADOW_VIEWS_BINDING);
 }
 
 }  // namespace mesograin::render

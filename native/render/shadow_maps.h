@@ -38,12 +38,6 @@ class ShadowMaps {
   void bind(const gl::Program& program) const;
 
  private:
-  struct DeviceView {
-    glm::mat4 to_map;
-    glm::vec4 eye;
-    glm::vec4 texel;
-  };
-
   std::optional<gl::TextureArray> maps_;
   std::optional<gl::Texture> depth_;
   std::optional<gl::Buffer> views_;

@@ -8,6 +8,8 @@
 #include <glm/matrix.hpp>
 #include <utility>
 
+#include "render/device_layout.h"
+
 namespace mesograin::render {
 namespace {
 
@@ -24,7 +26,7 @@ bool draw_parts(const gl::Program& program, const Content& content, const Device
                 const Before& before) {
   const Instances& instances = *content.instances();
   instances.bind();
-  selection.instances.bind_storage(3);
+  selection.instances.bind_storage(layout::SELECTED_BINDING);
   std::size_t since = 0;
   for (const Selection::Part& part : selection.selection.parts) {
     const Prototype& prototype = instances.prototypes()[instances.groups()[part.group].prototype];

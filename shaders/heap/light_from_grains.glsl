@@ -3,12 +3,13 @@
 //
 // What is chosen at compile time:
 //   EXCHANGE             light goes from grain to grain
+#include "render/bindings.glsl"
 
 #ifdef EXCHANGE
 // Of each object: red, green and blue of what it answers, and of what is seen straight through it (xyz: the slope over the normal, w: the mean
 // over all normals); x: where its kind is. Of each kind: mean free paths across its radius; the lobe of its answer at the middles of intervals of
 // the cosine.
-layout(std430, binding = 8) readonly buffer HeapLight { vec4 heap_light[]; };
+layout(std430, binding = HEAP_LIGHT_BINDING) readonly buffer HeapLight { vec4 heap_light[]; };
 
 const int OBJECT_NUMBERS = 7;
 const int LOBE_NODES = 16;

@@ -6,6 +6,8 @@
 //
 // Instances of one prototype share maps, drawn in the prototype's own axes from directions all around it; of the four nearest to the light's
 // each sample takes one, so that their mean is as from between them (render::LightMapAtlas).
+#include "render/bindings.glsl"
+#include "render/stored_light_frame.glsl"
 #include "models/interface.glsl"
 #include "scene/grain.glsl"
 #include "scene/shadows.glsl"
@@ -22,13 +24,7 @@ struct LightFrame {
   int light;
 };
 
-// Software renderers read a storage buffer number by number: only what cannot be told from the rest is here.
-struct StoredLightFrame {
-  vec4 x_axis;  // w: texel width
-  vec4 map;     // xy: centre; z: resolution
-  vec4 z_axis;  // that the map was drawn for
-};
-layout(std430, binding = 1) readonly buffer LightFrames { StoredLightFrame light_frames[]; };
+layout(std430, binding = LIGHT_FRAMES_BINDING) readonly buffer LightFrames { StoredLightFrame light_frames[]; };
 
 // Per texel: z of the first front face, its normal's x and y, z of the first back face; all in light space.
 uniform sampler2DArray light_maps;
@@ -42,7 +38,7 @@ struct LightMapTexel {
 
 #ifdef INSTANCED
 // By node of the grid of directions: the layer of its map, or -1.
-layout(std430, binding = 4) readonly buffer LightMapLayers { int light_map_layers[]; };
+layout(std430, binding = LIGHT_MAP_LAYERS_BINDING) readonly buffer LightMapLayers { int light_map_layers[]; };
 
 const int DIRECTIONS_SIDE = 16;  // as render::LightMapDirections::side
 

@@ -1,13 +1,14 @@
 // surface.vert for many instances at once.
 
 #include "passes/curved_surface.glsl"
+#include "render/bindings.glsl"
 #include "scene/instances.glsl"
 
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 
 // Which instances are drawn; see render::Selection.
-layout(std430, binding = 3) readonly buffer Selected { uint selected[]; };
+layout(std430, binding = SELECTED_BINDING) readonly buffer Selected { uint selected[]; };
 
 uniform int first_selected;
 uniform vec3 middle;  // of the mesh's bounds

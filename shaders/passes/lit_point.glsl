@@ -8,6 +8,8 @@
 //   WHOLE_GRAIN          the model knows what light does in all of the grain, but not where it enters
 
 #include "physics/prelude.glsl"
+#include "render/bindings.glsl"
+#include "render/distant_light.glsl"
 #include "lights/light.glsl"
 #include "models/interface.glsl"
 #include "scene/grain.glsl"
@@ -15,17 +17,11 @@
 #include "heap/light_from_grains.glsl"
 #include "models/pixel_random.glsl"
 
-// One direction of a light, drawn for the whole grain.
-struct DirectionalLight {
-  vec4 to_light;    // xyz; w: angle of the disc it is drawn from
-  vec4 irradiance;  // rgb
-};
-
-layout(std430, binding = 0) readonly buffer Lights { DirectionalLight lights[]; };
+layout(std430, binding = DISTANT_LIGHTS_BINDING) readonly buffer Lights { DistantLight lights[]; };
 
 #ifdef LIGHTS_AT_PLACE
-layout(std430, binding = 6) readonly buffer LocalLights { DeviceLight local_lights[]; };
-layout(std430, binding = 7) readonly buffer LocalRandoms { vec2 local_randoms[]; };  // where on each light this sample looks
+layout(std430, binding = LOCAL_LIGHTS_BINDING) readonly buffer LocalLights { DeviceLight local_lights[]; };
+layout(std430, binding = LOCAL_RANDOMS_BINDING) readonly buffer LocalRandoms { vec2 local_randoms[]; };  // where on each light this sample looks
 uniform int local_light_count;
 uniform int distant_light_count;  // those have their shadows first
 #endif

@@ -1,5 +1,6 @@
 // Where the instances of a heap stand. They are drawn together, a transform each: from the mesh's own axes, the middle of its bounds at the
 // origin, to the world's axes around a place amid the scene.
+#include "render/bindings.glsl"
 
 struct Placement {
   mat3 linear;
@@ -7,7 +8,7 @@ struct Placement {
 };
 
 // Three rows of four numbers each.
-layout(std430, binding = 2) readonly buffer Instances { vec4 instance_rows[]; };
+layout(std430, binding = INSTANCES_BINDING) readonly buffer Instances { vec4 instance_rows[]; };
 
 Placement placement_of(int instance) {
   vec4 x = instance_rows[3 * instance];

@@ -5,6 +5,8 @@
 // What is chosen at compile time:
 //   SHADOWS       there is something that may stand in the light
 //   CAST_SHADOWS  rays have found for each pixel which lights reach the surface; there are no such pictures
+#include "render/bindings.glsl"
+#include "render/shadow_view.glsl"
 #include "scene/grain.glsl"
 
 #ifdef CAST_SHADOWS
@@ -12,12 +14,7 @@ uniform usampler2D lights_that_reach;  // a bit each
 
 float light_reaches_pixel(int light) { return float((texelFetch(lights_that_reach, ivec2(gl_FragCoord.xy), 0).r >> uint(light)) & 1u); }
 #elif defined(SHADOWS)
-struct ShadowView {
-  mat4 to_map;  // from the place amid the scene to [0, 1]^2, before the division by w
-  vec4 eye;     // xyz: the place of the light if w is 1, the direction towards it if w is 0
-  vec4 texel;   // x: its width, at distance 1 if eye.w is 1; y: by how much rounding may move a surface
-};
-layout(std430, binding = 5) readonly buffer ShadowViews { ShadowView shadow_views[]; };
+layout(std430, binding = SHADOW_VIEWS_BINDING) readonly buffer ShadowViews { ShadowView shadow_views[]; };
 
 // x: how near to the light, growing towards it; y: number of the instance, from 1.
 uniform sampler2DArray shadow_maps;

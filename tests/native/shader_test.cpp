@@ -62,6 +62,9 @@ TEST(Program, UniformsAreReflectedAndTyped) {
     EXPECT_NO_THROW(program.set("tint", glm::vec3(1.0F)));
     EXPECT_NO_THROW(program.set("unused", 1.0F));
     EXPECT_THROW(program.set("tint", 1.0F), std::logic_error);
+    EXPECT_THROW(program.set("tnit", glm::vec3(1.0F)), std::logic_error);
+    EXPECT_NO_THROW(program.offer("tnit", glm::vec3(1.0F)));
+    EXPECT_THROW(program.offer("tint", 1.0F), std::logic_error);
   });
   EXPECT_TRUE(ContextThread::instance().take_gl_errors().empty());
 }

@@ -1,0 +1,48 @@
+// Chooses between drawing arrays and casting rays at them, and keeps what either needs until the view changes.
+#include "render/passes/array_visibility.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "gl/context_thread.h"
+
+namespace mesograin::render {
+namespace {
+
+bool reads_light_maps(const Instances& instances) {
+  const std::vector<Prototype>& prototypes = instances.prototypes();
+  return std::any_of(prototypes.begin(), prototypes.end(),
+                     [](const Prototype& prototype) { return prototype.light_maps != nullptr; });
+}
+
+}  // namespace
+
+void ArrayVisibility::set(Visibility visibility) {
+  if (visibility == Visibility::cast && !casting::available())
+    throw Error("Rays cannot be cast on this machine: Embree needs AVX.");
+  visibility_ = visibility;
+  forget_view();
+}
+
+bool ArrayVisibility::casts(const Content& content) const {
+  if (content.instances() == nullptr || visibility_ == Visibility::drawn) return false;
+  return visibility_ == Visibility::cast ||
+         (!gl::ContextThread::instance().device_info().hardware && casting::available());
+}
+
+void ArrayVisibility::prepare(const Sample& sample) {
+  if (sample.cast && !tree_) tree_ = std::make_unique<CastContent>(sample.cache, sample.content);
+  const Instances* instances = sample.content.instances();
+  if (instances == nullptr || selection_) return;
+  // Light maps are as fine as the largest grain in the picture.
+  if (!sample.cast || reads_light_maps(*instances))
+    selection_ = std::make_unique<DeviceSelection>(
+        instances->select(anchor_to_clip(sample.content, sample.camera), sample.size.x, sample.size.y));
+}
+
+void ArrayVisibility::forget_content() {
+  tree_.reset();
+  selection_.reset();
+}
+
+}  // namespace mesograin::render

@@ -1,0 +1,53 @@
+// What the passes of one sample read: what is shown, from where, and under which of the lights' directions.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <vector>
+
+#include "render/bake.h"
+#include "render/content.h"
+#include "render/device_cache.h"
+#include "render/exchange.h"
+#include "render/go_on.h"
+#include "render/lighting.h"
+#include "render/passes/targets.h"
+#include "scene/camera.h"
+
+namespace mesograin::render {
+
+/// The draws that a bake unwraps.
+struct Unwrapping {
+  std::vector<std::size_t> draws;
+  ViewFrom view_from;
+};
+
+struct Sample {
+  DeviceCache& cache;
+  Content& content;
+  const Lighting& lighting;
+  const Exchange& exchange;
+  Targets& targets;
+  const scene::Camera& camera;
+  const Unwrapping* unwrapping;  ///< null for what the camera sees
+  glm::ivec2 size;
+  std::uint32_t index;
+  std::uint32_t seed;
+  glm::vec2 jitter;  ///< of the picture, in clip space
+  SampledLights lights;
+  bool cast;  ///< rays find what is seen of arrays
+  const GoOn& go_on;
+
+  /// The camera from `origin` and 1; for a parallel projection the direction towards it and 0.
+  glm::vec4 viewer(const glm::dvec3& origin) const;
+
+  /// Whether the place that is shaded draws its own directions of the lights that have a place.
+  bool lights_at_place(const DeviceMaterial& material, bool instanced) const {
+    return lighting.any_local() && (instanced || !material.light_maps());
+  }
+};
+
+}  // namespace mesograin::render

@@ -1,0 +1,186 @@
+// Tells each model's program what it is to shade, and has it do so.
+#include "render/passes/shade_pass.h"
+
+#include <algorithm>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+
+#include "render/device_layout.h"
+#include "render/stencil.h"
+
+namespace mesograin::render {
+namespace {
+
+void set_world(const gl::Program& program, const Lighting& lighting) {
+  program.set("world_radiance", glm::vec3(lighting.world().radiance));
+  program.set("has_image", static_cast<int>(lighting.world_image() != nullptr));
+  program.set("world_to_image", glm::mat3(lighting.world().world_to_image));
+  if (lighting.world_image() != nullptr) program.set("world_image", *lighting.world_image());
+}
+
+// Draws on no pixel that the instance's bounds do not cover; everywhere if they reach behind the camera.
+void confine_to(const Sample& sample, const Draw& draw) {
+  const glm::dmat4 to_clip = sample.camera.camera_to_clip * (sample.camera.world_to_camera * draw.object_to_world);
+  const glm::dvec2 size(sample.size);
+  glm::dvec2 lower = size;
+  glm::dvec2 upper(0.0);
+  for (unsigned corner = 0; corner < 8; ++corner) {
+    const glm::bvec3 high((corner & 1U) != 0, (corner & 2U) != 0, (corner & 4U) != 0);
+    const glm::dvec4 clip =
+        to_clip * glm::dvec4(glm::mix(glm::dvec3(draw.source->lower()), glm::dvec3(draw.source->upper()), high), 1.0);
+    if (!(clip.w > 0.0)) {
+      glScissor(0, 0, sample.size.x, sample.size.y);
+      return;
+    }
+    const glm::dvec2 pixel = (0.5 * glm::dvec2(clip) / clip.w + 0.5) * size;
+    lower = glm::min(lower, pixel);
+    upper = glm::max(upper, pixel);
+  }
+  // The jitter moves the picture by up to half a pixel.
+  const glm::ivec2 first(glm::clamp(glm::floor(lower - 1.0), glm::dvec2(0.0), size));
+  const glm::ivec2 end(glm::clamp(glm::ceil(upper + 1.0), glm::dvec2(0.0), size));
+  glScissor(first.x, first.y, std::max(end.x - first.x, 0), std::max(end.y - first.y, 0));
+}
+
+}  // namespace
+
+ShadePass::ShadePass()
+    : background_program_("background", gl::ShaderSource({"passes/full_screen.vert"}, {}),
+                          gl::ShaderSource({"passes/background.frag"}, {})) {}
+
+void ShadePass::clear(const Sample& sample) {
+  sample.targets.shade.bind();
+  glDisable(GL_BLEND);
+  if (sample.unwrapping != nullptr) {
+    sample.targets.shade.clear();
+    return;
+  }
+  sample.targets.shade.clear_colour();
+  if (sample.lighting.world().seen) draw_background(sample);
+}
+
+void ShadePass::draw_background(const Sample& sample) {
+  glDisable(GL_DEPTH_TEST);
+  background_program_.use();
+  const glm::dmat4 world_to_clip = sample.camera.camera_to_clip * glm::dmat4(glm::dmat3(sample.camera.world_to_camera));
+  background_program_.set("clip_to_world", glm::mat4(glm::inverse(world_to_clip)));
+  background_program_.set("jitter", sample.jitter);
+  background_program_.set("size", glm::vec2(sample.size));
+  set_world(background_program_, sample.lighting);
+  full_screen_.draw();
+}
+
+void ShadePass::shade_seen(const Sample& sample, const ShadowPass& shadows, std::size_t first) {
+  sample.targets.shade.bind();
+  glDisable(GL_BLEND);
+  glEnable(GL_STENCIL_TEST);
+  glStencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
+  glEnable(GL_SCISSOR_TEST);
+  glFrontFace(GL_CCW);
+  const Instances* instances = sample.content.instances();
+  const std::size_t groups = instances != nullptr ? instances->groups().size() : 0;
+  const std::vector<Draw>& draws = sample.content.draws();
+  for (std::size_t i = first; i < std::min(first + most_in_stencil, groups + draws.size()); ++i) {
+    const bool instanced = i < groups;
+    const gl::Program& program =
+        prepare(sample, shadows, instanced ? *instances->groups()[i].material : *draws[i - groups].material, instanced);
+    if (instanced) {
+      set_group(sample, program, instances->groups()[i]);
+      glScissor(0, 0, sample.size.x, sample.size.y);
+    } else {
+      set_draw(sample, program, draws[i - groups]);
+      confine_to(sample, draws[i - groups]);
+    }
+    program.set("surface_position", sample.targets.position);
+    program.set("surface_normal", sample.targets.normal);
+    glStencilFunc(GL_EQUAL, static_cast<GLint>(i - first + 1), most_in_stencil);
+    full_screen_.draw();
+  }
+  glDisable(GL_SCISSOR_TEST);
+  glDisable(GL_STENCIL_TEST);
+}
+
+void ShadePass::shade_unwrapped(const Sample& sample, const ShadowPass& shadows) {
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_LESS);
+  for (const std::size_t baked : sample.unwrapping->draws) {
+    const Draw& draw = sample.content.draws()[baked];
+    const gl::Program& program = prepare(sample, shadows, *draw.material, false);
+    set_draw(sample, program, draw);
+    const glm::dmat4 object_to_grain = draw.object_to_grain();
+    program.set("jitter", sample.jitter);
+    program.set("from_camera", static_cast<int>(sample.unwrapping->view_from == ViewFrom::active_camera));
+    program.set("instance", static_cast<int>(sample.content.number(baked)));
+    program.set("object_to_grain", glm::mat4(object_to_grain));
+    program.set("normal_to_grain", glm::mat3(glm::transpose(glm::inverse(glm::dmat3(object_to_grain)))));
+    draw.mesh->draw();
+  }
+  glDisable(GL_DEPTH_TEST);
+}
+
+const gl::Program& ShadePass::prepare(const Sample& sample, const ShadowPass& shadows, const DeviceMaterial& material,
+                                      bool instanced) {
+  const bool world = sample.lighting.world().shines();
+  const gl::Program& program =
+      sample.cache.shading(material, {sample.unwrapping != nullptr, instanced, shadows.kind(sample.content),
+                                      sample.exchange.any(), world, sample.lights_at_place(material, instanced)});
+  material.bind(program);
+  if (world) set_world(program, sample.lighting);
+  program.offer("sample_index", static_cast<int>(sample.index));
+  program.offer("taps", taps_);
+  shadows.bind(program);
+  if (sample.exchange.any()) sample.exchange.bind();
+  return program;
+}
+
+void ShadePass::set_draw(const Sample& sample, const gl::Program& program, const Draw& draw) {
+  const Content& content = sample.content;
+  const bool at_place = sample.lights_at_place(*draw.material, false);
+  set_lights(sample, program, at_place ? sample.lights.distant : sample.lighting.at(sample.lights, draw.centre),
+             draw.centre);
+  if (draw.light_maps) draw.light_maps->bind(program);
+  program.offer("grain_reach", static_cast<float>(draw.reach));
+  program.offer("grain_to_prototype", glm::mat3(draw.grain_to_prototype));
+  program.offer("place_of_grain", glm::vec3(draw.centre - content.anchor()));
+  program.offer("object_number",
+                static_cast<int>(content.object_number(static_cast<std::size_t>(&draw - content.draws().data()))));
+  program.offer("shades_itself", static_cast<int>(content.shades_itself(draw)));
+  program.set("viewer", sample.viewer(draw.centre));
+}
+
+void ShadePass::set_group(const Sample& sample, const gl::Program& program, const InstanceGroup& group) {
+  const glm::dvec3& anchor = sample.content.anchor();
+  set_lights(sample, program, sample.lights.distant, anchor);
+  const Instances& instances = *sample.content.instances();
+  const Prototype& prototype = instances.prototypes()[group.prototype];
+  instances.bind();
+  if (group.material->light_maps()) prototype.light_maps->bind(program);
+  program.offer("typical_scale", static_cast<float>(group.typical_scale));
+  program.offer("unstretch", group.unstretch);
+  program.offer("grain_reach", static_cast<float>(prototype.mesh->reach() * group.typical_scale));
+  program.offer("shades_itself", static_cast<int>(instances.shades_itself(group)));
+  program.set("viewer", sample.viewer(anchor));
+}
+
+void ShadePass::set_lights(const Sample& sample, const gl::Program& program,
+                           const std::vector<LightDirection>& directions, const glm::dvec3& origin) {
+  std::vector<layout::DistantLight> device;
+  device.reserve(directions.size());
+  for (const LightDirection& light : directions)
+    device.push_back({glm::vec4(light.to_light, light.angle), glm::vec4(light.irradiance, 0.0)});
+  directions_.emplace(device);
+  directions_->bind_storage(layout::DISTANT_LIGHTS_BINDING);
+  program.set("light_count", static_cast<int>(device.size()));
+  if (!sample.lighting.any_local()) return;
+  lights_.emplace(sample.lighting.device_local(origin));
+  lights_->bind_storage(layout::LOCAL_LIGHTS_BINDING);
+  const std::vector<glm::vec2> randoms(sample.lights.randoms.begin(), sample.lights.randoms.end());
+  randoms_.emplace(randoms);
+  randoms_->bind_storage(layout::LOCAL_RANDOMS_BINDING);
+  program.offer("local_light_count", static_cast<int>(randoms.size()));
+  program.offer("distant_light_count", static_cast<int>(sample.lights.distant.size()));
+}
+
+}  // namespace mesograin::render

@@ -1,0 +1,53 @@
+// Shades a sample: what the surface pass found, each pixel once, or what a bake unwraps; and the world behind it.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "gl/buffer.h"
+#include "gl/program.h"
+#include "gl/vertex_array.h"
+#include "render/passes/sample.h"
+#include "render/passes/shadow_pass.h"
+
+namespace mesograin::render {
+
+class ShadePass {
+ public:
+  ShadePass();
+
+  /// Light map samples that model 3 takes for one pixel and sample, over all lights.
+  void set_taps(int taps) { taps_ = taps; }
+
+  /// Begins a picture: the world where it is seen, else nothing.
+  void clear(const Sample& sample);
+
+  /// Those groups and draws that the stencil tells apart, after run() of SurfacePass for the same `first`.
+  void shade_seen(const Sample& sample, const ShadowPass& shadows, std::size_t first);
+
+  /// The instances that are baked, where their UVs lie.
+  void shade_unwrapped(const Sample& sample, const ShadowPass& shadows);
+
+ private:
+  void draw_background(const Sample& sample);
+
+  /// The material's program, with everything that does not depend on what is shaded.
+  const gl::Program& prepare(const Sample& sample, const ShadowPass& shadows, const DeviceMaterial& material,
+                             bool instanced);
+  void set_draw(const Sample& sample, const gl::Program& program, const Draw& draw);
+  void set_group(const Sample& sample, const gl::Program& program, const InstanceGroup& group);
+
+  /// Sends the directions of light; places of lights are from `origin`.
+  void set_lights(const Sample& sample, const gl::Program& program, const std::vector<LightDirection>& directions,
+                  const glm::dvec3& origin);
+
+  gl::Program background_program_;
+  gl::FullScreenTriangle full_screen_;
+  std::optional<gl::Buffer> directions_;
+  std::optional<gl::Buffer> lights_;
+  std::optional<gl::Buffer> randoms_;
+  int taps_ = 0;
+};
+
+}  // namespace mesograin::render

@@ -1,0 +1,107 @@
+// Casts shadows, or draws shadow maps around what the picture shows.
+#include "render/passes/shadow_pass.h"
+
+#include <algorithm>
+#include <bit>
+#include <chrono>
+
+#include "render/sequence.h"
+
+namespace mesograin::render {
+namespace {
+
+// Texels on a side of a shadow map.
+constexpr int least_resolution = 256;
+constexpr int most_resolution = 2048;
+
+bool is_opaque(const DeviceMaterial& material) {
+  return !material.light_maps() && !scene::traits_of(material.model()).mesh;
+}
+
+// Whether it is enough to know for each pixel which lights of this sample reach it.
+bool known_by_pixel(const Sample& sample, std::size_t lights) {
+  if (sample.unwrapping != nullptr || !sample.cast || lights > most_cast_lights) return false;
+  const std::vector<Draw>& draws = sample.content.draws();
+  const std::vector<InstanceGroup>& groups = sample.content.instances()->groups();
+  return std::all_of(draws.begin(), draws.end(), [](const Draw& draw) { return is_opaque(*draw.material); }) &&
+         std::all_of(groups.begin(), groups.end(),
+                     [](const InstanceGroup& group) { return is_opaque(*group.material); });
+}
+
+Receivers receivers_of(const Sample& sample) {
+  const Content& content = sample.content;
+  if (sample.unwrapping == nullptr)
+    return receivers(sample.targets.surfaces, sample.size.x, sample.size.y,
+                     [&](std::size_t number) { return content.receiver(number); });
+  Receivers result;
+  for (const std::size_t baked : sample.unwrapping->draws)
+    result.grains.push_back(content.receiver(content.number(baked)).ball);
+  return result;
+}
+
+}  // namespace
+
+bool ShadowPass::run(const Sample& sample, const ArrayVisibility& arrays, SurfacePass& surfaces) {
+  const std::vector<ShadowEye> eyes = sample.lighting.eyes(sample.lights, sample.content.anchor());
+  by_pixel_ = known_by_pixel(sample, eyes.size());
+  ran_ = sample.content.shadows() && !eyes.empty();
+  if (!ran_) return true;
+  const auto start = std::chrono::steady_clock::now();
+  const bool whole = by_pixel_ ? cast_.cast(arrays.tree(), sample.content, surfaces.seen(sample), eyes, sample.go_on)
+                               : update_maps(sample, arrays, eyes);
+  milliseconds_ = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  return whole;
+}
+
+bool ShadowPass::update_maps(const Sample& sample, const ArrayVisibility& arrays, const std::vector<ShadowEye>& eyes) {
+  const Content& content = sample.content;
+  if (receivers_.empty()) {
+    casters_.clear();
+    receivers_ = receivers_of(sample);
+  }
+  // About a texel a pixel: the jitter makes them finer with every sample.
+  const int resolution =
+      std::clamp(static_cast<int>(std::bit_ceil(static_cast<unsigned>(std::max(sample.size.x, sample.size.y)))),
+                 least_resolution, most_resolution);
+  const glm::dvec2 jitter = r2_point(sample.index, seeded_offset(sample.seed + 0x20000U));
+  std::vector<glm::vec2> texels;
+  const auto draw = [&](const glm::dmat4& to_clip, const ShadowEye& eye, gl::TextureArray& maps, int layer,
+                        const gl::Texture& depth) {
+    if (sample.cast) {
+      if (!cast_shadow_map(arrays.tree(), content, to_clip, eye, resolution, texels, sample.go_on)) return false;
+      maps.upload(layer, GL_RG, GL_FLOAT, texels.data());
+      return true;
+    }
+    const gl::Framebuffer target(maps, layer, depth);
+    return draw_casters(sample.cache, content,
+                        casters(content, to_clip, eye, static_cast<std::size_t>(layer), resolution), to_clip, eye,
+                        target, sample.go_on);
+  };
+  return maps_.update(eyes, receivers_, content.bounds(), content.over_ground(), resolution, jitter, draw);
+}
+
+const DeviceSelection* ShadowPass::casters(const Content& content, const glm::dmat4& anchor_to_clip,
+                                           const ShadowEye& eye, std::size_t layer, int resolution) {
+  if (content.instances() == nullptr) return nullptr;
+  if (casters_.size() <= layer) casters_.resize(layer + 1);
+  Casters& known = casters_[layer];
+  if (!known.selection || known.eye != eye)
+    known = {eye,
+             std::make_unique<DeviceSelection>(content.instances()->select(anchor_to_clip, resolution, resolution))};
+  return known.selection.get();
+}
+
+void ShadowPass::bind(const gl::Program& program) const {
+  if (!ran_) return;
+  if (by_pixel_)
+    cast_.bind(program);
+  else
+    maps_.bind(program);
+}
+
+void ShadowPass::forget_content() {
+  casters_.clear();
+  receivers_.clear();
+}
+
+}  // namespace mesograin::render

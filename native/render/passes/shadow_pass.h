@@ -1,0 +1,61 @@
+// Finds what other objects leave of each light: a bit for each pixel and light where that is enough, else shadow maps.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "gl/program.h"
+#include "render/cast_shadows.h"
+#include "render/passes/array_visibility.h"
+#include "render/passes/sample.h"
+#include "render/passes/surface_pass.h"
+#include "render/receivers.h"
+#include "render/shadow_maps.h"
+
+namespace mesograin::render {
+
+class ShadowPass {
+ public:
+  /// After the surfaces are found. False if ended.
+  bool run(const Sample& sample, const ArrayVisibility& arrays, SurfacePass& surfaces);
+
+  /// How programs of this sample's content learn of them.
+  Shadows kind(const Content& content) const {
+    return !content.shadows() ? Shadows::none : by_pixel_ ? Shadows::cast : Shadows::maps;
+  }
+
+  /// Makes them what shaders/scene/shadows.glsl reads, if there are any in this sample.
+  void bind(const gl::Program& program) const;
+
+  /// Whether the last run had any light to ask for.
+  bool ran() const { return ran_; }
+
+  /// That the last run took of this side.
+  double milliseconds() const { return milliseconds_; }
+
+  void forget_content();
+  void forget_view() { receivers_.clear(); }
+
+ private:
+  /// Where the light's eye was, and what it saw of the same receivers.
+  struct Casters {
+    ShadowEye eye;
+    std::unique_ptr<DeviceSelection> selection;
+  };
+
+  bool update_maps(const Sample& sample, const ArrayVisibility& arrays, const std::vector<ShadowEye>& eyes);
+
+  /// What a light of this layer sees: the same as in the sample before where it has not moved.
+  const DeviceSelection* casters(const Content& content, const glm::dmat4& anchor_to_clip, const ShadowEye& eye,
+                                 std::size_t layer, int resolution);
+
+  Receivers receivers_;  // empty if not known yet
+  std::vector<Casters> casters_;
+  ShadowMaps maps_;
+  CastShadows cast_;
+  bool by_pixel_ = false;
+  bool ran_ = false;
+  double milliseconds_ = 0.0;
+};
+
+}  // namespace mesograin::render

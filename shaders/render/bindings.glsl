@@ -1,0 +1,11 @@
+// Where each storage buffer is bound: the same numbers in C++ (native/render/device_layout.h).
+
+const int DISTANT_LIGHTS_BINDING = 0;
+const int LIGHT_FRAMES_BINDING = 1;
+const int INSTANCES_BINDING = 2;
+const int SELECTED_BINDING = 3;
+const int LIGHT_MAP_LAYERS_BINDING = 4;
+const int SHADOW_VIEWS_BINDING = 5;
+const int LOCAL_LIGHTS_BINDING = 6;
+const int LOCAL_RANDOMS_BINDING = 7;
+const int HEAP_LIGHT_BINDING = 8;
