@@ -1,4 +1,4 @@
-// One heap at a time, the last that was asked for.
+// A stack of heaps and the thread that solves them.
 #include "heap/solving.h"
 
 #include <unistd.h>
@@ -12,31 +12,10 @@ namespace {
 // Drawing goes first where there are few cores.
 constexpr int background_niceness = 5;
 
+// A quick answer takes about a tenth of the time.
+constexpr double quick_share = 0.1;
+
 }  // namespace
-
-Solving::~Solving() {
-  thread_.request_stop();
-  const std::lock_guard lock(mutex_);
-  given_up_ = true;
-}
-
-void Solving::begin(Heap heap) {
-  const std::lock_guard lock(mutex_);
-  next_ = std::move(heap);
-  news_ = {news_.number, nullptr, false, {}};
-  given_up_ = true;
-  progress_ = 0.0;
-  if (!thread_.joinable()) thread_ = std::jthread([this](const std::stop_token& stop) { loop(stop); });
-  wake_.notify_all();
-}
-
-void Solving::end() {
-  const std::lock_guard lock(mutex_);
-  next_.reset();
-  news_ = {news_.number, nullptr, true, {}};
-  given_up_ = forget_ = true;
-  wake_.notify_all();
-}
 
 News Solving::news() const {
   const std::lock_guard lock(mutex_);
@@ -48,50 +27,82 @@ bool Solving::wait(std::chrono::milliseconds patience) const {
   return told_.wait_for(lock, patience, [this] { return news_.final; });
 }
 
-void Solving::loop(const std::stop_token& stop) {
+void Solving::tell(std::shared_ptr<const HeapLight> light, bool final, std::string failure) {
+  {
+    const std::lock_guard lock(mutex_);
+    news_ = {news_.number + 1, std::move(light), final, std::move(failure)};
+  }
+  told_.notify_all();
+}
+
+Solvers& Solvers::instance() {
+  static Solvers solvers;
+  return solvers;
+}
+
+Solvers::~Solvers() {
+  thread_.request_stop();
+  wake_.notify_all();
+}
+
+std::shared_ptr<const Solving> Solvers::ask(Heap heap, const std::shared_ptr<const Solving>& before) {
+  const std::lock_guard lock(mutex_);
+  std::erase_if(held_, [](const std::weak_ptr<Solving>& one) { return one.expired(); });
+  for (const std::weak_ptr<Solving>& one : held_)
+    if (std::shared_ptr<Solving> same = one.lock(); same && same->heap() == heap) return same;
+  auto solving = std::make_shared<Solving>(std::move(heap), before ? before->solver_ : std::make_shared<Solver>());
+  held_.push_back(solving);
+  waiting_.push_back(solving);
+  if (!thread_.joinable()) thread_ = std::jthread([this](const std::stop_token& stop) { loop(stop); });
+  wake_.notify_all();
+  return solving;
+}
+
+void Solvers::loop(const std::stop_token& stop) {
   // Of this thread and those that it starts.
   if (::nice(background_niceness) < 0) { /* then it competes with drawing */
   }
   while (true) {
-    Heap heap;
+    std::weak_ptr<Solving> next;
     {
       std::unique_lock lock(mutex_);
-      if (!wake_.wait(lock, stop, [this] { return next_ || forget_; })) return;
-      if (std::exchange(forget_, false)) solver_ = Solver();
-      if (!next_) continue;
-      heap = *std::exchange(next_, std::nullopt);
-      given_up_ = stop.stop_requested();
+      if (!wake_.wait(lock, stop, [this] { return !waiting_.empty(); })) return;
+      next = std::move(waiting_.back());
+      waiting_.pop_back();
     }
-    work(heap);
+    work(next, stop);
   }
 }
 
-void Solving::work(const Heap& heap) {
+void Solvers::work(const std::weak_ptr<Solving>& of, const std::stop_token& stop) {
+  std::atomic<bool> given_up{false};
+  Heap heap;
+  std::shared_ptr<Solver> solver;
+  if (const std::shared_ptr<Solving> solving = of.lock()) {
+    heap = solving->heap_;
+    solver = solving->solver_;
+  } else {
+    return;
+  }
+  const auto tell = [&](const Quality& quality, const transport::Effort& effort, bool final) {
+    auto light = std::make_shared<const HeapLight>(solver->solve(heap, quality, effort));
+    if (const std::shared_ptr<Solving> solving = of.lock()) solving->tell(std::move(light), final);
+  };
   transport::Effort effort;
-  effort.stop = &given_up_;
-  effort.progress = [this](double share) { progress_ = share; };
-  // A quick answer takes about a tenth of the time.
-  constexpr double first = 0.1;
+  effort.stop = &given_up;
+  effort.progress = [&](double share) {
+    const std::shared_ptr<Solving> solving = of.lock();
+    if (solving) solving->progress_ = share;
+    if (!solving || stop.stop_requested()) given_up = true;
+  };
   try {
-    tell(solver_.solve(heap, coarse, transport::part_of(effort, 0.0, first)), false);
-    tell(solver_.solve(heap, {}, transport::part_of(effort, first, 1.0)), true);
+    tell(coarse, transport::part_of(effort, 0.0, quick_share), false);
+    tell({}, transport::part_of(effort, quick_share, 1.0), true);
   } catch (const transport::Stopped&) {
     return;
   } catch (const std::exception& failure) {
-    const std::lock_guard lock(mutex_);
-    if (given_up_) return;
-    news_ = {news_.number + 1, nullptr, true, failure.what()};
-    told_.notify_all();
+    if (const std::shared_ptr<Solving> solving = of.lock()) solving->tell(nullptr, true, failure.what());
   }
-}
-
-void Solving::tell(HeapLight light, bool final) {
-  auto known = std::make_shared<const HeapLight>(std::move(light));
-  const std::lock_guard lock(mutex_);
-  // It may have been asked for another in the meantime.
-  if (given_up_) return;
-  news_ = {news_.number + 1, std::move(known), final, {}};
-  told_.notify_all();
 }
 
 }  // namespace mesograin::heap

@@ -91,37 +91,37 @@ void Exchange::set(const Content& content, const scene::Scene& scene) {
   Gatherer gathered;
   if (scene.exchange != scene::Exchange::off && content.instances() != nullptr) gathered = gather(content);
   if (gathered.grains.grains.size() < 2) {
-    if (heap_) solving_->end();
-    heap_.reset();
+    solving_.reset();
     known_.reset();
     device_.reset();
     return;
   }
   heap::Heap heap{std::move(gathered.grains), content.anchor(), scene.lights, scene.world};
-  const bool regrouped = !heap_ || grain_of_ != gathered.grain_of;
-  if (!regrouped && *heap_ == heap) return;
-  solving_->begin(heap);
-  heap_ = std::move(heap);
+  const bool regrouped = !solving_ || grain_of_ != gathered.grain_of;
+  if (!regrouped && solving_->heap() == heap) return;
+  solving_ = heap::Solvers::instance().ask(std::move(heap), solving_);
+  news_ = 0;
   grain_of_ = std::move(gathered.grain_of);
   if (regrouped) send();
 }
 
 bool Exchange::take_news() {
-  if (!heap_) return false;
+  if (!solving_) return false;
   heap::News news = solving_->news();
   if (news.number == news_ || !news.light) return false;
   news_ = news.number;
-  known_ = Known{heap_->grains, std::move(news.light)};
+  known_ = Known{solving_->heap().grains, std::move(news.light)};
   send();
   return true;
 }
 
 ExchangeStatistics Exchange::statistics() const {
   ExchangeStatistics result;
-  if (!heap_) return result;
-  result.grains = heap_->grains.grains.size();
+  if (!solving_) return result;
+  const heap::Grains& grains = solving_->heap().grains;
+  result.grains = grains.grains.size();
   result.others = grain_of_.size() - result.grains;
-  result.kinds = heap_->grains.kinds.size();
+  result.kinds = grains.kinds.size();
   result.final = solving_->news().final;
   if (!known_) return result;
   const heap::HeapLight& light = *known_->light;

@@ -40,12 +40,12 @@ class Exchange {
   void set(const Content& content, const scene::Scene& scene);
 
   /// Whether any light goes from grain to grain.
-  bool any() const { return heap_.has_value(); }
+  bool any() const { return solving_ != nullptr; }
 
   /// Takes in what has become known since. Returns whether anything has.
   bool take_news();
 
-  /// What a picture waits for.
+  /// What a picture waits for; null where no light goes from grain to grain.
   std::shared_ptr<const heap::Solving> solving() const { return solving_; }
 
   ExchangeStatistics statistics() const;
@@ -62,10 +62,9 @@ class Exchange {
 
   void send();
 
-  std::optional<heap::Heap> heap_;
   std::vector<std::optional<std::uint32_t>> grain_of_;  // the grain that an object is, by its number
-  std::shared_ptr<heap::Solving> solving_ = std::make_shared<heap::Solving>();
-  int news_ = 0;  // taken in
+  std::shared_ptr<const heap::Solving> solving_;
+  int news_ = 0;  // taken in of it
   std::optional<Known> known_;
   std::optional<gl::Buffer> device_;
 };

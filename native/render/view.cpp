@@ -36,9 +36,9 @@ std::uint64_t next_id() {
 
 View::View(int width, int height, std::uint32_t seed, bool patient)
     : id_(next_id()), width_(width), height_(height), patient_(patient) {
-  solving_ = gl::ContextThread::instance().run([&] {
+  gl::ContextThread::instance().run([&] {
     Device& here = device();
-    return here.frames.try_emplace(id_, here.cache, width, height, seed).first->second.solving();
+    here.frames.try_emplace(id_, here.cache, width, height, seed);
   });
 }
 
@@ -60,9 +60,10 @@ void View::resize(int width, int height) {
 
 void View::set_scene(scene::Scene scene) {
   validate(scene);
-  computations_ = gl::ContextThread::instance().run([&] {
+  gl::ContextThread::instance().run([&] {
     frame(id_).set_scene(std::move(scene));
-    return frame(id_).computations();
+    computations_ = frame(id_).computations();
+    solving_ = frame(id_).solving();
   });
   *samples_ = 0;
 }
@@ -74,7 +75,10 @@ void View::set_camera(const scene::Camera& camera) {
 }
 
 void View::set_bake(const Bake& bake) {
-  gl::ContextThread::instance().run([&] { frame(id_).set_bake(bake); });
+  gl::ContextThread::instance().run([&] {
+    frame(id_).set_bake(bake);
+    solving_ = frame(id_).solving();
+  });
   *samples_ = 0;
 }
 
@@ -102,7 +106,8 @@ std::optional<double> View::preparing() const {
     sum += known ? 1.0 : computation->progress();
     final = final && known;
   }
-  if (!solving_->news().final) return (sum + solving_->progress()) / static_cast<double>(computations_.size() + 1);
+  if (solving_ && !solving_->news().final)
+    return (sum + solving_->progress()) / static_cast<double>(computations_.size() + 1);
   if (final) return std::nullopt;
   return sum / static_cast<double>(computations_.size());
 }
@@ -115,7 +120,7 @@ std::vector<std::string> View::warnings() const {
     const std::string sentence = unsuitable + " It is drawn by model_3.";
     if (std::find(sentences.begin(), sentences.end(), sentence) == sentences.end()) sentences.push_back(sentence);
   }
-  const std::string failure = solving_->news().failure;
+  const std::string failure = solving_ ? solving_->news().failure : "";
   if (!failure.empty()) sentences.push_back(failure + " Light between grains is left out.");
   return sentences;
 }
@@ -153,7 +158,8 @@ std::future<double> View::start(int samples) {
                           if (*cancelled) return false;
                         return true;
                       };
-                      if (!std::all_of(computations.begin(), computations.end(), known) || !known(solving)) return 0.0;
+                      if (!std::all_of(computations.begin(), computations.end(), known) || (solving && !known(solving)))
+                        return 0.0;
                       return gl::ContextThread::instance().run(draw);
                     });
 }

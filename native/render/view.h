@@ -101,7 +101,7 @@ class View {
   int height_;
   bool patient_;
   std::vector<std::shared_ptr<const transport::Computation>> computations_;
-  std::shared_ptr<const heap::Solving> solving_;
+  std::shared_ptr<const heap::Solving> solving_;  // null where no light goes from grain to grain
   std::shared_ptr<std::atomic<int>> samples_ = std::make_shared<std::atomic<int>>(0);
   std::shared_ptr<std::atomic<bool>> cancelled_ = std::make_shared<std::atomic<bool>>(false);
 };
