@@ -4,6 +4,7 @@ import bpy
 from ..cycles import nodes, reading, recipes
 from ..cycles.grain_values import GrainValues
 from ..scene import export
+from .active_material import OnActiveMaterial, active_material
 
 
 def to_grain(material, millimetres_per_unit):
@@ -44,15 +45,11 @@ def to_cycles(material, millimetres_per_unit):
     return lost
 
 
-class _Converts:
+class _Converts(OnActiveMaterial):
     bl_options = {"REGISTER", "UNDO"}
 
-    @classmethod
-    def poll(cls, context):
-        return context.object is not None and context.object.active_material is not None
-
     def execute(self, context):
-        material = getattr(context, "material", None) or context.object.active_material
+        material = active_material(context)
         try:
             lost = self.convert(material, context.scene.mesograin.millimetres_per_unit)
         except (reading.NoGrain, ValueError) as error:

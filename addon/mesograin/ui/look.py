@@ -6,6 +6,7 @@ from bpy.props import EnumProperty, FloatProperty, FloatVectorProperty, PointerP
 from .. import native_module
 from ..schema import advice, models
 from ..scene import thick_layer
+from .active_material import OnActiveMaterial, active_material
 
 INDICES = {"air": 1.0, "water": 1.333, "oil": 1.47}
 # How round a grain must be to count as a sphere: 36 pi V^2 / S^3, 0.52 of a cube.
@@ -161,19 +162,15 @@ def advise_as_seen(material, thing, millimetres_per_unit):
     return advise(material, thing, millimetres_per_unit, _shape_as_seen)
 
 
-class MESOGRAIN_OT_choose_model(bpy.types.Operator):
+class MESOGRAIN_OT_choose_model(OnActiveMaterial, bpy.types.Operator):
     bl_idname = "mesograin.choose_model"
     bl_label = "Choose Model"
     bl_description = ("Take the cheapest model whose measured error is under "
                       f"{advice.TOLERANCE:g} % for this object's size, shape and medium")
     bl_options = {"REGISTER", "UNDO"}
 
-    @classmethod
-    def poll(cls, context):
-        return context.object is not None and context.object.active_material is not None
-
     def execute(self, context):
-        material = getattr(context, "material", None) or context.object.active_material
+        material = active_material(context)
         advised = advise(material, context.object, context.scene.mesograin.millimetres_per_unit)
         if advised is None:
             self.report({"WARNING"}, f"'{context.object.name}' encloses nothing: a grain needs a mesh with a volume.")

@@ -6,6 +6,7 @@ from bpy.props import EnumProperty
 from ..schema import models
 from ..schema.parameters import PARAMETERS
 from ..schema.presets import BY_IDENTIFIER, GROUPS
+from .active_material import active_material
 
 
 def _sentence(group, preset):
@@ -36,11 +37,10 @@ class MESOGRAIN_OT_apply_preset(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context):
-        return getattr(context, "material", None) is not None or (
-            context.object is not None and context.object.active_material is not None)
+        return active_material(context) is not None
 
     def execute(self, context):
-        material = getattr(context, "material", None) or context.object.active_material
+        material = active_material(context)
         apply(BY_IDENTIFIER[self.preset], material.mesograin)
         return {"FINISHED"}
 
