@@ -173,6 +173,20 @@ TEST_F(ViewTest, LightsAddUpAndNoneIsBlack) {
   EXPECT_EQ(pixel(dark, 16, 8, 8)[3], 1.0F);
 }
 
+TEST_F(ViewTest, AWorldLightsEveryModel) {
+  scene::World grey;
+  grey.radiance = glm::dvec3(0.5);
+  const auto sphere = std::make_shared<scene::Mesh>(scene::unit_sphere(24, 12));
+  View view(16, 16, 0, /*patient=*/false);
+  view.set_camera(straight_camera());
+  for (std::size_t model = 0; model < scene::model_names.size(); ++model) {
+    scene::Material material;
+    material.model = static_cast<scene::Model>(model);
+    view.set_scene({{{sphere, material}}, {}, grey});
+    EXPECT_GT(pixel(picture(view), 16, 8, 8)[0], 0.0F) << scene::model_names[model];
+  }
+}
+
 TEST_F(ViewTest, AWideSunGivesTheMeanCosineOverItsDisc) {
   scene::Scene scene = one_square_;
   const double angle = 1.0;

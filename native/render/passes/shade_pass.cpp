@@ -127,7 +127,8 @@ const gl::Program& ShadePass::prepare(const Sample& sample, const ShadowPass& sh
       sample.cache.shading(material, {sample.unwrapping != nullptr, instanced, shadows.kind(sample.content),
                                       sample.exchange.any(), world, sample.lights_at_place(material, instanced)});
   material.bind(program);
-  if (world) set_world(program, sample.lighting);
+  // Only what lets it through shows the world itself.
+  if (world && program.declares("world_radiance")) set_world(program, sample.lighting);
   program.offer("sample_index", static_cast<int>(sample.index));
   program.offer("taps", taps_);
   shadows.bind(program);
