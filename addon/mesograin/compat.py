@@ -128,3 +128,8 @@ def frees_first_instances():
 
     # That shows in no property; scenes' compositing groups came no earlier.
     return "compositing_node_group" in bpy.types.Scene.bl_rna.properties
+
+
+def geometry_set(evaluated_object):
+    """What the modifiers of an evaluated object have made, instances too, or None where this Blender does not tell."""
+    return evaluated_object.evaluated_geometry() if hasattr(evaluated_object, "evaluated_geometry") else None

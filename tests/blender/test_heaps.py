@@ -8,7 +8,8 @@ from mathutils import Euler, Matrix
 from test_export import add_camera, add_cube, add_mesh_object, add_object, add_sun, read_scene
 
 import mesograin
-from mesograin.scene import export, heaps, meshes
+from mesograin.grains import objects, pile
+from mesograin.scene import export, heaps, meshes, scattered
 
 SIDE = 12
 
@@ -242,3 +243,73 @@ def test_whatever_may_be_more_than_a_slider_is_read_anew():
     varied = read_scene()
     material.mesograin_colours.vary = False
     assert export.with_new_materials(varied, Updates([Update(material)])) is None
+
+
+def pile_of_two_shapes(count):
+    """The object of a pile that is turned and moved, before anything else in the scene."""
+    random = np.random.default_rng(3)
+    placed = pile.Placings(random.uniform(-2.0, 2.0, (count, 3)), random.uniform(0.1, 0.3, count),
+                           random.uniform(0.0, 6.0, (count, 3)), random.integers(2, size=count), 0.0)
+    made = objects.add_pile(placed, [objects.add_grain("sand", segments=4, seed=seed) for seed in range(2)])
+    made.location, made.rotation_euler = (1.0, 2.0, 3.0), (0.3, 0.2, 0.1)
+    bpy.context.scene.collection.objects.link(made)
+    return made
+
+
+def test_what_geometry_nodes_scatter_is_where_blender_puts_it():
+    pile_of_two_shapes(300)
+    add_cube("Beside")
+    values = read_scene()
+    theirs = {}
+    for each in bpy.context.evaluated_depsgraph_get().object_instances:
+        if each.is_instance:
+            theirs.setdefault(each.object.name, []).append(np.array(each.matrix_world.copy(), dtype=np.float32))
+    assert [heap.name for heap in values.heaps] == list(theirs) and len(theirs) == 2
+    for heap in values.heaps:
+        np.testing.assert_allclose(placings(heap), np.array(theirs[heap.name]), rtol=0.0, atol=1e-6)
+        assert heap.material.name == ("Sand" if heap.name == "Sand" else heap.name)
+    assert [each.name for each in values.instances] == ["Beside"]
+
+
+def test_geometry_nodes_are_asked_at_once_where_this_blender_tells_all():
+    depsgraph = bpy.context.evaluated_depsgraph_get
+    made = pile_of_two_shapes(300)
+    tells = hasattr(bpy.types.Object, "evaluated_geometry")
+    assert (scattered.read(depsgraph()) is not None) == tells
+    # Scattered again, by an instancer of another kind: then each is looked at.
+    points = add_mesh_object("Points", grid(), [])
+    bpy.context.view_layer.update()
+    made.parent, points.instance_type = points, "VERTS"
+    assert scattered.read(depsgraph()) is None
+    count = sum(each.is_instance and each.object.name.startswith("Sand") for each in depsgraph().object_instances)
+    assert sum(len(heap) for heap in read_scene().heaps) == count >= 300
+
+
+def test_grains_that_vary_have_the_numbers_that_blender_gives_them():
+    pile_of_two_shapes(300)
+    for material in bpy.data.materials:
+        material.mesograin_colours.vary = True
+    assert all(heap.factors for heap in read_scene().heaps)
+
+
+def test_an_instancer_is_shown_beside_what_it_scatters_as_blender_shows_it():
+    tree = pile_of_two_shapes(300).modifiers[0].node_group
+    join, begin, end = tree.nodes.new("GeometryNodeJoinGeometry"), tree.nodes["Group Input"], tree.nodes["Group Output"]
+    scattered_there = end.inputs[0].links[0].from_socket
+    for socket in (begin.outputs[0], scattered_there):
+        tree.links.new(socket, join.inputs[0])
+    tree.links.new(join.outputs[0], end.inputs[0])
+    ground = add_cube("Ground")
+    ground.data.attributes.new("size", "FLOAT", "POINT").data.foreach_set("value", [0.1] * 8)
+    ground.modifiers.new("Grains", "NODES").node_group = tree
+
+    def seen():
+        bpy.context.view_layer.update()
+        values = read_scene()
+        return sorted({each.name for each in values.instances}), sum(len(heap) for heap in values.heaps)
+
+    assert seen() == (["Ground"], 308)
+    ground.show_instancer_for_viewport = False
+    assert seen() == ([], 308)
+    ground.hide_viewport = True
+    assert seen() == ([], 300)

@@ -9,7 +9,7 @@ import numpy as np
 
 from .. import native_module
 from ..schema import models, parameters
-from . import colours, heaps, lights, meshes, plain_materials, properties, surroundings
+from . import colours, heaps, lights, meshes, plain_materials, properties, scattered, surroundings
 
 
 @dataclasses.dataclass(frozen=True)
@@ -277,6 +277,28 @@ class _Reader:
         self._warnings = {}
 
     def read_all(self, depsgraph):
+        shown = scattered.read(depsgraph)
+        if shown is None or not self._read_shown(shown):
+            self._read_each(depsgraph)
+
+    def _read_shown(self, shown):
+        """Reads the scattered.Shown of all objects. False, and nothing is read, if instances need to be looked at."""
+        found, groups = {}, []  # {shape: arrays of its placings}; heaps.Groups with their placings
+        for each in shown:
+            for shape, placings in each.placings_of().items():
+                found.setdefault(shape, []).append(placings)
+        for shape, placings in found.items():
+            group = self._group(shape)
+            if group is None or group.needs_random_ids:
+                return False
+            group.place(np.concatenate(placings))
+            groups.append(group)
+        for each in shown:
+            self._read(each.thing, each.thing.matrix_world)
+        self._groups += groups
+        return True
+
+    def _read_each(self, depsgraph):
         """Of instancers' placings there may be a million: of each is asked only which shape it is, and Blender fills an
         array with their matrices."""
         numbers, groups = {}, []  # {(instanced object, its data): its number}; heaps.Group or None of each
