@@ -45,6 +45,25 @@ void light_grain(const Space& space, std::uint32_t number, const glm::dvec3& anc
   }
 }
 
+void light_wall(const Space& space, const Patches::Node& node, const glm::dvec3& anchor, const Draw& draw, int rays,
+                transport::Random& random, Coefficients& direct, Coefficients& crossed) {
+  constexpr glm::vec3 nowhere(0.0F);
+  const glm::vec3 share =
+      space.kind(node).from_light->albedo() / (std::numbers::pi_v<float> * static_cast<float>(rays));
+  const Spread spread(random);
+  for (int i = 0; i < rays; ++i) {
+    const std::array<float, 5> point = spread.point(i);
+    const WallPlace at = space.place(node, point[0], point[1]);
+    const lights::LightDraw light = draw(anchor + glm::dvec3(at.place), {point[2], point[3]});
+    const glm::vec3 to_light(light.to_light);
+    const float cosine = glm::dot(to_light, at.normal);
+    if (!(cosine > 0.0F)) continue;
+    Ray ray{at.place, to_light, glm::vec3(1.0F)};
+    const glm::vec3 left = space.passed(ray, static_cast<float>(std::min(light.reach, 1e30)));
+    (ray.crossed ? crossed : direct).add(share * cosine * glm::vec3(light.irradiance) * left, nowhere);
+  }
+}
+
 }  // namespace
 
 void add_direct_light(const Space& space, const Heap& heap, int rays, Field& direct, Field& crossed,
@@ -60,12 +79,17 @@ void add_direct_light(const Space& space, const Heap& heap, int rays, Field& dir
   }
   if (draws.empty()) return;
   constexpr std::size_t grains_a_piece = 64;
-  const std::size_t count = space.grains().size();
+  const std::size_t grains = space.grains().size();
+  const std::size_t count = space.size();
   transport::run_pieces(effort, (count + grains_a_piece - 1) / grains_a_piece, [&](std::size_t piece) {
     for (std::size_t i = piece * grains_a_piece; i < std::min(count, (piece + 1) * grains_a_piece); ++i) {
       transport::Random random(effort.seed + 1, i);
       for (const Draw& draw : draws)
-        light_grain(space, static_cast<std::uint32_t>(i), heap.anchor, draw, rays, random, direct[i], crossed[i]);
+        if (i < grains)
+          light_grain(space, static_cast<std::uint32_t>(i), heap.anchor, draw, rays, random, direct[i], crossed[i]);
+        else
+          light_wall(space, space.patches().nodes()[i - grains], heap.anchor, draw, rays, random, direct[i],
+                     crossed[i]);
     }
   });
 }

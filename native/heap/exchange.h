@@ -13,6 +13,7 @@ namespace mesograin::heap {
 /// How much work goes into it.
 struct Quality {
   int rays = 128;       ///< from each grain to others
+  int wall_rays = 256;  ///< from each node of walls
   int light_rays = 64;  ///< to each light
   int seen_rays = 64;   ///< straight through each transparent grain
   float tolerance = 3e-4F;
@@ -23,7 +24,7 @@ struct Quality {
 /// For a first picture: within a tenth of what the default finds.
 inline constexpr Quality coarse{
 
-    .rays = 16, .light_rays = 16, .seen_rays = 8, .tolerance = 5e-3F, .walks = 512, .quick = true};
+    .rays = 16, .wall_rays = 32, .light_rays = 16, .seen_rays = 8, .tolerance = 5e-3F, .walks = 512, .quick = true};
 
 /// How often each part of a solution was found anew.
 struct Parts {
@@ -33,12 +34,14 @@ struct Parts {
   int solutions = 0;
 };
 
-/// Of every grain, in their order. Radiance that leaves a grain at a normal and a cosine: that of `answer` times the
-/// lobe of its kind's table, and that of `behind` times what crosses the grain there.
+/// Of every grain, in their order, and then of every node of the walls. Radiance that leaves a grain at a normal and a
+/// cosine: that of `answer` times the lobe of its kind's table, and that of `behind` times what crosses the grain
+/// there.
 struct HeapLight {
   Field answer;  ///< exitance over pi, but for what answers to light that comes straight from a light
-  Field behind;  ///< what is seen through a transparent grain
+  Field behind;  ///< of grains only: what is seen through a transparent one
   Field sent;    ///< exitance over pi because of all light, to begin the next solution from
+  Patches patches;
   std::vector<Kind> kinds;
   std::size_t links = 0;
   int steps = 0;

@@ -1,4 +1,4 @@
-// Embree's own spheres.
+// Embree's own spheres, and triangles.
 #include "heap/grains.h"
 
 #if __has_include(<embree4/rtcore.h>)
@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <glm/geometric.hpp>
 #include <glm/vec4.hpp>
 #include <limits>
@@ -27,36 +28,43 @@ struct Neighbourhood::Device {
   Device() : device(rtcNewDevice("set_affinity=0")) {
     if (device == nullptr) throw Error("Embree, which traces rays between grains, could not be started.");
     scene = rtcNewScene(device);
+    only_walls = rtcNewScene(device);
   }
   ~Device() {
+    rtcReleaseScene(only_walls);
     rtcReleaseScene(scene);
     rtcReleaseDevice(device);
   }
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
 
-  RTCDevice device;
-  RTCScene scene = nullptr;
-  std::vector<glm::vec4> spheres;
-};
+  void add_grains(const std::vector<Grain>& grains) {
+    for (const Grain& grain : grains) spheres.emplace_back(grain.middle, grain.radius);
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_SPHERE_POINT);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, spheres.data(), 0,
+                               sizeof(glm::vec4), spheres.size());
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometryByID(scene, geometry, of_grains);
+    rtcReleaseGeometry(geometry);
+  }
 
-Neighbourhood::Neighbourhood(const Grains& grains) {
-  auto device = std::make_shared<Device>();
-  for (const Grain& grain : grains.grains) device->spheres.emplace_back(grain.middle, grain.radius);
-  RTCGeometry geometry = rtcNewGeometry(device->device, RTC_GEOMETRY_TYPE_SPHERE_POINT);
-  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, device->spheres.data(), 0,
-                             sizeof(glm::vec4), device->spheres.size());
-  rtcCommitGeometry(geometry);
-  rtcAttachGeometry(device->scene, geometry);
-  rtcReleaseGeometry(geometry);
-  rtcCommitScene(device->scene);
-  device_ = std::move(device);
-}
+  void add_wall(const Wall& wall, std::uint32_t number) {
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    const std::vector<glm::vec3> positions = wall.positions();
+    const std::vector<glm::uvec3>& triangles = wall.mesh->triangles();
+    void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(glm::vec3),
+                                             positions.size());
+    std::memcpy(vertices, positions.data(), positions.size() * sizeof(glm::vec3));
+    void* indices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(glm::uvec3),
+                                            triangles.size());
+    std::memcpy(indices, triangles.data(), triangles.size() * sizeof(glm::uvec3));
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometryByID(scene, geometry, of_grains + 1 + number);
+    rtcAttachGeometryByID(only_walls, geometry, number);
+    rtcReleaseGeometry(geometry);
+  }
 
-bool Neighbourhood::first(const glm::vec3& origin, const glm::vec3& direction, Meeting& meeting) const {
-  float near = 0.0F;
-  constexpr int most_left = 64;
-  for (int left = 0; left < most_left; ++left) {
+  static RTCRayHit shoot(RTCScene at, const glm::vec3& origin, const glm::vec3& direction, float near, float far) {
     RTCRayHit ray{};
     ray.ray.org_x = origin.x;
     ray.ray.org_y = origin.y;
@@ -65,25 +73,73 @@ bool Neighbourhood::first(const glm::vec3& origin, const glm::vec3& direction, M
     ray.ray.dir_y = direction.y;
     ray.ray.dir_z = direction.z;
     ray.ray.tnear = near;
-    ray.ray.tfar = std::numeric_limits<float>::infinity();
+    ray.ray.tfar = far;
     ray.ray.mask = ~0U;
     ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
 #if RTC_VERSION_MAJOR >= 4
-    rtcIntersect1(device_->scene, &ray);
+    rtcIntersect1(at, &ray);
 #else
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    rtcIntersect1(device_->scene, &context, &ray);
+    rtcIntersect1(at, &context, &ray);
 #endif
-    if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
+    return ray;
+  }
+
+  static Meeting on_wall(std::uint32_t wall, const glm::vec3& origin, const glm::vec3& direction,
+                         const RTCRayHit& ray) {
+    const glm::vec3 normal = glm::normalize(glm::vec3(ray.hit.Ng_x, ray.hit.Ng_y, ray.hit.Ng_z));
+    return {true, wall, origin + ray.ray.tfar * direction, glm::dot(normal, direction) < 0.0F ? normal : -normal};
+  }
+
+  static constexpr std::uint32_t of_grains = 0;
+
+  RTCDevice device;
+  RTCScene scene = nullptr;
+  RTCScene only_walls = nullptr;
+  std::vector<glm::vec4> spheres;
+};
+
+Neighbourhood::Neighbourhood(const Grains& grains) {
+  auto device = std::make_shared<Device>();
+  device->add_grains(grains.grains);
+  for (std::size_t wall = 0; wall < grains.walls.size(); ++wall)
+    device->add_wall(grains.walls[wall], static_cast<std::uint32_t>(wall));
+  rtcCommitScene(device->scene);
+  rtcCommitScene(device->only_walls);
+  device_ = std::move(device);
+}
+
+std::optional<Meeting> Neighbourhood::first(const glm::vec3& origin, const glm::vec3& direction) const {
+  float near = 0.0F;
+  constexpr int most_left = 64;
+  for (int left = 0; left < most_left; ++left) {
+    const RTCRayHit ray =
+        Device::shoot(device_->scene, origin, direction, near, std::numeric_limits<float>::infinity());
+    if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+    if (ray.hit.geomID != Device::of_grains)
+      return Device::on_wall(ray.hit.geomID - Device::of_grains - 1, origin, direction, ray);
     const glm::vec4& sphere = device_->spheres[ray.hit.primID];
-    meeting.grain = ray.hit.primID;
-    meeting.normal = glm::normalize(origin + ray.ray.tfar * direction - glm::vec3(sphere));
-    if (glm::dot(meeting.normal, direction) < 0.0F) return true;
+    const glm::vec3 normal = glm::normalize(origin + ray.ray.tfar * direction - glm::vec3(sphere));
+    if (glm::dot(normal, direction) < 0.0F)
+      return Meeting{false, ray.hit.primID, glm::vec3(sphere) + sphere.w * normal, normal};
     // The far side of one that the ray has started in.
     near = ray.ray.tfar + 1e-6F * (std::abs(ray.ray.tfar) + sphere.w);
   }
-  return false;
+  return std::nullopt;
+}
+
+std::optional<Meeting> Neighbourhood::first_on(std::uint32_t wall, const glm::vec3& origin, const glm::vec3& direction,
+                                               float reach) const {
+  float near = 0.0F;
+  constexpr int most_passed = 16;
+  for (int passed = 0; passed < most_passed; ++passed) {
+    const RTCRayHit ray = Device::shoot(device_->only_walls, origin, direction, near, reach);
+    if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+    if (ray.hit.geomID == wall) return Device::on_wall(wall, origin, direction, ray);
+    near = ray.ray.tfar + 1e-6F * reach;
+  }
+  return std::nullopt;
 }
 
 }  // namespace mesograin::heap

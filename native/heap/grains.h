@@ -1,13 +1,15 @@
-// The grains of a heap as light between them sees them: spheres, each of a kind.
+// The grains of a heap as light between them sees them, spheres, each of a kind, and the walls around them.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "heap/optics.h"
+#include "heap/walls.h"
 
 namespace mesograin::heap {
 
@@ -22,6 +24,7 @@ struct Grain {
 struct Grains {
   std::vector<Grain> grains;
   std::vector<Optics> kinds;
+  std::vector<Wall> walls;
 
   /// The number of a kind of these optics, added if there is none.
   std::uint32_t kind(const Optics& optics);
@@ -29,19 +32,25 @@ struct Grains {
   bool operator==(const Grains&) const = default;
 };
 
-/// Which grain a ray meets, and where.
+/// Which grain or wall a ray meets, and where.
 struct Meeting {
-  std::uint32_t grain;
-  glm::vec3 normal;  ///< outwards; the place is the grain's middle + radius * normal
+  bool wall;
+  std::uint32_t number;  ///< of the grain or the wall
+  glm::vec3 place;
+  glm::vec3 normal;  ///< against the ray; of a grain outwards
 };
 
-/// The grains as rays find them (Embree). Places in it come from Grains.
+/// Grains and walls as rays find them (Embree). Places in it come from Grains.
 class Neighbourhood {
  public:
   explicit Neighbourhood(const Grains& grains);
 
-  /// The first grain that a ray comes to from outside; grains that it starts in are not met.
-  bool first(const glm::vec3& origin, const glm::vec3& direction, Meeting& meeting) const;
+  /// The first grain that a ray comes to from outside, or wall; grains that it starts in are not met.
+  std::optional<Meeting> first(const glm::vec3& origin, const glm::vec3& direction) const;
+
+  /// Where a ray meets this wall within `reach`.
+  std::optional<Meeting> first_on(std::uint32_t wall, const glm::vec3& origin, const glm::vec3& direction,
+                                  float reach) const;
 
  private:
   struct Device;

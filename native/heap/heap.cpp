@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <glm/geometric.hpp>
 
 namespace mesograin::heap {
@@ -10,6 +11,9 @@ namespace {
 
 // Through more grains nothing is followed.
 constexpr int most_crossed = 4096;
+
+// Of patches on walls, for a heap of few grains.
+constexpr std::size_t fewest_nodes = 8000;
 
 float mean(const glm::vec3& colour) { return (colour.r + colour.g + colour.b) / 3.0F; }
 
@@ -32,28 +36,68 @@ std::vector<Kind> kinds_of(const Grains& grains, int most_walks, const transport
   return kinds;
 }
 
+Space::Space(const Grains& grains, const std::vector<Kind>& kinds)
+    : grains_(grains.grains),
+      walls_(grains.walls),
+      kinds_(kinds),
+      patches_(grains, fewest_nodes + grains.grains.size() / 4),
+      neighbourhood_(grains) {}
+
+WallPlace Space::place(const Patches::Node& node, float u, float v) const {
+  // As the node's share of the light falls off.
+  const auto tent = [](float at) {
+    return at < 0.5F ? std::sqrt(2.0F * at) - 1.0F : 1.0F - std::sqrt(2.0F - 2.0F * at);
+  };
+  const int axis = node.side / 2;
+  const float length = patches_.length(node.level);
+  glm::vec3 facing(0.0F);
+  facing[axis] = node.side % 2 == 0 ? 1.0F : -1.0F;
+  glm::vec3 near(0.0F);
+  near[axis] = node.depth;
+  near[(axis + 1) % 3] = length * (static_cast<float>(node.at.x) + tent(u));
+  near[(axis + 2) % 3] = length * (static_cast<float>(node.at.y) + tent(v));
+  const float before = 2.0F * length;
+  // A part of what a node stands for may lie beside the wall.
+  for (const glm::vec3& from : {near, node.home})
+    if (const std::optional<Meeting> meeting =
+            neighbourhood_.first_on(node.wall, patches_.middle() + from + before * facing, -facing, 2.0F * before))
+      return {meeting->place + 1e-4F * length * meeting->normal, meeting->normal};
+  return {patches_.middle() + node.home + 1e-4F * length * facing, facing};
+}
+
 void Space::cross(Ray& ray, const Meeting& meeting, float cosine) const {
-  const Grain& grain = grains_[meeting.grain];
+  const Grain& grain = grains_[meeting.number];
   ray.origin = place(grain, meeting.normal + 2.0F * cosine * ray.direction);
   ray.crossed = true;
 }
 
-std::optional<Meeting> Space::follow(Ray& ray, transport::Random& random) const {
-  Meeting meeting{};
+std::optional<Source> Space::source(const Meeting& meeting, Ray& ray, transport::Random& random) const {
+  if (!meeting.wall) return Source{meeting.number, meeting.normal, kind(meeting.number).from_light->met()};
+  const std::optional<std::uint32_t> node = patches_.draw(meeting.number, meeting.place, meeting.normal, random);
+  if (!node) {
+    ray.weight = glm::vec3(0.0F);
+    return std::nullopt;
+  }
+  return Source{static_cast<std::uint32_t>(grains_.size()) + *node, glm::vec3(0.0F), glm::vec3(1.0F)};
+}
+
+std::optional<Source> Space::follow(Ray& ray, transport::Random& random) const {
   for (int crossed = 0; crossed < most_crossed; ++crossed) {
-    if (!neighbourhood_.first(ray.origin, ray.direction, meeting)) return std::nullopt;
-    const float cosine = std::clamp(-glm::dot(meeting.normal, ray.direction), 0.0F, 1.0F);
-    const glm::vec3 crossing = kind(meeting.grain).from_light->crossing(cosine);
+    const std::optional<Meeting> meeting = neighbourhood_.first(ray.origin, ray.direction);
+    if (!meeting) return std::nullopt;
+    if (meeting->wall) return source(*meeting, ray, random);
+    const float cosine = std::clamp(-glm::dot(meeting->normal, ray.direction), 0.0F, 1.0F);
+    const glm::vec3 crossing = kind(meeting->number).from_light->crossing(cosine);
     const glm::vec3 passed = ray.weight * crossing;
     const float all = mean(ray.weight);
     const float share = all > 0.0F ? mean(passed) / all : 0.0F;
-    if (!(share > 0.0F)) return meeting;
+    if (!(share > 0.0F)) return source(*meeting, ray, random);
     if (share < 1.0F && random.uniform() >= share) {
       ray.weight = (ray.weight - passed) / (1.0F - share);
-      return meeting;
+      return source(*meeting, ray, random);
     }
     ray.weight = passed / share;
-    cross(ray, meeting, cosine);
+    cross(ray, *meeting, cosine);
   }
   ray.weight = glm::vec3(0.0F);
   return std::nullopt;
@@ -63,14 +107,13 @@ glm::vec3 Space::passed(Ray& ray, float reach) const {
   constexpr float nothing = 1e-5F;
   const glm::vec3 start = ray.origin;
   glm::vec3 left(1.0F);
-  Meeting meeting{};
   for (int crossed = 0; crossed < most_crossed; ++crossed) {
-    if (!neighbourhood_.first(ray.origin, ray.direction, meeting)) return left;
-    const Grain& grain = grains_[meeting.grain];
-    if (glm::distance(start, grain.middle + grain.radius * meeting.normal) > reach) return left;
-    const float cosine = std::clamp(-glm::dot(meeting.normal, ray.direction), 0.0F, 1.0F);
-    left *= kind(meeting.grain).from_light->crossing(cosine);
-    cross(ray, meeting, cosine);
+    const std::optional<Meeting> meeting = neighbourhood_.first(ray.origin, ray.direction);
+    if (!meeting || glm::distance(start, meeting->place) > reach) return left;
+    if (meeting->wall) break;
+    const float cosine = std::clamp(-glm::dot(meeting->normal, ray.direction), 0.0F, 1.0F);
+    left *= kind(meeting->number).from_light->crossing(cosine);
+    cross(ray, *meeting, cosine);
     if (std::max({left.r, left.g, left.b}) < nothing) break;
   }
   return glm::vec3(0.0F);

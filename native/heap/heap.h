@@ -8,6 +8,7 @@
 
 #include "heap/grain_table.h"
 #include "heap/grains.h"
+#include "heap/patches.h"
 #include "scene/light.h"
 #include "scene/world.h"
 
@@ -39,23 +40,43 @@ struct Ray {
   bool crossed = false;  ///< whether it has gone straight through a grain
 };
 
+/// What sends out the light that a ray looks for: a grain at a normal, or a node of the walls' patches.
+struct Source {
+  std::uint32_t number;  ///< of all that sends out light: grains, then nodes
+  glm::vec3 normal;      ///< 0 of a node
+  glm::vec3 met;         ///< GrainTable::met() of its kind
+};
+
+/// A place on a wall.
+struct WallPlace {
+  glm::vec3 place;  ///< just before its surface
+  glm::vec3 normal;
+};
+
 /// The heap as rays go through it.
 class Space {
  public:
-  Space(const Grains& grains, const std::vector<Kind>& kinds)
-      : grains_(grains.grains), kinds_(kinds), neighbourhood_(grains) {}
+  Space(const Grains& grains, const std::vector<Kind>& kinds);
 
   const std::vector<Grain>& grains() const { return grains_; }
   const Kind& kind(std::uint32_t grain) const { return kinds_[grains_[grain].kind]; }
+  const Kind& kind(const Patches::Node& node) const { return kinds_[walls_[node.wall].kind]; }
+  const Patches& patches() const { return patches_; }
+
+  /// Of all that sends out light.
+  std::size_t size() const { return grains_.size() + patches_.nodes().size(); }
+
+  /// A place for which a node stands, `u` and `v` in [0, 1): the likelier the nearer.
+  WallPlace place(const Patches::Node& node, float u, float v) const;
 
   /// Just outside a grain's surface.
   glm::vec3 place(const Grain& grain, const glm::vec3& normal) const {
     return grain.middle + grain.radius * (1.0F + 1e-4F) * normal;
   }
 
-  /// On to the grain that it meets; nothing if it leaves the heap. Where a grain lets a part straight through, one of
-  /// the two ways is taken at random.
-  std::optional<Meeting> follow(Ray& ray, transport::Random& random) const;
+  /// On to the grain or wall that it meets; nothing if it leaves the heap. Where a grain lets a part straight through,
+  /// one of the two ways is taken at random.
+  std::optional<Source> follow(Ray& ray, transport::Random& random) const;
 
   /// What is left of light that comes from `reach` away, against `ray`'s direction, straight through all in between.
   /// Does not change its weight.
@@ -64,9 +85,12 @@ class Space {
  private:
   /// To where it leaves the grain that it met.
   void cross(Ray& ray, const Meeting& meeting, float cosine) const;
+  std::optional<Source> source(const Meeting& meeting, Ray& ray, transport::Random& random) const;
 
   const std::vector<Grain>& grains_;
+  const std::vector<Wall>& walls_;
   const std::vector<Kind>& kinds_;
+  Patches patches_;
   Neighbourhood neighbourhood_;
 };
 

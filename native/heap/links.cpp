@@ -1,6 +1,6 @@
-// Rays start where a viewer would look at a grain, from all sides, go through its table backwards and on to the grain
-// that the light came from. Points are those of an additive recurrence, shifted for each grain, so that each grain's
-// rays are spread evenly.
+// Rays start where a viewer would look at a grain or a wall, from all sides, go through a grain's table backwards and
+// on to what the light came from. Points are those of an additive recurrence, shifted for each grain, so that each
+// grain's rays are spread evenly.
 #include "heap/links.h"
 
 #include <algorithm>
@@ -24,15 +24,6 @@ void pack(const glm::vec3& normal, std::int16_t (&packed)[3]) {
 
 glm::vec3 unpacked(const std::int16_t (&packed)[3]) {
   return glm::vec3(packed[0], packed[1], packed[2]) * (1.0F / whole);
-}
-
-Link link_to(const Space& space, const Meeting& meeting, const glm::vec3& weight, const glm::vec3& leaves_at) {
-  Link link{meeting.grain, {}, {}, {}};
-  const glm::vec3 sent = weight / space.kind(meeting.grain).from_light->met();
-  pack(meeting.normal, link.sent_at);
-  pack(leaves_at, link.leaves_at);
-  for (int channel = 0; channel < 3; ++channel) link.weight[channel] = sent[channel];
-  return link;
 }
 
 struct Found {
@@ -67,8 +58,20 @@ void balance(std::vector<Departing>& departing, const glm::vec3& albedo) {
   }
 }
 
+// Of a node of walls, whose light is the same whatever the normal.
+constexpr glm::vec3 nowhere(0.0F);
+
+Link link_to(const Source& source, const glm::vec3& weight, const glm::vec3& leaves_at) {
+  Link link{source.number, {}, {}, {}};
+  const glm::vec3 sent = weight / source.met;
+  pack(source.normal, link.sent_at);
+  pack(leaves_at, link.leaves_at);
+  for (int channel = 0; channel < 3; ++channel) link.weight[channel] = sent[channel];
+  return link;
+}
+
 struct Ending {
-  std::optional<Meeting> meeting;
+  std::optional<Source> source;
   glm::vec3 left{0.0F};
   bool crossed = false;
 };
@@ -89,7 +92,7 @@ Found look_from(const Space& space, std::uint32_t number, int rays, const glm::v
     departing[i] = {outcome.weight, normal};
     const TurnedFrame frame(normal, point[4]);
     Ray ray{space.place(grain, frame * outcome.normal), frame * outcome.direction, outcome.weight};
-    endings[i].meeting = space.follow(ray, random);
+    endings[i].source = space.follow(ray, random);
     endings[i].crossed = ray.crossed;
     // What the way has left of the weight.
     for (int channel = 0; channel < 3; ++channel)
@@ -99,11 +102,28 @@ Found look_from(const Space& space, std::uint32_t number, int rays, const glm::v
   for (std::size_t i = 0; i < departing.size(); ++i) {
     const Departing& from = departing[i];
     const glm::vec3 weight = from.weight * endings[i].left;
-    if (const std::optional<Meeting>& meeting = endings[i].meeting) {
-      found.links.push_back(link_to(space, *meeting, weight, from.normal));
-    } else {
+    if (endings[i].source)
+      found.links.push_back(link_to(*endings[i].source, weight, from.normal));
+    else
       (endings[i].crossed ? found.crossed : found.direct).add(weight * radiance, from.normal);
-    }
+  }
+  return found;
+}
+
+Found look_from(const Space& space, const Patches::Node& node, int rays, const glm::vec3& radiance,
+                transport::Random& random) {
+  Found found;
+  const Spread spread(random);
+  for (int i = 0; i < rays; ++i) {
+    const std::array<float, 5> point = spread.point(i);
+    const WallPlace from = space.place(node, point[0], point[1]);
+    const float cosine = std::sqrt(1.0F - point[2]);
+    const glm::vec3 direction = TurnedFrame(from.normal, point[3]) * glm::vec3(std::sqrt(point[2]), 0.0F, cosine);
+    Ray ray{from.place, direction, space.kind(node).from_viewer->albedo() / static_cast<float>(rays)};
+    if (const std::optional<Source> source = space.follow(ray, random))
+      found.links.push_back(link_to(*source, ray.weight, nowhere));
+    else
+      (ray.crossed ? found.crossed : found.direct).add(ray.weight * radiance, nowhere);
   }
   return found;
 }
@@ -124,16 +144,18 @@ Links joined(std::vector<std::vector<Link>> found) {
 
 }  // namespace
 
-Links find_links(const Space& space, int rays, const glm::vec3& radiance, WorldLit& lit,
+Links find_links(const Space& space, const Rays& rays, const glm::vec3& radiance, WorldLit& lit,
                  const transport::Effort& effort) {
-  const std::size_t count = space.grains().size();
+  const std::size_t count = space.size();
+  const std::size_t grains = space.grains().size();
   std::vector<std::vector<Link>> found(count);
   lit.direct.assign(count, {});
   lit.crossed.assign(count, {});
   transport::run_pieces(effort, (count + grains_a_piece - 1) / grains_a_piece, [&](std::size_t piece) {
     for (std::size_t i = piece * grains_a_piece; i < std::min(count, (piece + 1) * grains_a_piece); ++i) {
       transport::Random random(effort.seed, i);
-      Found of = look_from(space, static_cast<std::uint32_t>(i), rays, radiance, random);
+      Found of = i < grains ? look_from(space, static_cast<std::uint32_t>(i), rays.of_grain, radiance, random)
+                            : look_from(space, space.patches().nodes()[i - grains], rays.of_node, radiance, random);
       found[i] = std::move(of.links);
       lit.direct[i] = of.direct;
       lit.crossed[i] = of.crossed;
@@ -160,7 +182,7 @@ void Links::gather(const Field& sent, Field& answer, const transport::Effort& ef
 
 Links find_behind(const Space& space, int rays, const transport::Effort& effort) {
   const std::size_t count = space.grains().size();
-  std::vector<std::vector<Link>> found(count);
+  std::vector<std::vector<Link>> found(space.size());
   transport::run_pieces(effort, (count + grains_a_piece - 1) / grains_a_piece, [&](std::size_t piece) {
     for (std::size_t i = piece * grains_a_piece; i < std::min(count, (piece + 1) * grains_a_piece); ++i) {
       const auto number = static_cast<std::uint32_t>(i);
@@ -177,8 +199,8 @@ Links find_behind(const Space& space, int rays, const transport::Effort& effort)
         const glm::vec3 inwards = TurnedFrame(normal, point[4]) * glm::vec3(std::sqrt(1.0F - point[2]), 0.0F, -mu);
         Ray ray{space.place(grain, normal + 2.0F * mu * inwards), inwards, table.crossing(mu)};
         all += ray.weight;
-        const std::optional<Meeting> meeting = space.follow(ray, random);
-        if (meeting) found[i].push_back(link_to(space, *meeting, ray.weight, normal));
+        if (const std::optional<Source> source = space.follow(ray, random))
+          found[i].push_back(link_to(*source, ray.weight, normal));
       }
       for (Link& link : found[i])
         for (int channel = 0; channel < 3; ++channel)

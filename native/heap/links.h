@@ -1,4 +1,4 @@
-// Which grains send light to which: G of S = D + G S, as the rays it was found by.
+// Which grains and walls send light to which: G of S = D + G S, as the rays it was found by.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,8 @@
 
 namespace mesograin::heap {
 
-/// A ray that leaves a grain at a normal because of light that another grain sent out at one of its own.
+/// A ray that leaves a grain at a normal because of light that another one sent out at one of its own; of a node of
+/// walls, which sends out the same at every normal, it is 0.
 struct Link {
   std::uint32_t from;
   std::int16_t sent_at[3];
@@ -19,21 +20,28 @@ struct Link {
 };
 
 struct Links {
-  std::vector<std::size_t> first;  ///< of each grain, and one past the last
+  std::vector<std::size_t> first;  ///< of each grain, then of each node of walls, and one past the last
   std::vector<Link> links;
 
   /// What light sent out by others makes the grains send out.
   void gather(const Field& sent, Field& answer, const transport::Effort& effort) const;
 };
 
-/// What leaves the grains because of an even world: without and with other grains on the way.
+/// What leaves grains and walls because of an even world: without and with other grains on the way.
 struct WorldLit {
   Field direct;
   Field crossed;
 };
 
-/// `rays` of each grain; `radiance` from outside the heap wherever a ray leaves it.
-Links find_links(const Space& space, int rays, const glm::vec3& radiance, WorldLit& lit,
+/// How many rays leave each.
+struct Rays {
+  int of_grain;
+  int of_node;  ///< of walls
+};
+
+/// `radiance` from outside the heap wherever a ray leaves
+/// it.
+Links find_links(const Space& space, const Rays& rays, const glm::vec3& radiance, WorldLit& lit,
                  const transport::Effort& effort);
 
 /// The light that is seen straight through transparent grains, mean over the directions in which it leaves: what others

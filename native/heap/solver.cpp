@@ -13,9 +13,13 @@ namespace mesograin::heap {
 namespace {
 
 bool same_places(const Grains& a, const Grains& b) {
-  return std::equal(
-      a.grains.begin(), a.grains.end(), b.grains.begin(), b.grains.end(),
-      [](const Grain& one, const Grain& other) { return one.middle == other.middle && one.radius == other.radius; });
+  const bool same_walls = std::equal(
+      a.walls.begin(), a.walls.end(), b.walls.begin(), b.walls.end(),
+      [](const Wall& one, const Wall& other) { return one.mesh == other.mesh && one.to_heap == other.to_heap; });
+  return same_walls && std::equal(a.grains.begin(), a.grains.end(), b.grains.begin(), b.grains.end(),
+                                  [](const Grain& one, const Grain& other) {
+                                    return one.middle == other.middle && one.radius == other.radius;
+                                  });
 }
 
 // Beyond that a material is another, and its links tell nothing.
@@ -88,6 +92,13 @@ std::optional<Solver::Change> Solver::change_from(const Matter& other) const {
     change.received.push_back(ratio(then.from_light->met(), now.from_light->met()));
     if (!is_small(change.answered.back()) || !is_small(change.received.back())) return std::nullopt;
   }
+  for (const Patches::Node& node : other.space->patches().nodes()) {
+    const Kind& now = matter_->kinds[matter_->grains.walls[node.wall].kind];
+    const Kind& then = other.kinds[other.grains.walls[node.wall].kind];
+    change.answered.push_back(ratio(now.from_viewer->albedo(), then.from_viewer->albedo()));
+    change.received.emplace_back(1.0F);
+    if (!is_small(change.answered.back())) return std::nullopt;
+  }
   return change;
 }
 
@@ -114,7 +125,8 @@ const Space& Solver::space() {
 void Solver::find_ways(const Quality& quality, const transport::Effort& effort) {
   if (ways_ && serves(ways_->matter, ways_->rays, quality.rays, quality)) return;
   Ways ways{matter_, quality.rays, {}, {}, {}};
-  ways.links = find_links(space(), quality.rays, glm::vec3(1.0F), ways.world, transport::part_of(effort, 0.0, 0.8));
+  ways.links = find_links(space(), {quality.rays, quality.wall_rays}, glm::vec3(1.0F), ways.world,
+                          transport::part_of(effort, 0.0, 0.8));
   ways.behind = find_behind(space(), quality.seen_rays, transport::part_of(effort, 0.8, 1.0));
   ways_ = std::move(ways);
   ++parts_.links;
@@ -125,7 +137,7 @@ const Solver::Source& Solver::find_source(Heap light, const Quality& quality, co
       std::find_if(sources_.begin(), sources_.end(), [&](const Source& source) { return source.light == light; });
   if (same != sources_.end() && serves(same->matter, same->rays, quality.light_rays, quality)) return *same;
   Source source{std::move(light), matter_, quality.light_rays, {}};
-  const std::size_t count = matter_->grains.grains.size();
+  const std::size_t count = space().size();
   source.lit = {Field(count), Field(count)};
   add_direct_light(space(), source.light, quality.light_rays, source.lit.direct, source.lit.crossed, effort);
   ++parts_.sources;
@@ -140,7 +152,7 @@ WorldLit Solver::find_direct(const Heap& heap, const Quality& quality, const tra
   std::erase_if(sources_, [&](const Source& source) {
     return std::find(lights.begin(), lights.end(), source.light) == lights.end();
   });
-  const std::size_t count = matter_->grains.grains.size();
+  const std::size_t count = ways_->world.direct.size();
   WorldLit sum{Field(count), Field(count)};
   const auto add_lit = [&](WorldLit lit, const Matter& with, const glm::vec3& by) {
     if (with.grains != matter_->grains) {
@@ -186,6 +198,7 @@ HeapLight Solver::solve(const Heap& heap, const Quality& quality, const transpor
   ++parts_.solutions;
   HeapLight light;
   light.kinds = matter_->kinds;
+  light.patches = ways_->matter->space->patches();
   light.answer.resize(first.size());
   for (std::size_t i = 0; i < first.size(); ++i) light.answer[i] = solved.sent[i] - lit.direct[i];
   behind->gather(solved.sent, light.behind, effort);

@@ -1,6 +1,7 @@
-// Gathers a view's grains, has the exchange between them solved, and packs the answer.
+// Gathers a view's grains and walls, has the exchange between them solved, and packs the answer.
 #include "render/exchange.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -47,39 +48,69 @@ double rounded(double radius) {
   return std::exp2(std::round(std::log2(std::max(radius, 1e-300)) * radii_an_octave) / radii_an_octave);
 }
 
+// A plain object that is so many times as large as most grains sends out another light at each place: a ground that is
+// thick, a spoon.
+constexpr float wall_over_grain = 6.0F;
+
+bool is_plain(const scene::Material& material) {
+  return material.model == scene::Model::lambert || material.model == scene::Model::conductor;
+}
+
 class Gatherer {
  public:
-  void add(const scene::MeshPointer& mesh, const scene::Material& material, const glm::vec4& ball) {
-    const auto [shape, added] = shapes_.try_emplace(mesh.get());
-    if (added) shape->second = shape_of(*mesh);
-    const double radius = ball.w * shape->second.radius_over_reach;
-    if (!shape->second.grain || !(radius > 0.0)) {
-      grain_of.emplace_back(std::nullopt);
-      return;
+  void add(const Content& content) {
+    if (const Instances* instances = content.instances())
+      for (const InstanceGroup& group : instances->groups())
+        for (std::uint32_t i = group.first; i < group.first + group.count; ++i)
+          add(instances->prototypes()[group.prototype].mesh, group.source, instances->ball(i));
+    std::vector<float> radii;
+    for (const heap::Grain& grain : grains.grains) radii.push_back(grain.radius);
+    for (const Draw& draw : content.draws())
+      if (shape(*draw.source).grain) radii.push_back(radius_of(draw));
+    const auto middle = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2);
+    std::nth_element(radii.begin(), middle, radii.end());
+    for (const Draw& draw : content.draws()) {
+      const bool large = is_plain(draw.look) && radius_of(draw) > wall_over_grain * *middle;
+      if (shape(*draw.source).grain && !large)
+        add(draw.source, draw.look,
+            glm::vec4(glm::vec3(draw.centre - content.anchor()), static_cast<float>(draw.reach)));
+      else
+        add_wall(draw, content.anchor());
     }
-    grain_of.emplace_back(static_cast<std::uint32_t>(grains.grains.size()));
+  }
+
+  heap::Grains grains;
+  std::vector<Exchange::Role> roles;
+
+ private:
+  const Shape& shape(const scene::Mesh& mesh) {
+    const auto [shape, added] = shapes_.try_emplace(&mesh);
+    if (added) shape->second = shape_of(mesh);
+    return shape->second;
+  }
+
+  float radius_of(const Draw& draw) { return static_cast<float>(draw.reach * shape(*draw.source).radius_over_reach); }
+
+  void add(const scene::MeshPointer& mesh, const scene::Material& material, const glm::vec4& ball) {
+    const double radius = ball.w * shape(*mesh).radius_over_reach;
+    roles.emplace_back();
+    if (!shape(*mesh).grain || !(radius > 0.0)) return;
+    roles.back().grain = static_cast<std::uint32_t>(grains.grains.size());
     grains.grains.push_back(
         {glm::vec3(ball), static_cast<float>(radius), grains.kind(heap::optics_of(material, rounded(radius)))});
   }
 
-  heap::Grains grains;
-  std::vector<std::optional<std::uint32_t>> grain_of;
+  void add_wall(const Draw& draw, const glm::dvec3& anchor) {
+    roles.emplace_back();
+    if (!(draw.reach > 0.0)) return;
+    roles.back().wall = static_cast<std::uint32_t>(grains.walls.size());
+    glm::dmat4 to_heap = draw.object_to_world;
+    to_heap[3] -= glm::dvec4(anchor, 0.0);
+    grains.walls.push_back({draw.source, to_heap, grains.kind(heap::optics_of(draw.look, rounded(draw.reach)))});
+  }
 
- private:
   std::map<const scene::Mesh*, Shape> shapes_;
 };
-
-Gatherer gather(const Content& content) {
-  Gatherer gatherer;
-  const Instances& instances = *content.instances();
-  for (const InstanceGroup& group : instances.groups())
-    for (std::uint32_t i = group.first; i < group.first + group.count; ++i)
-      gatherer.add(instances.prototypes()[group.prototype].mesh, group.source, instances.ball(i));
-  for (const Draw& draw : content.draws())
-    gatherer.add(draw.source, draw.look,
-                 glm::vec4(glm::vec3(draw.centre - content.anchor()), static_cast<float>(draw.reach)));
-  return gatherer;
-}
 
 void append(std::vector<glm::vec4>& numbers, const heap::Coefficients& coefficients) {
   numbers.insert(numbers.end(), coefficients.channels.begin(), coefficients.channels.end());
@@ -89,19 +120,22 @@ void append(std::vector<glm::vec4>& numbers, const heap::Coefficients& coefficie
 
 void Exchange::set(const Content& content, const scene::Scene& scene) {
   Gatherer gathered;
-  if (scene.exchange != scene::Exchange::off && content.instances() != nullptr) gathered = gather(content);
-  if (gathered.grains.grains.size() < 2) {
+  if (scene.exchange != scene::Exchange::off) gathered.add(content);
+  const heap::Grains& grains = gathered.grains;
+  const bool heaped = content.instances() != nullptr && grains.grains.size() > 1;
+  if (grains.grains.empty() || (!heaped && grains.walls.empty())) {
     solving_.reset();
     known_.reset();
     device_.reset();
+    device_walls_.reset();
     return;
   }
   heap::Heap heap{std::move(gathered.grains), content.anchor(), scene.lights, scene.world};
-  const bool regrouped = !solving_ || grain_of_ != gathered.grain_of;
+  const bool regrouped = !solving_ || roles_ != gathered.roles;
   if (!regrouped && solving_->heap() == heap) return;
   solving_ = heap::Solvers::instance().ask(std::move(heap), solving_);
   news_ = 0;
-  grain_of_ = std::move(gathered.grain_of);
+  roles_ = std::move(gathered.roles);
   if (regrouped) send();
 }
 
@@ -120,7 +154,7 @@ ExchangeStatistics Exchange::statistics() const {
   if (!solving_) return result;
   const heap::Grains& grains = solving_->heap().grains;
   result.grains = grains.grains.size();
-  result.others = grain_of_.size() - result.grains;
+  result.others = roles_.size() - result.grains - grains.walls.size();
   result.kinds = grains.kinds.size();
   result.final = solving_->news().final;
   if (!known_) return result;
@@ -135,23 +169,35 @@ ExchangeStatistics Exchange::statistics() const {
 
 void Exchange::send() {
   std::vector<glm::vec4> numbers;
-  numbers.reserve(grain_of_.size() * object_numbers);
-  const std::size_t kinds_begin = grain_of_.size() * object_numbers;
+  numbers.reserve(roles_.size() * object_numbers);
+  const std::size_t kinds_begin = roles_.size() * object_numbers;
   constexpr std::size_t kind_numbers = heap::GrainTable::lobe_nodes + 1;
-  const std::size_t known = known_ ? known_->grains.grains.size() : 0;
-  for (const std::optional<std::uint32_t>& grain : grain_of_) {
+  const std::size_t known_grains = known_ ? known_->grains.grains.size() : 0;
+  const std::size_t known_walls = known_ ? known_->grains.walls.size() : 0;
+  const auto place_of_kind = [&](std::uint32_t kind) { return static_cast<float>(kinds_begin + kind_numbers * kind); };
+  for (const Role& role : roles_) {
     // A grain that has just come is dark for a moment.
-    const bool lit = grain && *grain < known;
-    append(numbers, lit ? known_->light->answer[*grain] : heap::Coefficients{});
-    append(numbers, lit ? known_->light->behind[*grain] : heap::Coefficients{});
-    const std::size_t kind = lit ? kinds_begin + kind_numbers * known_->grains.grains[*grain].kind : 0;
-    numbers.emplace_back(lit ? static_cast<float>(kind) : -1.0F, 0.0F, 0.0F, 0.0F);
+    const bool lit = role.grain && *role.grain < known_grains;
+    append(numbers, lit ? known_->light->answer[*role.grain] : heap::Coefficients{});
+    append(numbers, lit ? known_->light->behind[*role.grain] : heap::Coefficients{});
+    glm::vec4 which(-1.0F);
+    if (lit) which.x = place_of_kind(known_->grains.grains[*role.grain].kind);
+    if (role.wall && *role.wall < known_walls)
+      which = {place_of_kind(known_->grains.walls[*role.wall].kind), *role.wall, 0.0F, 0.0F};
+    numbers.push_back(which);
   }
   for (std::size_t kind = 0; known_ && kind < known_->light->kinds.size(); ++kind) {
     const heap::Optics& optics = known_->grains.kinds[kind];
     // What is not transparent lets nothing through.
     numbers.emplace_back(optics.transparent() ? glm::vec3(optics.sigma_t) : glm::vec3(1e30F), 0.0F);
     for (const glm::vec3& node : known_->light->kinds[kind].from_light->lobe()) numbers.emplace_back(node, 0.0F);
+  }
+  const heap::Patches none;
+  const heap::Patches& patches = known_ ? known_->light->patches : none;
+  device_walls_.emplace(patches.packed(static_cast<std::uint32_t>(numbers.size())));
+  for (std::size_t node = 0; node < patches.nodes().size(); ++node) {
+    const auto& channels = known_->light->answer[known_grains + node].channels;
+    numbers.emplace_back(channels[0].w, channels[1].w, channels[2].w, 0.0F);
   }
   device_.emplace(numbers);
 }

@@ -50,8 +50,19 @@ class Exchange {
 
   ExchangeStatistics statistics() const;
 
-  /// Makes it what shaders/heap/light_from_grains.glsl reads.
-  void bind() const { device_->bind_storage(layout::HEAP_LIGHT_BINDING); }
+  /// Makes it what shaders/heap/light_from_grains.glsl and light_of_walls.glsl read.
+  void bind() const {
+    device_->bind_storage(layout::HEAP_LIGHT_BINDING);
+    device_walls_->bind_storage(layout::WALL_LIGHT_BINDING);
+  }
+
+  /// What an object is to the light between grains.
+  struct Role {
+    std::optional<std::uint32_t> grain;  ///< which of its grains
+    std::optional<std::uint32_t> wall;   ///< which of its walls
+
+    bool operator==(const Role&) const = default;
+  };
 
  private:
   /// What is drawn.
@@ -62,11 +73,12 @@ class Exchange {
 
   void send();
 
-  std::vector<std::optional<std::uint32_t>> grain_of_;  // the grain that an object is, by its number
+  std::vector<Role> roles_;  // of objects, by their numbers
   std::shared_ptr<const heap::Solving> solving_;
   int news_ = 0;  // taken in of it
   std::optional<Known> known_;
   std::optional<gl::Buffer> device_;
+  std::optional<gl::Buffer> device_walls_;
 };
 
 }  // namespace mesograin::render

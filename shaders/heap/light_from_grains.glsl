@@ -7,26 +7,32 @@
 
 #ifdef EXCHANGE
 // Of each object: red, green and blue of what it answers, and of what is seen straight through it (xyz: the slope over the normal, w: the mean
-// over all normals); x: where its kind is. Of each kind: mean free paths across its radius; the lobe of its answer at the middles of intervals of
-// the cosine.
+// over all normals); x: where its kind is, y: which wall it is, if any. Of each kind: mean free paths across its radius; the lobe of its answer at
+// the middles of intervals of the cosine.
 layout(std430, binding = HEAP_LIGHT_BINDING) readonly buffer HeapLight { vec4 heap_light[]; };
 
 const int OBJECT_NUMBERS = 7;
 const int LOBE_NODES = 16;
+#endif
 
+#include "heap/light_of_walls.glsl"
+
+#ifdef EXCHANGE
 vec3 light_at_normal(int first, vec3 normal) {
   vec4 basis = vec4(normal, 1.0);
   return max(vec3(dot(heap_light[first], basis), dot(heap_light[first + 1], basis), dot(heap_light[first + 2], basis)), vec3(0.0));
 }
 
-// Radiance towards a viewer at the cosine `mu`.
-vec3 light_from_grains(int object, vec3 normal, float mu) {
+// Radiance towards a viewer at the cosine `mu`; of a wall at `place` in the heap.
+vec3 light_from_grains(int object, vec3 place, vec3 normal, float mu) {
   int first = OBJECT_NUMBERS * object;
   int kind = int(heap_light[first + 6].x);
+  int wall = int(heap_light[first + 6].y);
   if (kind < 0) return vec3(0.0);
   float node = clamp(mu * float(LOBE_NODES) - 0.5, 0.0, float(LOBE_NODES - 1));
   int below = min(int(node), LOBE_NODES - 2);
   vec3 lobe = mix(heap_light[kind + 1 + below].rgb, heap_light[kind + 2 + below].rgb, node - float(below));
+  if (wall >= 0) return lobe * light_of_wall(wall, place, normal);
   vec3 crossing = exp(-2.0 * mu * heap_light[kind].rgb);
   return lobe * light_at_normal(first, normal) + crossing * light_at_normal(first + 3, normal);
 }

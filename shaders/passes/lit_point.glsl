@@ -108,7 +108,7 @@ vec3 locally_lit(SurfacePoint point, Outwards outwards) {
 vec3 lit_point(SurfacePoint point) {
   Outwards outwards = look_outwards(point);
 #ifdef EXCHANGE
-  vec3 sum = light_from_grains(grain_instance, point.normal, dot(point.normal, point.to_viewer));
+  vec3 sum = light_from_grains(grain_instance, grain_place + grain_unit * point.on_triangle, point.normal, dot(point.normal, point.to_viewer));
 #else
   vec3 sum = vec3(0.0);
 #endif

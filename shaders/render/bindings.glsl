@@ -9,3 +9,4 @@ const int SHADOW_VIEWS_BINDING = 5;
 const int LOCAL_LIGHTS_BINDING = 6;
 const int LOCAL_RANDOMS_BINDING = 7;
 const int HEAP_LIGHT_BINDING = 8;
+const int WALL_LIGHT_BINDING = 9;

@@ -1,0 +1,26 @@
+// What stands around a heap and is no grain: grounds, bowls, walls. Each is a mesh whose surface sends out light evenly
+// to all sides.
+#pragma once
+
+#include <cstdint>
+#include <glm/mat4x4.hpp>
+#include <vector>
+
+#include "scene/mesh.h"
+
+namespace mesograin::heap {
+
+struct Wall {
+  scene::MeshPointer mesh;
+  glm::dmat4 to_heap;  ///< from the mesh's own space to where grains have their places
+  std::uint32_t kind;  ///< which of Grains::kinds
+
+  bool operator==(const Wall&) const = default;
+
+  std::vector<glm::vec3> positions() const;
+
+  /// Whether light may meet either side of its triangles: whether it has an edge that one triangle has alone.
+  bool open() const;
+};
+
+}  // namespace mesograin::heap
