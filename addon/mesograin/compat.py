@@ -133,3 +133,13 @@ def frees_first_instances():
 def geometry_set(evaluated_object):
     """What the modifiers of an evaluated object have made, instances too, or None where this Blender does not tell."""
     return evaluated_object.evaluated_geometry() if hasattr(evaluated_object, "evaluated_geometry") else None
+
+
+def facets_masking():
+    """How facets of Cycles' rough surfaces hide one another: that changed with its lights."""
+    return "correlated" if has_even_lights() else "separable"
+
+
+def principled_base():
+    """What lies under the Principled node's coat, as native.Finish has it: up to Blender 3 it is as Burley has it."""
+    return {"coat_shades_base": True} if has_even_lights() else {"retro_reflective": True}

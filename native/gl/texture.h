@@ -19,6 +19,12 @@ class Texture : public TextureStorage<GL_TEXTURE_2D> {
   /// Linear or nearest filtering.
   void sample_linearly(bool linear) { filter(linear ? GL_LINEAR : GL_NEAREST); }
 
+  /// What lies beyond its edges: GL_REPEAT, GL_MIRRORED_REPEAT, ...
+  void wrap(GLint how) {
+    glTextureParameteri(name(), GL_TEXTURE_WRAP_S, how);
+    glTextureParameteri(name(), GL_TEXTURE_WRAP_T, how);
+  }
+
  private:
   bool holds_numbers_;
 };

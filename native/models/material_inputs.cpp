@@ -7,6 +7,7 @@
 #include <array>
 
 #include "base/error.h"
+#include "models/finish.h"
 #include "models/inputs_of_models.h"
 
 namespace mesograin::models {
@@ -32,6 +33,7 @@ MaterialInputs material_inputs(const scene::Material& material, double grain_rad
   require_known_profile(material, traits);
   MaterialInputs inputs = inputs_of[static_cast<std::size_t>(material.model)](material, grain_radius);
   inputs.light_maps = traits.light_maps;
+  if (material.finish) add_finish(material, inputs);
   return inputs;
 }
 

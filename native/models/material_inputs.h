@@ -31,6 +31,8 @@ struct MaterialInputs {
   std::map<std::string, UniformValue> uniforms;  ///< "material.sigma_a", ...
   std::map<std::string, Table> tables;           ///< sampler name -> texels
   std::map<std::string, Volume> volumes;         ///< sampler name -> texels
+  std::map<std::string, scene::TextureMap> pictures{};  ///< sampler name -> what it wears
+  bool finish = false;                           ///< drawn by shaders/models/finish.glsl, whatever the model
   bool light_maps = false;                       ///< the model reads shaders/models/light_map.glsl
 };
 

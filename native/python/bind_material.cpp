@@ -65,6 +65,11 @@ Material make_material(const py::kwargs& given) {
     take(parameter, given[name], material.*member);
     ++taken;
   });
+  names.emplace_back("finish");
+  if (given.contains("finish")) {
+    material.finish = given["finish"].cast<std::optional<scene::Finish>>();
+    ++taken;
+  }
   if (taken < given.size())
     for (const auto& [name, value] : given)
       if (const auto text = name.cast<std::string>(); std::find(names.begin(), names.end(), text) == names.end())
@@ -79,12 +84,15 @@ std::string describe_parameters() {
     const std::string standard = py::str(py::repr(py::cast(to_python(Material{}.*member))));
     text += fmt::format("\n{}={}: {}.", parameter.name, standard, parameter.sentence);
   });
-  return text + "\n\nRaises Error naming the parameter, what came and what is allowed.";
+  return text +
+         "\nfinish=None: a Finish, of an opaque surface that is more than its model.\n\nRaises Error naming the "
+         "parameter, what came and what is allowed.";
 }
 
 }  // namespace
 
 void bind_material(py::module_& module) {
+  bind_finish(module);
   const std::string parameters = describe_parameters();
   py::class_<Material> material(module, "Material",
                                 "A grain's material, read-only. sigma_a and sigma_s are per scene unit, linear RGB.");
@@ -94,6 +102,8 @@ void bind_material(py::module_& module) {
         parameter.name.data(), [member](const Material& self) { return to_python(self.*member); },
         std::string(parameter.sentence).c_str());
   });
+  material.def_property_readonly(
+      "finish", [](const Material& self) { return self.finish; }, "The Finish, or None.");
   material.def(
       "__eq__", [](const Material& a, const Material& b) { return a == b; }, py::is_operator());
   module.def(

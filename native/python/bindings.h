@@ -5,6 +5,7 @@
 
 namespace mesograin::python {
 
+void bind_finish(pybind11::module_& module);
 void bind_image(pybind11::module_& module);
 void bind_lights(pybind11::module_& module);
 void bind_material(pybind11::module_& module);

@@ -53,6 +53,38 @@ Surface surface_at(const scene::Mesh& mesh, const glm::vec4* rows, const glm::uv
           glm::vec4(length > 0.0F ? normal / length : glm::vec3(0.0F), side * static_cast<float>(number + 1))};
 }
 
+// basis_around of tangent.glsl.
+std::array<glm::vec3, 2> basis_around(const glm::vec3& normal) {
+  const float side = normal.z >= 0.0F ? 1.0F : -1.0F;
+  const float a = -1.0F / (side + normal.z);
+  const float b = normal.x * normal.y * a;
+  return {glm::vec3(1.0F + side * normal.x * normal.x * a, side * b, -side * normal.x),
+          glm::vec3(b, side + normal.y * normal.y * a, -normal.y)};
+}
+
+// As surface.frag writes them where there are pictures.
+glm::vec4 coordinates_at(const scene::Mesh& mesh, const glm::vec4* rows, const glm::uvec3& corners,
+                         const glm::vec3& weights, const glm::vec3& normal) {
+  if (mesh.uvs().empty()) return glm::vec4(0.0F);
+  const glm::vec2 first = mesh.uvs()[corners[0]], second = mesh.uvs()[corners[1]], third = mesh.uvs()[corners[2]];
+  const glm::vec2 uv = weights[0] * first + weights[1] * second + weights[2] * third;
+  const glm::vec2 uv_a = second - first, uv_b = third - first;
+  const float area = uv_a.x * uv_b.y - uv_b.x * uv_a.y;
+  if (area == 0.0F) return {uv, 0.0F, 0.0F};
+  const auto placed = [&](const glm::vec3& in_mesh) {
+    return glm::vec3(glm::dot(glm::vec3(rows[0]), in_mesh), glm::dot(glm::vec3(rows[1]), in_mesh),
+                     glm::dot(glm::vec3(rows[2]), in_mesh));
+  };
+  const glm::vec3& origin = mesh.positions()[corners[0]];
+  const glm::vec3 place_a = placed(mesh.positions()[corners[1]] - origin);
+  const glm::vec3 place_b = placed(mesh.positions()[corners[2]] - origin);
+  const glm::vec3 along_u = (place_a * uv_b.y - place_b * uv_a.y) / area;
+  const glm::vec3 along_v = (place_b * uv_a.x - place_a * uv_b.x) / area;
+  const auto [across, up] = basis_around(normal);
+  const float side = glm::dot(glm::cross(normal, along_u), along_v) < 0.0F ? -1.0F : 1.0F;
+  return {uv, std::atan2(glm::dot(along_u, up), glm::dot(along_u, across)), side};
+}
+
 }  // namespace
 
 bool CastSurfaces::cast(const CastContent& cast, const Content& content, const glm::dmat4& anchor_to_clip,
@@ -61,6 +93,7 @@ bool CastSurfaces::cast(const CastContent& cast, const Content& content, const g
   size_ = size;
   positions_.resize(pixels);
   normals_.resize(pixels);
+  coordinates_.resize(content.textured() ? pixels : 0);
   depths_.resize(pixels);
   groups_.resize(pixels);
   const PixelRays rays(anchor_to_clip, size, jitter, content.instances()->bounds());
@@ -109,6 +142,9 @@ void CastSurfaces::cast_band(const CastContent& cast, const Content& content, co
             surface_at(mesh, rows, mesh.triangles()[hits.triangle[ray]], weights, direction, hits.number[ray]);
         positions_[place] = surface.position;
         normals_[place] = surface.normal;
+        if (group.material->textured())
+          coordinates_[place] =
+              coordinates_at(mesh, rows, mesh.triangles()[hits.triangle[ray]], weights, surface.normal);
         const glm::vec4 from_anchor(glm::vec3(surface.position) + glm::vec3(rows[0].w, rows[1].w, rows[2].w), 1.0F);
         const float depth = 0.5F * glm::dot(depth_row, from_anchor) / glm::dot(w_row, from_anchor) + 0.5F;
         depths_[place] = {std::clamp(depth, 0.0F, 1.0F), 0};

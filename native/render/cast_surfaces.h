@@ -24,6 +24,9 @@ class CastSurfaces {
   /// Makes them the surfaces drawn so far. Groups mark the stencil from 1 for `first` up to the last it can hold.
   void upload(gl::Texture& position, gl::Texture& normal, gl::Texture& depth, std::size_t first);
 
+  /// Makes them where on their pictures the surfaces drawn so far are.
+  void upload_coordinates(gl::Texture& coordinates) { coordinates.upload(GL_RGBA, GL_FLOAT, coordinates_.data()); }
+
   /// How many instances were seen.
   std::size_t seen() const;
 
@@ -44,6 +47,7 @@ class CastSurfaces {
   glm::ivec2 size_{0};
   std::vector<glm::vec4> positions_;
   std::vector<glm::vec4> normals_;
+  std::vector<glm::vec4> coordinates_;  // empty if nothing wears pictures
   std::vector<Depth> depths_;
   std::vector<std::uint32_t> groups_;  // from 1
 };

@@ -97,6 +97,9 @@ Content::Content(DeviceCache& cache, const scene::Scene& scene, Content before,
     over_ground_.include(instances_->bounds());
   }
   find_shadows();
+  textured_ = std::any_of(draws_.begin(), draws_.end(), [](const Draw& draw) { return draw.material->textured(); });
+  if (instances_)
+    for (const InstanceGroup& group : instances_->groups()) textured_ = textured_ || group.material->textured();
 }
 
 void Content::find_shadows() {

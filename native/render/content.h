@@ -68,6 +68,9 @@ class Content {
   /// does not know of.
   bool shadows() const { return shadows_; }
 
+  /// Whether any material wears pictures.
+  bool textured() const { return textured_; }
+
  private:
   void tell_objects();
   void find_shadows();
@@ -79,6 +82,7 @@ class Content {
   Bounds over_ground_;
   std::optional<std::size_t> ground_;  // which draw
   bool shadows_ = false;
+  bool textured_ = false;
 };
 
 }  // namespace mesograin::render

@@ -59,6 +59,7 @@ std::shared_ptr<gl::VertexArray> compact(const scene::Mesh& mesh, std::vector<gl
   std::vector<std::uint32_t> places(mesh.positions().size(), unused);
   std::vector<glm::vec3> positions;
   std::vector<glm::vec3> normals;
+  std::vector<glm::vec2> uvs;
   for (glm::uvec3& triangle : triangles)
     for (int corner = 0; corner < 3; ++corner) {
       std::uint32_t& place = places[triangle[corner]];
@@ -66,10 +67,11 @@ std::shared_ptr<gl::VertexArray> compact(const scene::Mesh& mesh, std::vector<gl
         place = static_cast<std::uint32_t>(positions.size());
         positions.push_back(middle + static_cast<float>(growth) * (mesh.positions()[triangle[corner]] - middle));
         normals.push_back(mesh.normals()[triangle[corner]]);
+        if (!mesh.uvs().empty()) uvs.push_back(mesh.uvs()[triangle[corner]]);
       }
       triangle[corner] = place;
     }
-  return std::make_shared<gl::VertexArray>(positions, normals, std::vector<glm::vec2>(), triangles);
+  return std::make_shared<gl::VertexArray>(positions, normals, uvs, triangles);
 }
 
 }  // namespace

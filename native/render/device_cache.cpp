@@ -9,6 +9,7 @@
 #include <glm/matrix.hpp>
 #include <utility>
 
+#include "models/finish.h"
 #include "models/prototype_inputs.h"
 #include "scene/convexity.h"
 
@@ -31,12 +32,44 @@ double typical(double grain_radius) {
   return std::exp2(std::round(std::log2(grain_radius) * radii_an_octave) / radii_an_octave);
 }
 
+std::size_t texels_of(const scene::Picture& picture) {
+  return static_cast<std::size_t>(picture.width()) * static_cast<std::size_t>(picture.height());
+}
+
+// The device's rows begin at the bottom.
+template <typename Texel>
+std::vector<Texel> turned_over(const scene::Picture& picture, const std::vector<Texel>& texels) {
+  const auto width = static_cast<std::ptrdiff_t>(picture.width());
+  std::vector<Texel> turned;
+  turned.reserve(texels.size());
+  for (auto row = texels.end(); row != texels.begin(); row -= width) turned.insert(turned.end(), row - width, row);
+  return turned;
+}
+
+std::shared_ptr<const gl::Texture> sent_picture(const scene::TextureMap& map) {
+  constexpr GLint wraps[] = {GL_REPEAT, GL_CLAMP_TO_EDGE, GL_CLAMP_TO_BORDER, GL_MIRRORED_REPEAT};
+  const scene::Picture& picture = *map.picture;
+  const auto* bytes = std::get_if<scene::Picture::Bytes>(&picture.texels());
+  const auto texture =
+      std::make_shared<gl::Texture>(bytes != nullptr ? GL_RGBA8 : GL_RGBA32F, picture.width(), picture.height());
+  if (bytes != nullptr)
+    texture->upload(GL_RGBA, GL_UNSIGNED_BYTE, turned_over(picture, *bytes).data());
+  else
+    texture->upload(GL_RGBA, GL_FLOAT,
+                    turned_over(picture, std::get<scene::Picture::Numbers>(picture.texels())).data());
+  texture->wrap(wraps[static_cast<std::size_t>(map.wrap)]);
+  texture->sample_linearly(map.smooth);
+  return texture;
+}
+
 }  // namespace
 
-DeviceMaterial::DeviceMaterial(scene::Model model, models::MaterialInputs inputs)
+DeviceMaterial::DeviceMaterial(scene::Model model, models::MaterialInputs inputs, Pictures pictures)
     : model_(model),
       defines_(std::move(inputs.defines)),
       uniforms_(std::move(inputs.uniforms)),
+      pictures_(std::move(pictures)),
+      has_finish_(inputs.finish),
       light_maps_(inputs.light_maps) {
   for (const auto& [name, table] : inputs.tables) {
     gl::Texture texture(GL_RGBA32F, table.width, table.height);
@@ -65,6 +98,7 @@ void DeviceMaterial::bind(const gl::Program& program) const {
     std::visit([&, &uniform = name](const auto& number) { program.offer(uniform, number); }, value);
   for (const auto& [name, table] : tables_) program.offer(name, table);
   for (const auto& [name, volume] : volumes_) program.offer(name, volume);
+  for (const auto& [name, picture] : pictures_) program.offer(name, *picture);
 }
 
 DeviceCache::MeshEntry& DeviceCache::mesh_entry(const scene::MeshPointer& mesh) {
@@ -159,19 +193,33 @@ void DeviceCache::count(const models::MaterialInputs& inputs) {
 std::shared_ptr<DeviceMaterial> DeviceCache::send(scene::Model model, models::MaterialInputs inputs) {
   ++sent_.materials;
   count(inputs);
-  return std::make_shared<DeviceMaterial>(model, std::move(inputs));
+  DeviceMaterial::Pictures pictures;
+  for (const auto& [name, map] : inputs.pictures) pictures.emplace(name, picture(map));
+  return std::make_shared<DeviceMaterial>(model, std::move(inputs), std::move(pictures));
+}
+
+std::shared_ptr<const gl::Texture> DeviceCache::picture(const scene::TextureMap& map) {
+  for (const PictureEntry& entry : pictures_)
+    if (entry.source.lock() == map.picture && entry.wrap == map.wrap && entry.smooth == map.smooth) return entry.device;
+  pictures_.push_back({map.picture, map.wrap, map.smooth, sent_picture(map)});
+  sent_.bytes +=
+      texels_of(*map.picture) * (std::holds_alternative<scene::Picture::Bytes>(map.picture->texels()) ? 4 : 16);
+  return pictures_.back().device;
 }
 
 void DeviceCache::prune() {
   std::erase_if(meshes_, [](const auto& entry) { return entry.second.source.expired(); });
   std::erase_if(materials_, [](const MaterialEntry& entry) { return entry.device.use_count() == 1; });
   std::erase_if(prototypes_, [](const PrototypeEntry& entry) { return entry.device.use_count() == 1; });
+  std::erase_if(pictures_, [](const PictureEntry& entry) { return entry.device.use_count() == 1; });
 }
 
-const gl::Program& DeviceCache::surface_program(bool instanced) {
+const gl::Program& DeviceCache::surface_program(bool instanced, bool textured) {
   const std::string vertex = instanced ? "instanced_surface" : "surface";
-  return program(vertex, gl::ShaderSource({"passes/" + vertex + ".vert"}, {}),
-                 gl::ShaderSource({"passes/surface.frag"}, {}));
+  std::vector<std::string> defines;
+  if (textured) defines.emplace_back("TEXTURED");
+  return program(textured ? vertex + " textured" : vertex, gl::ShaderSource({"passes/" + vertex + ".vert"}, defines),
+                 gl::ShaderSource({"passes/surface.frag"}, defines));
 }
 
 const gl::Program& DeviceCache::shadow_program(bool instanced) {
@@ -195,7 +243,8 @@ const gl::Program& DeviceCache::count_program() {
 }
 
 const gl::Program& DeviceCache::shading(const DeviceMaterial& material, const Shading& shading) {
-  const std::string model(scene::model_names[static_cast<std::size_t>(material.model())]);
+  const std::string model(material.has_finish() ? models::finish_shader
+                                                : scene::model_names[static_cast<std::size_t>(material.model())]);
   const std::string pass = shading.unwrapped ? "bake" : "shade";
   const std::string vertex = shading.unwrapped ? "passes/bake.vert" : "passes/full_screen.vert";
   std::vector<std::string> defines = material.defines();

@@ -41,10 +41,19 @@ struct Shading {
 /// A material ready to draw with: what its programs are made of, and the uniforms and tables that they read.
 class DeviceMaterial {
  public:
-  DeviceMaterial(scene::Model model, models::MaterialInputs inputs);
+  /// A picture by the name of its sampler.
+  using Pictures = std::map<std::string, std::shared_ptr<const gl::Texture>>;
+
+  DeviceMaterial(scene::Model model, models::MaterialInputs inputs, Pictures pictures = {});
 
   scene::Model model() const { return model_; }
   const std::vector<std::string>& defines() const { return defines_; }
+
+  /// Whether it must be known where on its pictures a surface is.
+  bool textured() const { return !pictures_.empty(); }
+
+  /// Whether it is drawn by models::finish_shader, whatever its model.
+  bool has_finish() const { return has_finish_; }
 
   /// Whether its model reads light maps.
   bool light_maps() const { return light_maps_; }
@@ -64,6 +73,8 @@ class DeviceMaterial {
   std::map<std::string, models::UniformValue> uniforms_;
   std::map<std::string, gl::Texture> tables_;
   std::map<std::string, gl::Volume> volumes_;
+  Pictures pictures_;
+  bool has_finish_;
   bool light_maps_;
   int version_ = 0;
 };
@@ -107,8 +118,9 @@ class DeviceCache {
   /// The program that shades with a material; compiled on first use.
   const gl::Program& shading(const DeviceMaterial& material, const Shading& shading);
 
-  /// The program that finds what the camera sees of a mesh, or of instances, for `shading` to shade.
-  const gl::Program& surface_program(bool instanced);
+  /// The program that finds what the camera sees of a mesh, or of instances, for `shading` to shade. `textured`: where
+  /// on its pictures, too.
+  const gl::Program& surface_program(bool instanced, bool textured);
 
   /// The program that draws a shadow map.
   const gl::Program& shadow_program(bool instanced);
@@ -149,8 +161,17 @@ class DeviceCache {
     std::shared_ptr<DeviceMaterial> device = nullptr;
   };
 
+  /// A picture with what is seen beyond its edges and between its texels.
+  struct PictureEntry {
+    std::weak_ptr<const scene::Picture> source;
+    scene::Wrap wrap;
+    bool smooth;
+    std::shared_ptr<const gl::Texture> device;
+  };
+
   void take_news(PrototypeEntry& entry);
   void count(const models::MaterialInputs& inputs);
+  std::shared_ptr<const gl::Texture> picture(const scene::TextureMap& map);
   std::shared_ptr<DeviceMaterial> send(scene::Model model, models::MaterialInputs inputs);
 
   const gl::Program& program(const std::string& name, const std::vector<gl::Stage>& stages);
@@ -158,6 +179,7 @@ class DeviceCache {
 
   std::map<const scene::Mesh*, MeshEntry> meshes_;
   std::vector<MaterialEntry> materials_;
+  std::vector<PictureEntry> pictures_;
   std::vector<PrototypeEntry> prototypes_;
   std::map<std::string, std::unique_ptr<gl::Program>> programs_;
   Sent sent_;

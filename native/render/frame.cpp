@@ -18,13 +18,13 @@ constexpr int most_world_directions = 4;
 }  // namespace
 
 Frame::Frame(DeviceCache& cache, int width, int height, std::uint32_t seed)
-    : cache_(cache), size_(width, height), seed_(seed), targets_(std::make_unique<Targets>(width, height)) {
+    : cache_(cache), size_(width, height), seed_(seed), targets_(std::make_unique<Targets>(width, height, false)) {
   shade_.set_taps(default_taps);
 }
 
 void Frame::resize(int width, int height) {
   if (glm::ivec2(width, height) == size_) return;
-  targets_ = std::make_unique<Targets>(width, height);
+  targets_ = std::make_unique<Targets>(width, height, content_->textured());
   size_ = {width, height};
   forget_view();
 }
@@ -93,6 +93,8 @@ void Frame::forget_view() {
 
 void Frame::forget_content() {
   version_ = content_->version();
+  if (targets_->coordinates.has_value() != content_->textured())
+    targets_ = std::make_unique<Targets>(size_.x, size_.y, content_->textured());
   arrays_.forget_content();
   shadows_.forget_content();
   samples_ = 0;

@@ -59,14 +59,14 @@ bool draw_surfaces(DeviceCache& cache, const Content& content, const DeviceSelec
   bool whole = true;
   const std::size_t groups = content.instances() != nullptr ? content.instances()->groups().size() : 0;
   if (selection != nullptr) {
-    const gl::Program& program = cache.surface_program(true);
+    const gl::Program& program = cache.surface_program(true, content.textured());
     program.use();
     program.set("jitter", jitter);
     program.set("anchor_to_clip", glm::mat4(anchor_to_clip(content, camera)));
     glFrontFace(GL_CCW);
     whole = draw_parts(program, content, *selection, go_on, [&](const Selection::Part& part) { mark(part.group); });
   }
-  const gl::Program& program = cache.surface_program(false);
+  const gl::Program& program = cache.surface_program(false, content.textured());
   program.use();
   program.set("jitter", jitter);
   for (std::size_t i = 0; i < content.draws().size() && whole; ++i) {

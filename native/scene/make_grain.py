@@ -87,15 +87,17 @@ def header(text):
 
 #include <array>
 #include <glm/vec3.hpp>
+#include <optional>
 #include <span>
 #include <string_view>
 
+#include "scene/finish.h"
 #include "scene/schema.h"
 
 namespace mesograin::scene {{
 
 {choices}struct Material {{
-{"".join(map(member, parameters))}
+{"".join(map(member, parameters))}  std::optional<Finish> finish{{}};  ///< of an opaque surface that is more than its model
   bool operator==(const Material&) const = default;
 }};
 

@@ -36,6 +36,10 @@ void require(const Parameter& /*parameter*/, Value /*value*/) {}
 
 void validate(const Material& material) {
   for_each_parameter([&](const Parameter& parameter, auto member) { require(parameter, material.*member); });
+  if (!material.finish) return;
+  if (traits_of(material.model).translucent)
+    throw Error("Only an opaque model's surface may have a finish; got {}.", name_of(material.model));
+  validate(*material.finish);
 }
 
 std::size_t find_name(std::string_view parameter, std::span<const std::string_view> names, std::string_view name) {

@@ -3,6 +3,9 @@
 #include "passes/curved_surface.glsl"
 #include "passes/lit_point.glsl"
 
+#ifdef TEXTURED
+in vec2 grain_uv;
+#endif
 in vec3 grain_position;
 in vec3 grain_normal;
 in float grain_plane_offset;
@@ -31,5 +34,12 @@ void main() {
   point.on_triangle = grain_position;
   point.normal = normalize(grain_normal);
   point.to_viewer = from_camera != 0 ? bent_to_viewer(point.position, point.normal) : point.normal;
+#ifdef TEXTURED
+  surface_uv = grain_uv;
+  surface_in_mesh = to_mesh(grain_position);
+  surface_tangent = unpacked_tangent(
+      point.normal, packed_tangent(point.normal, dFdx(grain_position), dFdy(grain_position), dFdx(grain_uv), dFdy(grain_uv)));
+  put_on(point);
+#endif
   radiance = vec4(lit_point(point), 1.0);
 }

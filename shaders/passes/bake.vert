@@ -10,6 +10,7 @@ uniform mat4 object_to_grain;
 uniform mat3 normal_to_grain;
 uniform vec2 jitter;  // in normalised device coordinates
 
+out vec2 grain_uv;
 out vec3 grain_position;
 out vec3 grain_normal;
 out float grain_plane_offset;
@@ -18,5 +19,6 @@ void main() {
   grain_position = (object_to_grain * vec4(position, 1.0)).xyz;
   grain_normal = normalize(normal_to_grain * normal);
   grain_plane_offset = tangent_plane_offset(grain_position, grain_normal);
+  grain_uv = uv;
   gl_Position = vec4(2.0 * uv - 1.0 + jitter, 0.0, 1.0);
 }

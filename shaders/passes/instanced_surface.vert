@@ -6,6 +6,10 @@
 
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
+#ifdef TEXTURED
+layout(location = 2) in vec2 uv;
+out vec2 grain_uv;
+#endif
 
 // Which instances are drawn; see render::Selection.
 layout(std430, binding = SELECTED_BINDING) readonly buffer Selected { uint selected[]; };
@@ -28,6 +32,9 @@ void main() {
                         cross(placement.linear[0], placement.linear[1]));
   float handedness = sign(dot(placement.linear[0], cofactors[0]));
   grain_position = placement.linear * (position - middle);
+#ifdef TEXTURED
+  grain_uv = uv;
+#endif
   grain_normal = normalize(handedness * (cofactors * normal));
   grain_plane_offset = tangent_plane_offset(grain_position, grain_normal);
   mark = handedness * float(instance + 1);

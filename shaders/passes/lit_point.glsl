@@ -6,6 +6,7 @@
 //                        each point, a translucent instance for all of it
 //   CLEAR, WORLD         the model knows what crosses the grain unscattered, and there is a world to be seen through it
 //   WHOLE_GRAIN          the model knows what light does in all of the grain, but not where it enters
+//   EMITS                the surface sends out light of its own
 
 #include "physics/prelude.glsl"
 #include "render/bindings.glsl"
@@ -16,6 +17,7 @@
 #include "scene/shadows.glsl"
 #include "heap/light_from_grains.glsl"
 #include "models/pixel_random.glsl"
+#include "scene/texturing.glsl"
 
 layout(std430, binding = DISTANT_LIGHTS_BINDING) readonly buffer Lights { DistantLight lights[]; };
 
@@ -105,12 +107,19 @@ vec3 locally_lit(SurfacePoint point, Outwards outwards) {
 }
 #endif
 
+#ifdef EMITS
+vec3 emitted();
+#endif
+
 vec3 lit_point(SurfacePoint point) {
   Outwards outwards = look_outwards(point);
 #ifdef EXCHANGE
   vec3 sum = light_from_grains(grain_instance, grain_place + grain_unit * point.on_triangle, point.normal, dot(point.normal, point.to_viewer));
 #else
   vec3 sum = vec3(0.0);
+#endif
+#ifdef EMITS
+  sum += emitted();
 #endif
 #ifdef LIGHTS_AT_PLACE
   sum += locally_lit(point, outwards);

@@ -4,6 +4,9 @@
 
 uniform sampler2D surface_position;  // xyz: on the triangle; w: how far the curved surface rises above it, along the normal
 uniform sampler2D surface_normal;    // xyz: of unit length; w: number of the instance, from 1; negative on back faces
+#ifdef TEXTURED
+uniform sampler2D surface_coordinates;  // xy: UV; zw: a packed tangent
+#endif
 
 out vec4 radiance;
 
@@ -29,6 +32,14 @@ void main() {
   // Near a silhouette the interpolated normal can point away from the viewer although the surface does not.
   const float least_cosine = 1e-4;
   if (cosine < least_cosine) point.normal = normalize(point.normal + (least_cosine - cosine) * point.to_viewer);
+
+#ifdef TEXTURED
+  vec4 coordinates = texelFetch(surface_coordinates, ivec2(gl_FragCoord.xy), 0);
+  surface_uv = coordinates.xy;
+  surface_in_mesh = to_mesh(on_triangle.xyz);
+  surface_tangent = unpacked_tangent(facing.xyz, coordinates.zw);
+  put_on(point);
+#endif
 
   radiance = vec4(lit_point(point), 1.0);
 }

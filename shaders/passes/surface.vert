@@ -5,6 +5,10 @@
 
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
+#ifdef TEXTURED
+layout(location = 2) in vec2 uv;
+out vec2 grain_uv;
+#endif
 
 uniform mat4 object_to_clip;
 uniform mat4 object_to_grain;
@@ -19,6 +23,9 @@ flat out float mark;
 
 void main() {
   grain_position = (object_to_grain * vec4(position, 1.0)).xyz;
+#ifdef TEXTURED
+  grain_uv = uv;
+#endif
   grain_normal = normalize(normal_to_grain * normal);
   grain_plane_offset = tangent_plane_offset(grain_position, grain_normal);
   mark = float(instance + 1);

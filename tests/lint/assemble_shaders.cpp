@@ -8,6 +8,7 @@
 #include <exception>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <set>
 #include <string>
 #include <vector>
@@ -118,6 +119,43 @@ void write_shading(Writer& writer) {
   }
 }
 
+/// Each thing that a surface may wear or be alone, and all together.
+void write_finishes(Writer& writer) {
+  const auto picture = std::make_shared<const scene::Picture>(1, 1, scene::Picture::Bytes{glm::u8vec4(255)}, true);
+  std::vector<scene::Finish> finishes(9);
+  scene::Finish& all = finishes[8];
+  finishes[0].reflectance.picture = all.reflectance.picture = picture;
+  finishes[1].roughness.picture = all.roughness.picture = picture;
+  finishes[2].metallic.picture = all.metallic.picture = picture;
+  finishes[3].normal.picture = all.normal.picture = picture;
+  finishes[4].emission.picture = all.emission.picture = picture;
+  finishes[4].radiance = all.radiance = glm::dvec3(1.0);
+  finishes[5].coat = all.coat = 0.04;
+  finishes[6].retro_reflective = true;
+  finishes[7].coat = 0.04;
+  finishes[7].coat_shades_base = true;
+  for (std::size_t i = 0; i < finishes.size(); ++i)
+    for (const scene::Masking masking : {scene::Masking::correlated, scene::Masking::separable}) {
+      scene::Material material;
+      material.model = scene::Model::lambert;
+      material.masking = masking;
+      material.finish = finishes[i];
+      std::vector<std::string> defines = mesograin::models::material_inputs(material).defines;
+      const std::string name = fmt::format("finish_{}+{}", i, fmt::join(defines, "+"));
+      for (const std::string pass : {"shade", "bake"})
+        writer.write(fmt::format("{}+{}", pass, name),
+                     ShaderSource({pass == "bake" ? "passes/bake.vert" : "passes/full_screen.vert"}, {}),
+                     ShaderSource({"passes/" + pass + ".frag", "models/finish.glsl"}, defines));
+      defines.insert(defines.end(), {"INSTANCED", "SHADOWS", "EXCHANGE", "LIGHTS_AT_PLACE"});
+      writer.write("shade+instanced+" + name, ShaderSource({"passes/full_screen.vert"}, {}),
+                   ShaderSource({"passes/shade.frag", "models/finish.glsl"}, defines));
+    }
+  for (const std::string instanced : {"", "instanced_"})
+    writer.write(instanced + "surface+textured",
+                 ShaderSource({fmt::format("passes/{}surface.vert", instanced)}, {"TEXTURED"}),
+                 ShaderSource({"passes/surface.frag"}, {"TEXTURED"}));
+}
+
 void write_passes(Writer& writer) {
   for (const std::string pass : {"accumulate", "background", "resolve"})
     writer.write(pass, ShaderSource({"passes/full_screen.vert"}, {}), ShaderSource({"passes/" + pass + ".frag"}, {}));
@@ -148,6 +186,7 @@ int main(int count, char** arguments) {
     if (count != 2) throw mesograin::Error("One argument is needed, the folder to write to; got {}.", count - 1);
     Writer writer(arguments[1]);
     write_shading(writer);
+    write_finishes(writer);
     write_passes(writer);
     write_unused(writer);
   } catch (const std::exception& error) {

@@ -9,7 +9,7 @@ import numpy as np
 
 from .. import native_module
 from ..schema import models, parameters
-from . import colours, heaps, lights, meshes, plain_materials, properties, scattered, surroundings
+from . import colours, heaps, lights, meshes, plain_materials, properties, scattered, surroundings, textures
 
 
 @dataclasses.dataclass(frozen=True)
@@ -18,6 +18,7 @@ class MaterialValues:
 
     name: str
     values: tuple  # (parameter, value) pairs
+    finish: object = None  # plain_materials.FinishValues, of what is no grain
 
     def multiplied(self, factors):
         """The material with some of its colours multiplied. factors: {parameter: 3 numbers}."""
@@ -39,6 +40,8 @@ class MaterialValues:
             raise native.Error(f"Material '{self.name}': {model} knows the profiles {', '.join(known)}; "
                                f"got '{profile}': choose one of these.")
         try:
+            if self.finish is not None:
+                values["finish"] = self.finish.to_native(native)
             return native.Material(**values)
         except native.Error as error:
             raise native.Error(f"Material '{self.name}': {error}") from error
@@ -199,14 +202,16 @@ def overrides(settings, scene):
     return {parameter: per_unit(parameter, value, unit) for parameter, value in settings.items()}
 
 
-def material_values(material, millimetres_per_unit):
-    """MaterialValues of a Blender material, or of the default grain where a slot is empty (None)."""
+def material_values(material, millimetres_per_unit, reading=None):
+    """MaterialValues of a Blender material, or of the default grain where a slot is empty (None). reading:
+    plain_materials.Reading of what is no grain, if that was read already."""
     if material is None:
         return MaterialValues("(none)", tuple(_default_parameters(millimetres_per_unit)))
     values = dict(_parameters(material.mesograin, millimetres_per_unit))
-    if plain_materials.is_plain(material):
-        values.update(plain_materials.read(material)[0])
-    return MaterialValues(material.name_full, tuple(values.items()))
+    if not plain_materials.is_plain(material):
+        return MaterialValues(material.name_full, tuple(values.items()))
+    reading = reading or plain_materials.read(material)
+    return MaterialValues(material.name_full, tuple({**values, **reading.values}.items()), reading.finish)
 
 
 def read_scene(depsgraph, cache, varied=True):
@@ -424,12 +429,20 @@ class _Reader:
 
     def _material(self, evaluated_object, slot):
         material = _in_slot(evaluated_object, slot)
-        key = material and material.name_full
+        reading = box = None
+        if material is not None and plain_materials.is_plain(material) and plain_materials.depends_on_place(material):
+            box = textures.Box.of(evaluated_object)
+        key = (material and material.name_full, box)
         if key not in self._materials:
-            self._materials[key] = material_values(material, self._millimetres_per_unit)
             if material is not None and plain_materials.is_plain(material):
-                for sentence in plain_materials.read(material)[1]:
+                reading = plain_materials.read(material, box or textures.Box())
+                for sentence in reading.sentences:
                     self._warn(sentence)
+                if reading.finish is not None and not self._varied:
+                    self._warn(f"Material '{material.name}' is compared in its mean colour, without coat, pictures or "
+                               "light of its own.")
+            values = material_values(material, self._millimetres_per_unit, reading)
+            self._materials[key] = values if self._varied else dataclasses.replace(values, finish=None)
         return self._materials[key]
 
     def _read_light(self, evaluated_object, matrix_world):

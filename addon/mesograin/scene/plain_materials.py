@@ -1,7 +1,113 @@
-# Materials that are no grains: what their nodes say, as far as a Lambertian surface or a rough conductor can.
+# Materials that are no grains: what their nodes say, as far as a diffuse surface, a coat, a rough conductor and worn
+# pictures can.
+import dataclasses
+
 from .. import compat
+from . import node_colours, textures
 
 PLAIN, METAL = "lambert", "conductor"
+
+
+@dataclasses.dataclass(frozen=True)
+class FinishValues:
+    """What a surface has beside its model's parameters. values: (name, number) pairs and maps: (name,
+    textures.MapValues) pairs, as native.Finish has them."""
+
+    values: tuple = ()
+    maps: tuple = ()
+
+    def to_native(self, native):
+        return native.Finish(**dict(self.values), **{name: each.to_native(native) for name, each in self.maps})
+
+
+class Reading:
+    """What is found of one material. values: {parameter: value}; finish: FinishValues or None; sentences: about what is
+    left out."""
+
+    def __init__(self, material, box):
+        self._material, self._box = material, box
+        self._numbers, self._maps, self._left_out = {}, {}, []
+        self.values = {}
+
+    @property
+    def finish(self):
+        if not self._numbers and not self._maps:
+            return None
+        return FinishValues(tuple(self._numbers.items()), tuple(self._maps.items()))
+
+    @property
+    def sentences(self):
+        if not self._left_out:
+            return ()
+        return (f"Material '{self._material.name}' is no grain and is drawn as {self._what()}; left out: "
+                f"{', '.join(dict.fromkeys(self._left_out))}.",)
+
+    def _what(self):
+        if self.values["model"] == METAL:
+            return "a rough conductor"
+        return "a diffuse surface under a coat" if "coat" in self._numbers else "a Lambertian surface"
+
+    def leave_out(self, what):
+        self._left_out.append(what)
+
+    def be_lambert(self, colour):
+        self.values = {"model": PLAIN, "reflectance": _reflectance(colour)}
+
+    def be_conductor(self, colour, roughness):
+        # Cycles' roughness is the square root of the GGX alpha.
+        self.values = {"model": METAL, "reflectance": _reflectance(colour), "masking": compat.facets_masking(),
+                       "roughness": min(max(roughness, 0.0), 1.0) ** 2}
+
+    def set(self, **numbers):
+        self._numbers.update(numbers)
+
+    def colour(self, socket, of="reflectance"):
+        """Linear RGB of an input, the mean of its picture if it has one."""
+        if not socket.is_linked:
+            return socket.default_value
+        found = self._map(socket, of, numbers=False)
+        return self._material.diffuse_color if found is None else found
+
+    def number(self, socket, of=None):
+        """An input's number, the mean of its picture if the quantity `of` may have one."""
+        if not socket.is_linked:
+            return socket.default_value
+        source = socket.links[0]
+        if source.from_node.type == "VALUE":
+            return source.from_socket.default_value
+        found = self._map(socket, of, numbers=True) if of else None
+        if found is not None:
+            return found[0]
+        if not of:
+            self.leave_out(f"the texture of its {socket.name.lower()}")
+        return socket.default_value
+
+    def _map(self, socket, of, numbers):
+        """The mean of an input's picture, which the quantity `of` gets, or None."""
+        source = node_colours.feeding(socket)
+        if source is None or source.from_node.type == "RGB":
+            return source.from_socket.default_value if source else socket.default_value
+        try:
+            found = textures.read(socket, self._box, numbers)
+        except node_colours.Unknown as unknown:
+            stands = "" if numbers else ", for which its viewport colour stands"
+            self.leave_out(f"the texture of its {socket.name.lower()}{stands} (it knows no {unknown})")
+            return None
+        self._maps[of] = found
+        return found.mean
+
+    def normal(self, node):
+        """What bends a shader's normal."""
+        socket = node.inputs.get("Normal")
+        if socket is None or not socket.is_linked:
+            return
+        bending = node_colours.feeding(socket).from_node
+        if bending.type != "NORMAL_MAP" or bending.space != "TANGENT":
+            self.leave_out(f"the node '{bending.name}' at its normal")
+            return
+        self.set(normal_strength=self.number(bending.inputs["Strength"]))
+        if bending.inputs["Color"].is_linked:
+            self._map(bending.inputs["Color"], "normal", numbers=False)
 
 
 def is_plain(material):
@@ -9,108 +115,121 @@ def is_plain(material):
     return not any(material.mesograin.is_property_set(name) for name in type(material.mesograin).__annotations__)
 
 
-def read(material):
-    """({parameter: value}, sentences about what is left out) of a material for which `is_plain` holds."""
+def read(material, box=textures.Box()):
+    """Reading of a material for which `is_plain` holds. box: textures.Box of what wears it."""
+    found = Reading(material, box)
     if not compat.uses_nodes(material):
-        return _lambert(material.diffuse_color), ()
+        found.be_lambert(material.diffuse_color)
+        return found
     output = material.node_tree.get_output_node("CYCLES")
-    links = output.inputs["Surface"].links if output else ()
-    if not links:
-        return _lambert((0.0, 0.0, 0.0)), ()
-    found, left_out = _read_node(material, links[0].from_node)
-    if not left_out:
-        return found, ()
-    return found, (f"Material '{material.name}' is no grain and is drawn as {_what(found)}; left out: "
-                   f"{', '.join(dict.fromkeys(left_out))}.",)
+    link = output and node_colours.feeding(output.inputs["Surface"])
+    if link is None:
+        found.be_lambert((0.0, 0.0, 0.0))
+    else:
+        _read_node(found, material, link.from_node)
+    if output and output.inputs["Displacement"].is_linked:
+        found.leave_out("its displacement")
+    return found
 
 
-def _what(found):
-    return "a rough conductor" if found["model"] == METAL else "a Lambertian surface"
-
-
-def _lambert(colour):
-    return {"model": PLAIN, "reflectance": _reflectance(colour)}
-
-
-def _conductor(colour, roughness):
-    # Cycles' roughness is the square root of the GGX alpha.
-    return {"model": METAL, "reflectance": _reflectance(colour), "roughness": min(max(roughness, 0.0), 1.0) ** 2}
+def depends_on_place(material):
+    """Whether what wears a plain material matters: its pictures may lie by place."""
+    return compat.uses_nodes(material) and any(node.type.startswith("TEX_") for node in material.node_tree.nodes)
 
 
 def _reflectance(colour):
     return tuple(min(max(channel, 0.0), 1.0) for channel in colour[:3])
 
 
-def _read_node(material, node):
-    """({parameter: value}, what is left out)."""
-    if node.type == "BSDF_DIFFUSE":
-        return _read_diffuse(material, node)
-    if node.type == "BSDF_PRINCIPLED":
-        return _read_principled(material, node)
-    if node.type in ("BSDF_GLOSSY", "BSDF_ANISOTROPIC"):
-        left_out = []
-        colour = _colour(material, node.inputs["Color"], left_out)
-        return _conductor(colour, _number(node.inputs["Roughness"], left_out)), left_out
-    if node.type == "EMISSION":
-        left_out = ["its emission"]
-        return _lambert(_colour(material, node.inputs["Color"], left_out)), left_out
-    if node.type == "MIX_SHADER":
-        return _read_mix(material, node)
-    return _lambert(material.diffuse_color), [f"the node '{node.name}', for which its viewport colour stands"]
+def _read_node(found, material, node):
+    if node.type in _READERS:
+        _READERS[node.type](found, material, node)
+        return
+    found.be_lambert(material.diffuse_color)
+    found.leave_out(f"the node '{node.name}', for which its viewport colour stands")
 
 
-def _read_diffuse(material, node):
-    left_out = []
-    colour = _colour(material, node.inputs["Color"], left_out)
-    if _number(node.inputs["Roughness"], left_out) > 0.0:
-        left_out.append("its roughness")
-    return _lambert(colour), left_out
+def _read_diffuse(found, _material, node):
+    found.be_lambert(found.colour(node.inputs["Color"]))
+    found.normal(node)
+    if found.number(node.inputs["Roughness"]) > 0.0:
+        found.leave_out("its roughness")
 
 
-def _read_principled(material, node):
-    left_out = []
-    colour = _colour(material, node.inputs["Base Color"], left_out)
-    metallic = _number(node.inputs["Metallic"], left_out)
-    if metallic >= 0.5:
-        if metallic < 1.0:
-            left_out.append("what of it is not metallic")
-        return _conductor(colour, _number(node.inputs["Roughness"], left_out)), left_out
-    left_out.append("its reflection")
-    # The sockets' names before and after Blender 4.0.
-    for names, what in ((("Transmission", "Transmission Weight"), "its transmission"),
-                        (("Subsurface", "Subsurface Weight"), "its subsurface scattering")):
-        socket = next((node.inputs[name] for name in names if name in node.inputs), None)
-        if socket is not None and (socket.is_linked or socket.default_value > 0.0):
-            left_out.append(what)
-    return _lambert(colour), left_out
+def _read_glossy(found, _material, node):
+    colour = found.colour(node.inputs["Color"])
+    found.be_conductor(colour, found.number(node.inputs["Roughness"], "roughness"))
+    found.normal(node)
 
 
-def _read_mix(material, node):
-    left_out = []
-    share = _number(node.inputs[0], left_out)
+def _read_emission(found, _material, node):
+    found.be_lambert((0.0, 0.0, 0.0))
+    _read_radiance(found, node.inputs["Color"], node.inputs["Strength"])
+
+
+def _read_radiance(found, colour, strength):
+    """What a surface sends out."""
+    factor = found.number(strength)
+    textured = node_colours.feeding(colour) is not None and node_colours.feeding(colour).from_node.type != "RGB"
+    own = found.colour(colour, "emission")
+    radiance = tuple(max(factor, 0.0) * (1.0 if textured else max(channel, 0.0)) for channel in own[:3])
+    if any(radiance):
+        found.set(radiance=radiance)
+        found.leave_out("the light that it sends to others")
+
+
+def _read_principled(found, _material, node):
+    def socket(*names):
+        """Of the first name that this Blender knows."""
+        return next((node.inputs[name] for name in names if name in node.inputs), None)
+
+    colour = found.colour(node.inputs["Base Color"])
+    metallic = found.number(node.inputs["Metallic"], "metallic")
+    roughness = found.number(node.inputs["Roughness"], "roughness")
+    if metallic >= 1.0 and not node.inputs["Metallic"].is_linked:
+        found.be_conductor(colour, roughness)
+    else:
+        found.be_lambert(colour)
+        found.set(metallicity=metallic)
+    coat = _straight_reflectance(found, socket)
+    if coat > 0.0:
+        found.set(coat=coat, coat_roughness=roughness)
+    found.values["masking"] = compat.facets_masking()
+    found.set(**compat.principled_base())
+    found.normal(node)
+    strength = socket("Emission Strength")
+    if strength is not None and (strength.is_linked or strength.default_value > 0.0):
+        _read_radiance(found, socket("Emission Color", "Emission"), strength)
+    for names, what, none in ((("Transmission Weight", "Transmission"), "its transmission", 0.0),
+                              (("Subsurface Weight", "Subsurface"), "its subsurface scattering", 0.0),
+                              (("Coat Weight", "Clearcoat"), "its clear coat", 0.0),
+                              (("Sheen Weight", "Sheen"), "its sheen", 0.0), (("Alpha",), "its transparency", 1.0)):
+        each = socket(*names)
+        if each is not None and (each.is_linked or each.default_value != none):
+            found.leave_out(what)
+
+
+def _straight_reflectance(found, socket):
+    """Of the surface over what is not metallic, seen straight on."""
+    level = min(max(found.number(socket("Specular IOR Level", "Specular")), 0.0), 1.0)
+    if socket("Specular IOR Level") is None:
+        return 0.08 * level
+    eta = found.number(socket("IOR"))
+    return min(2.0 * level * ((eta - 1.0) / (eta + 1.0)) ** 2, 1.0)
+
+
+def _read_mix(found, material, node):
+    share = found.number(node.inputs[0])
     chosen = node.inputs[2 if share > 0.5 else 1]
-    left_out.append("the lesser part of its mix")
-    if not chosen.is_linked:
-        return _lambert(material.diffuse_color), left_out
-    found, more = _read_node(material, chosen.links[0].from_node)
-    return found, left_out + more
+    found.leave_out("the lesser part of its mix")
+    link = node_colours.feeding(chosen)
+    if link is None:
+        found.be_lambert(material.diffuse_color)
+    else:
+        _read_node(found, material, link.from_node)
 
 
-def _colour(material, socket, left_out):
-    if not socket.is_linked:
-        return socket.default_value
-    source = socket.links[0]
-    if source.from_node.type == "RGB":
-        return source.from_socket.default_value
-    left_out.append(f"the texture of its {socket.name.lower()}, for which its viewport colour stands")
-    return material.diffuse_color
-
-
-def _number(socket, left_out):
-    if not socket.is_linked:
-        return socket.default_value
-    source = socket.links[0]
-    if source.from_node.type == "VALUE":
-        return source.from_socket.default_value
-    left_out.append(f"the texture of its {socket.name.lower()}")
-    return socket.default_value
+_READERS = {
+    "BSDF_DIFFUSE": _read_diffuse, "BSDF_PRINCIPLED": _read_principled, "BSDF_GLOSSY": _read_glossy,
+    "BSDF_ANISOTROPIC": _read_glossy, "EMISSION": _read_emission, "MIX_SHADER": _read_mix,
+}

@@ -95,6 +95,7 @@ void ShadePass::shade_seen(const Sample& sample, const ShadowPass& shadows, std:
     }
     program.set("surface_position", sample.targets.position);
     program.set("surface_normal", sample.targets.normal);
+    if (sample.targets.coordinates) program.offer("surface_coordinates", *sample.targets.coordinates);
     glStencilFunc(GL_EQUAL, static_cast<GLint>(i - first + 1), most_in_stencil);
     full_screen_.draw();
   }
@@ -148,6 +149,7 @@ void ShadePass::set_draw(const Sample& sample, const gl::Program& program, const
   program.offer("object_number",
                 static_cast<int>(content.object_number(static_cast<std::size_t>(&draw - content.draws().data()))));
   program.offer("shades_itself", static_cast<int>(content.shades_itself(draw)));
+  if (draw.material->textured()) program.set("grain_to_mesh", glm::mat4(glm::inverse(draw.object_to_grain())));
   program.set("viewer", sample.viewer(draw.centre));
 }
 
@@ -162,6 +164,7 @@ void ShadePass::set_group(const Sample& sample, const gl::Program& program, cons
   program.offer("unstretch", group.unstretch);
   program.offer("grain_reach", static_cast<float>(prototype.mesh->reach() * group.typical_scale));
   program.offer("shades_itself", static_cast<int>(instances.shades_itself(group)));
+  program.offer("middle_of_mesh", 0.5F * (prototype.mesh->lower() + prototype.mesh->upper()));
   program.set("viewer", sample.viewer(anchor));
 }
 

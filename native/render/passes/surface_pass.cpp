@@ -17,6 +17,7 @@ bool SurfacePass::run(const Sample& sample, const ArrayVisibility& arrays, std::
                                   sample.jitter, sample.size, sample.go_on))
       return false;
     cast_.upload(targets.position, targets.normal, targets.depth, first);
+    if (targets.coordinates) cast_.upload_coordinates(*targets.coordinates);
   }
   targets.surfaces.bind();
   glDisable(GL_BLEND);

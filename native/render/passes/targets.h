@@ -1,6 +1,8 @@
 // What a view's passes draw into.
 #pragma once
 
+#include <optional>
+
 #include "gl/framebuffer.h"
 #include "gl/texture.h"
 
@@ -8,18 +10,22 @@ namespace mesograin::render {
 
 /// The passes of one sample share the depth and its stencil.
 struct Targets {
-  Targets(int width, int height)
+  /// `textured`: with where on their pictures surfaces are.
+  Targets(int width, int height, bool textured)
       : position(GL_RGBA32F, width, height),
         normal(GL_RGBA32F, width, height),
+        coordinates(textured ? std::make_optional<gl::Texture>(GL_RGBA32F, width, height) : std::nullopt),
         depth(GL_DEPTH32F_STENCIL8, width, height),
         sample(GL_RGBA32F, width, height),
         sum(GL_RGBA32F, width, height),
-        surfaces({&position, &normal}, &depth),
+        surfaces(textured ? gl::Framebuffer({&position, &normal, &*coordinates}, &depth)
+                          : gl::Framebuffer({&position, &normal}, &depth)),
         shade({&sample}, &depth),
         accumulate({&sum}) {}
 
   gl::Texture position;
   gl::Texture normal;
+  std::optional<gl::Texture> coordinates;
   gl::Texture depth;
   gl::Texture sample;  ///< free between samples
   gl::Texture sum;

@@ -1,0 +1,56 @@
+// Pictures by the names of what they are of, and the numbers where there is none.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <string_view>
+
+#include "models/finish.h"
+
+namespace mesograin::models {
+namespace {
+
+void add_map(std::string_view name, const scene::TextureMap& map, MaterialInputs& inputs) {
+  if (!map.picture) return;
+  std::string define(name);
+  std::transform(define.begin(), define.end(), define.begin(), [](unsigned char c) { return std::toupper(c); });
+  inputs.defines.push_back(define + "_MAP");
+  const std::string uniform = fmt::format("{}_map.", name);
+  inputs.uniforms[uniform + "across"] = glm::vec4(map.to_picture[0]);
+  inputs.uniforms[uniform + "up"] = glm::vec4(map.to_picture[1]);
+  inputs.uniforms[uniform + "by_position"] = static_cast<int>(map.by_position);
+  inputs.uniforms[uniform + "srgb"] = static_cast<int>(map.picture->srgb());
+  inputs.pictures[fmt::format("{}_picture", name)] = map;
+}
+
+}  // namespace
+
+void add_finish(const scene::Material& material, MaterialInputs& inputs) {
+  const scene::Finish& finish = *material.finish;
+  const bool metal = material.model == scene::Model::conductor;
+  const double metallicity = metal ? 1.0 : finish.metallicity;
+  inputs.finish = true;
+  add_map("reflectance", finish.reflectance, inputs);
+  add_map("roughness", finish.roughness, inputs);
+  add_map("metallic", finish.metallic, inputs);
+  add_map("normal", finish.normal, inputs);
+  add_map("emission", finish.emission, inputs);
+  if (!inputs.pictures.empty()) inputs.defines.emplace_back("TEXTURED");
+  if (finish.radiance != glm::dvec3(0.0)) inputs.defines.emplace_back("EMITS");
+  if (finish.coat > 0.0) inputs.defines.emplace_back("COAT");
+  if (finish.coat_shades_base) inputs.defines.emplace_back("COAT_SHADES_BASE");
+  if (finish.retro_reflective) inputs.defines.emplace_back("RETRO_REFLECTIVE");
+  if (metallicity > 0.0 || finish.metallic.picture) inputs.defines.emplace_back("METALLIC");
+  if (material.masking == scene::Masking::separable && !metal) inputs.defines.emplace_back("MASKING_SEPARABLE");
+  inputs.uniforms["material.reflectance"] = glm::vec3(material.reflectance);
+  // Of the conductor it is the alpha, of which the finish has the root.
+  inputs.uniforms["material.roughness"] =
+      static_cast<float>(metal ? std::sqrt(material.roughness) : finish.coat_roughness);
+  inputs.uniforms["material.metallicity"] = static_cast<float>(metallicity);
+  inputs.uniforms["material.coat"] = static_cast<float>(finish.coat);
+  inputs.uniforms["material.normal_strength"] = static_cast<float>(finish.normal_strength);
+  inputs.uniforms["material.radiance"] = glm::vec3(finish.radiance);
+}
+
+}  // namespace mesograin::models
