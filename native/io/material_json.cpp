@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "io/finish_json.h"
 #include "io/number.h"
 #include "io/scene_json.h"
 
@@ -102,7 +103,7 @@ bool answers_kind(const Node& kind, Model model) {
   return std::ranges::find(models, model) != models.end();
 }
 
-Material read_material(const Node& node, const std::optional<Model>& asked) {
+Material read_material(const Node& node, const std::optional<Model>& asked, const std::filesystem::path& folder) {
   const std::vector<Model> models = models_of(node["kind"]);
   Material material;
   material.model = asked.value_or(models.front());
@@ -118,6 +119,8 @@ Material read_material(const Node& node, const std::optional<Model>& asked) {
   keys.insert(keys.end(), parameters.begin(), parameters.end());
   for (const std::string_view parameter : parameters)
     for (const std::string_view synonym : synonyms(parameter)) keys.push_back(synonym);
+  const bool opaque = !traits_of(material.model).translucent;
+  if (opaque) keys.emplace_back("finish");
   node.require_object(keys, provenance_keys);
   for_each_parameter([&](const Parameter& parameter, auto member) {
     if (std::ranges::find(parameters, parameter.name) == parameters.end()) return;
@@ -125,6 +128,7 @@ Material read_material(const Node& node, const std::optional<Model>& asked) {
       read_parameter(node[parameter.name], parameter, material.*member);
   });
   read_synonyms(node, material);
+  if (opaque && node.has("finish")) material.finish = read_finish(node["finish"], folder);
   at(node, [&] { validate(material); });
   return material;
 }

@@ -71,7 +71,8 @@ void read_object(const Node& node, const Material& material, const std::filesyst
 /// least one.
 class Materials {
  public:
-  Materials(const Node& root, const std::optional<Model>& asked) : asked_(asked) {
+  Materials(const Node& root, const std::optional<Model>& asked, std::filesystem::path folder)
+      : asked_(asked), folder_(std::move(folder)) {
     if (!root.has("materials")) return;
     const Node all = root["materials"];
     if (!all.is_object()) all.fail("must be an object of materials by their names");
@@ -93,10 +94,11 @@ class Materials {
   Material read(const Node& node) {
     const bool answers = asked_ && answers_kind(node["kind"], *asked_);
     answered_ = answered_ || answers;
-    return read_material(node, answers ? asked_ : std::nullopt);
+    return read_material(node, answers ? asked_ : std::nullopt, folder_);
   }
 
   std::optional<Model> asked_;
+  std::filesystem::path folder_;
   bool answered_ = false;
   std::map<std::string, Material> named_;
 };
@@ -104,7 +106,7 @@ class Materials {
 void read_objects(const Node& root, const std::filesystem::path& folder, const SceneChoices& choices, Scene& scene) {
   Prototypes prototypes;
   if (!root.has("objects")) {
-    read_object(root, read_material(root["material"], choices.model), folder, prototypes, scene);
+    read_object(root, read_material(root["material"], choices.model, folder), folder, prototypes, scene);
     at(root["geometry"], [&] { validate(scene); });
     return;
   }
@@ -112,7 +114,7 @@ void read_objects(const Node& root, const std::filesystem::path& folder, const S
     if (root.has(key)) throw Error("{} must stand in one of objects, since there are objects.", key);
   const Node objects = root["objects"];
   if (objects.size() == 0) objects.fail("must be a list of at least one object");
-  Materials materials(root, choices.model);
+  Materials materials(root, choices.model, folder);
   for (std::size_t i = 0; i < objects.size(); ++i) {
     const Node object = objects[i];
     object.require_object(std::array<std::string_view, 3>{"geometry", "material", "instances"}, provenance_keys);

@@ -8,6 +8,7 @@
 
 #include "base/file.h"
 #include "io/exr.h"
+#include "io/finish_json.h"
 #include "io/light_json.h"
 #include "io/mesh_file.h"
 #include "io/npy_file.h"
@@ -27,7 +28,7 @@ Json rows_of(const glm::dmat4& matrix) {
 }
 
 /// Of `all`, what the model reads: as read_material takes it.
-Json material_json(const Material& material) {
+Json parameters_json(const Material& material) {
   const ModelTraits& traits = traits_of(material.model);
   const Json all = Json::parse(to_json(material));
   Json json{{"kind", traits.kinds.front()}};
@@ -43,8 +44,8 @@ class Writer {
   Json objects(const Scene& scene) {
     Json list = Json::array();
     for (const Instance& instance : scene.instances)
-      list.push_back({{"geometry", geometry(instance.mesh, instance.object_to_world)},
-                      {"material", material_json(instance.material)}});
+      list.push_back(
+          {{"geometry", geometry(instance.mesh, instance.object_to_world)}, {"material", material(instance.material)}});
     for (std::size_t i = 0; i < scene.arrays.size(); ++i) {
       const InstanceArray& array = scene.arrays[i];
       const std::string file = beside(fmt::format("instances_{}.npy", i));
@@ -59,7 +60,7 @@ class Writer {
       Json instances{{"file", file}};
       if (array.factors().any()) instances["factors"] = factors(array.factors(), i);
       list.push_back({{"geometry", geometry(array.mesh, glm::dmat4(1.0))},
-                      {"material", material_json(array.material)},
+                      {"material", material(array.material)},
                       {"instances", std::move(instances)}});
     }
     return list;
@@ -81,6 +82,14 @@ class Writer {
 
  private:
   std::string beside(const std::string& what) const { return path_.stem().string() + "_" + what; }
+
+  Json material(const Material& material) {
+    Json json = parameters_json(material);
+    if (material.finish)
+      json["finish"] =
+          written_finish(*material.finish, path_.parent_path(), beside(fmt::format("finish_{}", finishes_++)));
+    return json;
+  }
 
   Json factors(const ColourFactors& factors, std::size_t number) {
     Json json = Json::object();
@@ -111,6 +120,7 @@ class Writer {
 
   std::filesystem::path path_;
   std::map<const Mesh*, std::string> meshes_;
+  std::size_t finishes_ = 0;
 };
 
 }  // namespace

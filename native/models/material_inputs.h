@@ -27,13 +27,13 @@ struct Volume {
 };
 
 struct MaterialInputs {
-  std::vector<std::string> defines;              ///< chosen at compile time: one program for each distinct set
-  std::map<std::string, UniformValue> uniforms;  ///< "material.sigma_a", ...
-  std::map<std::string, Table> tables;           ///< sampler name -> texels
-  std::map<std::string, Volume> volumes;         ///< sampler name -> texels
+  std::vector<std::string> defines;                     ///< chosen at compile time: one program for each distinct set
+  std::map<std::string, UniformValue> uniforms;         ///< "material.sigma_a", ...
+  std::map<std::string, Table> tables;                  ///< sampler name -> texels
+  std::map<std::string, Volume> volumes;                ///< sampler name -> texels
   std::map<std::string, scene::TextureMap> pictures{};  ///< sampler name -> what it wears
-  bool finish = false;                           ///< drawn by shaders/models/finish.glsl, whatever the model
-  bool light_maps = false;                       ///< the model reads shaders/models/light_map.glsl
+  bool finish = false;                                  ///< drawn by shaders/models/finish.glsl, whatever the model
+  bool light_maps = false;                              ///< the model reads shaders/models/light_map.glsl
 };
 
 /// Computed once for each material, in double. Throws Error if the material is not valid. `grain_radius` is that of the

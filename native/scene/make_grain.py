@@ -97,7 +97,7 @@ def header(text):
 namespace mesograin::scene {{
 
 {choices}struct Material {{
-{"".join(map(member, parameters))}  std::optional<Finish> finish{{}};  ///< of an opaque surface that is more than its model
+{"".join(map(member, parameters))}  std::optional<Finish> finish{{}};  ///< of an opaque surface, beside its model
   bool operator==(const Material&) const = default;
 }};
 

@@ -37,8 +37,8 @@ void main() {
 #ifdef TEXTURED
   surface_uv = grain_uv;
   surface_in_mesh = to_mesh(grain_position);
-  surface_tangent = unpacked_tangent(
-      point.normal, packed_tangent(point.normal, dFdx(grain_position), dFdy(grain_position), dFdx(grain_uv), dFdy(grain_uv)));
+  surface_tangent =
+      unpacked_tangent(point.normal, packed_tangent(point.normal, dFdx(grain_position), dFdy(grain_position), dFdx(grain_uv), dFdy(grain_uv)));
   put_on(point);
 #endif
   radiance = vec4(lit_point(point), 1.0);

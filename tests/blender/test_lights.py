@@ -5,7 +5,7 @@ import bpy
 import numpy as np
 import pytest
 from mathutils import Euler, Matrix
-from test_export import add_mesh_object, add_object
+from test_export import add_mesh_object, add_object, read_scene
 
 from mesograin import compat
 
@@ -157,3 +157,32 @@ def test_a_transparent_film_hides_the_world(ground, render):
     ground.render.film_transparent = True
     picture = render()
     assert picture[0, 0].max() == 0.0 and picture[SIZE // 2, SIZE // 2, 3] == 1.0
+
+
+@pytest.mark.parametrize("turned", [(0.0, 0.0, 0.0), (math.pi, 0.0, 0.0), (0.6, 0.3, 0.0)])
+def test_a_shining_rectangle_lights_others(ground, render, turned):
+    """On both its sides."""
+    shining = bpy.data.materials.new("Shining")
+    compat.use_nodes(shining)
+    tree = shining.node_tree
+    tree.nodes.clear()
+    emission, output = tree.nodes.new("ShaderNodeEmission"), tree.nodes.new("ShaderNodeOutputMaterial")
+    emission.inputs["Color"].default_value = (1.0, 0.5, 0.25, 1.0)
+    emission.inputs["Strength"].default_value = 6.0
+    tree.links.new(emission.outputs[0], output.inputs["Surface"])
+    lamp = add_mesh_object("Lamp", [(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)], [(0, 1, 2, 3)],
+                           matrix=Matrix.LocRotScale((1.2, 0.3, 1.3), Euler(turned), (0.5, 0.8, 1.0)))
+    lamp.data.materials.append(shining)
+    assert_as_in_cycles(ground, render)
+
+
+def test_what_shines_and_is_no_rectangle_is_said(ground):
+    bpy.ops.mesh.primitive_ico_sphere_add(location=(0.0, 0.0, 1.0))
+    shining = bpy.data.materials.new("Shining")
+    compat.use_nodes(shining)
+    tree = shining.node_tree
+    emission = tree.nodes.new("ShaderNodeEmission")
+    tree.links.new(emission.outputs[0], tree.get_output_node("CYCLES").inputs["Surface"])
+    bpy.context.object.data.materials.append(shining)
+    [sentence, _] = read_scene().warnings
+    assert "'Icosphere' shines, but on nothing" in sentence

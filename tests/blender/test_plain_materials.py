@@ -75,8 +75,7 @@ def test_emission_is_seen(material, render):
     add_camera((0.0, 0.0, 4.0))
     shade(material, "ShaderNodeEmission", Color=(*COLOUR, 1.0), Strength=2.5)
     assert render()[4, 4, :3] == pytest.approx([2.5 * channel for channel in COLOUR], rel=1e-5)
-    _, [sentence] = drawn()
-    assert "the light that it sends to others" in sentence
+    assert drawn()[1] == ()
 
 
 @pytest.mark.parametrize("kind", ["ShaderNodeBsdfGlass", "ShaderNodeMixShader"])

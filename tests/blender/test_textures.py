@@ -1,10 +1,10 @@
-# Pictures that plain materials wear, against Cycles: a plane and a sphere, whatever lies between the texture and the shader.
+# Pictures that plain materials wear, against Cycles: on a plane and a sphere, whatever nodes lie between.
 import math
 
 import bpy
 import numpy as np
 import pytest
-from mathutils import Euler, Matrix
+from mathutils import Matrix
 from test_export import add_cube, add_object, add_sun, read_scene
 
 from mesograin import compat
@@ -94,7 +94,8 @@ def assert_as_in_cycles(render, tolerance=0.01, samples=64):
     theirs = render()
 
     def blocks(picture):
-        return picture[..., :3].astype(np.float64).reshape(SIZE // BLOCK, BLOCK, SIZE // BLOCK, BLOCK, 3).mean(axis=(1, 3))
+        shape = (SIZE // BLOCK, BLOCK, SIZE // BLOCK, BLOCK, 3)
+        return picture[..., :3].astype(np.float64).reshape(shape).mean(axis=(1, 3))
 
     assert blocks(theirs).std() > 0.05 * blocks(theirs).mean() > 0.0
     error = np.abs(blocks(ours) - blocks(theirs)).sum() / blocks(theirs).sum()

@@ -7,7 +7,7 @@ import bpy
 from mathutils import Matrix
 
 from .. import compat
-from ..scene import lights
+from ..scene import lights, surroundings
 from . import nodes
 
 KIND_PROPERTIES = {
@@ -50,7 +50,8 @@ def describe(light):
 
 
 def fill_world(made, values):
-    """Makes the nodes of a new bpy.types.World say what `surroundings.WorldValues` do."""
+    """Makes the nodes of a new bpy.types.World say what `surroundings.WorldValues` do; returns the image that it needs
+    and nobody else has, or None."""
     compat.use_nodes(made)
     tree = made.node_tree
     tree.nodes.clear()
@@ -59,10 +60,10 @@ def fill_world(made, values):
     tree.links.new(background.outputs["Background"], output.inputs["Surface"])
     if values.image is None:
         background.inputs["Color"].default_value[:3] = values.radiance
-        return
+        return None
     background.inputs["Strength"].default_value = values.radiance[0]
     texture = tree.nodes.new("ShaderNodeTexEnvironment")
-    texture.image = bpy.data.images[values.image_name]
+    texture.image, is_new = surroundings.image_of(values, "Mesograin world")
     tree.links.new(texture.outputs["Color"], background.inputs["Color"])
     mapping = tree.nodes.new("ShaderNodeMapping")
     rotation = Matrix([values.rotation[row:row + 3] for row in (0, 3, 6)])
@@ -70,6 +71,7 @@ def fill_world(made, values):
     coordinates = tree.nodes.new("ShaderNodeTexCoord")
     tree.links.new(coordinates.outputs["Generated"], mapping.inputs["Vector"])
     tree.links.new(mapping.outputs["Vector"], texture.inputs["Vector"])
+    return texture.image if is_new else None
 
 
 def describe_world(values):

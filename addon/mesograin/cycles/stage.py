@@ -50,7 +50,9 @@ class Stage:
             self.scene = self._own(bpy.data.scenes.new("Mesograin reference"))
             self.world, _ = surroundings.read(self._depsgraph.scene)
             self.scene.world = self._own(bpy.data.worlds.new("Mesograin world"))
-            lighting.fill_world(self.scene.world, self.world)
+            image = lighting.fill_world(self.scene.world, self.world)
+            if image is not None:
+                self._own(image)
             settings.apply(self.scene, self._description)
             self._copy_camera()
             self._copy_instances()

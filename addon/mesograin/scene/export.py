@@ -9,7 +9,8 @@ import numpy as np
 
 from .. import native_module
 from ..schema import models, parameters
-from . import colours, heaps, lights, meshes, plain_materials, properties, scattered, surroundings, textures
+from . import (colours, heaps, lights, mesh_lights, meshes, plain_materials, properties, scattered, surroundings,
+               textures)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -336,6 +337,10 @@ class _Reader:
         parts = self._cache.parts(shape)
         if not any(part.has_area for part in parts) or any(part.broken_uvs for part in parts):
             return None
+        if any(material.finish and material.finish.radiance
+               for material in (self._material(shape, part.slot) for part in parts)):
+            self._warn(f"Instances of '{shape.name}' shine, but on nothing: only objects of their own are lights to "
+                       "others.")
         return heaps.Group(shape.name, [heaps.Part(part.mesh, self._material(shape, part.slot),
                                                    self._variation(shape, part.slot)) for part in parts])
 
@@ -411,9 +416,21 @@ class _Reader:
             self._warn(f"Object '{evaluated_object.name}' is scaled to nothing, so it is not drawn.")
             return
         for part in parts:
-            self._instances.append(InstanceValues(evaluated_object.name, part.mesh,
-                                                  self._material(evaluated_object, part.slot), to_world,
+            material = self._material(evaluated_object, part.slot)
+            self._instances.append(InstanceValues(evaluated_object.name, part.mesh, material, to_world,
                                                   part.broken_uvs))
+            self._read_mesh_lights(evaluated_object, matrix_world, part.slot, material)
+
+    def _read_mesh_lights(self, evaluated_object, matrix_world, slot, material):
+        radiance = material.finish and material.finish.radiance
+        if not radiance:
+            return
+        found = mesh_lights.read(evaluated_object, matrix_world, slot, radiance)
+        if found is None:
+            self._warn(f"Object '{evaluated_object.name}' shines, but on nothing: only up to {mesh_lights.MOST_FACES} "
+                       "rectangular faces are lights to others.")
+            return
+        self._lights.extend(found)
 
     def _variation(self, evaluated_object, slot):
         material = _in_slot(evaluated_object, slot)

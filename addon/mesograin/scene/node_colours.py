@@ -73,6 +73,38 @@ def feeding(socket):
     return None
 
 
+_paintings = {}
+MOST_PAINTINGS = 16
+
+
+def remembered(key, make):
+    """What `make` makes of nodes told by this key: a slider elsewhere paints nothing anew."""
+    found = _paintings.pop(key, None)
+    if found is None:
+        found = make()
+        while len(_paintings) >= MOST_PAINTINGS:
+            del _paintings[next(iter(_paintings))]
+    _paintings[key] = found
+    return found
+
+
+def radiance(socket, places):
+    """(n, 3) of a shader input of a world, at places whose coordinates are directions. Raises Unknown."""
+    link = feeding(socket)
+    if link is None:
+        return np.zeros((places.count, 3))
+    node = link.from_node
+    if node.mute or node.type not in ("BACKGROUND", "MIX_SHADER", "ADD_SHADER"):
+        raise Unknown(node.name)
+    if node.type == "BACKGROUND":
+        return colour(node.inputs["Color"], places) * number(node.inputs["Strength"], places)[:, None]
+    first, second = (radiance(each, places) for each in list(node.inputs)[-2:])
+    if node.type == "ADD_SHADER":
+        return first + second
+    share = np.clip(number(node.inputs["Fac"], places), 0.0, 1.0)[:, None]
+    return first + share * (second - first)
+
+
 def fingerprint(socket):
     """What tells one input's nodes from another's that look alike."""
     link = feeding(socket)
@@ -184,6 +216,25 @@ def _image(node, socket, places):
     if socket.name == "Alpha":
         return looked_up[:, 3]
     return images.linear(looked_up[:, :3]) if images.is_encoded(node.image) else looked_up[:, :3]
+
+
+def _environment(node, _socket, places):
+    if node.image is None or node.image.source in ("TILED", "MOVIE", "SEQUENCE"):
+        raise Unknown(node.name)
+    texels = images.texels(node.image)
+    if texels is None:
+        raise Unknown(f"{node.name}: {node.image.name}")
+    towards = vector(node.inputs["Vector"], places, "generated")
+    towards = towards / np.maximum(np.linalg.norm(towards, axis=1, keepdims=True), 1e-30)
+    x, y, z = towards.T
+    if node.projection == "EQUIRECTANGULAR":
+        at = np.stack((0.5 - np.arctan2(y, x) / (2.0 * np.pi), np.arctan2(z, np.hypot(x, y)) / np.pi + 0.5), axis=1)
+    else:
+        # Cycles' direction_to_mirrorball.
+        scale = 0.5 / np.sqrt(np.maximum(0.5 * (1.0 - y), 1e-30))
+        at = np.stack((0.5 * (x * scale + 1.0), 0.5 * (z * scale + 1.0)), axis=1)
+    looked_up = _looked_up(texels, at, "REPEAT", node.interpolation != "Closest")[:, :3]
+    return images.linear(looked_up) if images.is_encoded(node.image) else looked_up
 
 
 def _looked_up(texels, at, extension, smooth):
@@ -371,8 +422,8 @@ def _clamp(node, _socket, places):
 def _map_range(node, _socket, places):
     if getattr(node, "data_type", "FLOAT") != "FLOAT" or node.interpolation_type != "LINEAR":
         raise Unknown(node.name)
-    value, *ends = (number(_named(node, name), places) for name in ("Value", "From Min", "From Max", "To Min", "To Max"))
-    from_least, from_most, to_least, to_most = ends
+    value, from_least, from_most, to_least, to_most = (
+        number(_named(node, name), places) for name in ("Value", "From Min", "From Max", "To Min", "To Max"))
     with np.errstate(all="ignore"):
         share = np.nan_to_num((value - from_least) / (from_most - from_least))
     if node.clamp:
@@ -382,7 +433,7 @@ def _map_range(node, _socket, places):
 
 _NODES = {
     "RGB": _constant, "VALUE": _constant, "TEX_COORD": _coordinates, "UVMAP": _uv_map, "MAPPING": _mapping,
-    "TEX_IMAGE": _image, "TEX_CHECKER": _checker, "TEX_GRADIENT": _gradient, "VALTORGB": _ramp,
+    "TEX_IMAGE": _image, "TEX_ENVIRONMENT": _environment, "TEX_CHECKER": _checker, "TEX_GRADIENT": _gradient, "VALTORGB": _ramp,
     "MIX_RGB": _mix_rgb, "MIX": _mix, "MATH": _math, "INVERT": _invert, "GAMMA": _gamma,
     "BRIGHTCONTRAST": _bright_contrast, "CURVE_RGB": _curves, "RGBTOBW": _to_grey, "SEPRGB": _separate,
     "SEPARATE_COLOR": _separate, "SEPXYZ": _separate, "COMBRGB": _combine, "COMBINE_COLOR": _combine,

@@ -16,6 +16,15 @@ class FinishValues:
     values: tuple = ()
     maps: tuple = ()
 
+    @property
+    def radiance(self):
+        """Linear RGB that it sends out, on average over its picture, or None."""
+        own = dict(self.values).get("radiance")
+        picture = dict(self.maps).get("emission")
+        if own is None or picture is None:
+            return own
+        return tuple(channel * share for channel, share in zip(own, picture.mean))
+
     def to_native(self, native):
         return native.Finish(**dict(self.values), **{name: each.to_native(native) for name, each in self.maps})
 
@@ -175,7 +184,6 @@ def _read_radiance(found, colour, strength):
     radiance = tuple(max(factor, 0.0) * (1.0 if textured else max(channel, 0.0)) for channel in own[:3])
     if any(radiance):
         found.set(radiance=radiance)
-        found.leave_out("the light that it sends to others")
 
 
 def _read_principled(found, _material, node):

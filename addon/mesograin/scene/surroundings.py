@@ -3,10 +3,15 @@ import dataclasses
 import hashlib
 import weakref
 
+import bpy
 import numpy as np
 from mathutils import Euler, Matrix
 
 from .. import compat, native_module
+from . import node_colours
+
+SIDE = 512
+"""Texels from bottom to top of what is painted of a world's nodes."""
 
 STRAIGHT = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
 
@@ -51,25 +56,57 @@ def _read(world):
     if not links:
         return WorldValues(), ()
     background = links[0].from_node
-    if background.type != "BACKGROUND":
-        return _in_viewport_colour(world, background)
-    strength = _constant(background.inputs["Strength"])
+    strength = _constant(background.inputs["Strength"]) if background.type == "BACKGROUND" else None
     if strength is None:
-        return _in_viewport_colour(world, background.inputs["Strength"].links[0].from_node)
+        return _painted(world, output.inputs["Surface"])
     colour = _constant(background.inputs["Color"])
     if colour is not None:
         return WorldValues(tuple(strength * channel for channel in colour[:3])), ()
     texture = background.inputs["Color"].links[0].from_node
-    if texture.type != "TEX_ENVIRONMENT" or texture.projection != "EQUIRECTANGULAR":
-        return _in_viewport_colour(world, texture)
-    return _read_image(world, texture, strength)
+    if texture.type == "TEX_ENVIRONMENT" and texture.projection == "EQUIRECTANGULAR":
+        values, sentences = _read_image(world, texture, strength)
+        if not sentences or values.image is None:
+            return values, sentences
+    return _painted(world, output.inputs["Surface"])
 
 
-def _in_viewport_colour(world, node):
-    """For nodes that only Cycles can evaluate."""
-    return WorldValues(tuple(world.color)), (
-        f"World '{world.name}' has the node '{node.name}', which Mesograin cannot read: it is drawn in its viewport "
-        "colour. Use a colour or an equirectangular environment image.",)
+def _painted(world, socket):
+    """What nodes make of every direction."""
+    try:
+        pixels = node_colours.remembered(node_colours.fingerprint(socket), lambda: _paint(socket))
+    except node_colours.Unknown as unknown:
+        return WorldValues(tuple(world.color)), (
+            f"World '{world.name}' is drawn in its viewport colour, for Mesograin knows no {unknown}: use colours, "
+            "gradients, mixes or environment images.",)
+    surroundings = _made(pixels)
+    _paintings[surroundings] = pixels
+    return WorldValues((1.0,) * 3, surroundings, "", _digests[surroundings]), ()
+
+
+def _paint(socket):
+    """(h, w, 3) float32."""
+    turn = (0.5 - (np.arange(2 * SIDE) + 0.5) / (2 * SIDE)) * 2.0 * np.pi
+    rise = (0.5 - (np.arange(SIDE) + 0.5) / SIDE) * np.pi
+    turn, rise = (angles.ravel() for angles in np.meshgrid(turn, rise))
+    directions = np.stack((np.cos(rise) * np.cos(turn), np.cos(rise) * np.sin(turn), np.sin(rise)), axis=1)
+    places = node_colours.Places({"generated": directions, "object": directions})
+    radiance = np.nan_to_num(node_colours.radiance(socket, places), nan=0.0, posinf=3e38, neginf=0.0)
+    return np.ascontiguousarray(radiance.clip(min=0.0).reshape(SIDE, 2 * SIDE, 3), dtype=np.float32)
+
+
+def image_of(values, name):
+    """(bpy.types.Image of a WorldValues' surroundings, whether it is new): the artist's own, or what was painted."""
+    if values.image_name:
+        return bpy.data.images[values.image_name], False
+    pixels = _paintings[values.image]
+    height, width = pixels.shape[:2]
+    image = bpy.data.images.new(name, width, height, float_buffer=True)
+    compat.set_linear(image)
+    colours = np.ones((height, width, 4), dtype=np.float32)
+    colours[..., :3] = pixels[::-1]
+    image.pixels.foreach_set(colours.ravel())
+    image.update()
+    return image, True
 
 
 def _constant(socket):
@@ -129,6 +166,7 @@ def _of_mapping(node):
 _by_image = weakref.WeakValueDictionary()
 _by_content = weakref.WeakValueDictionary()
 _digests = weakref.WeakKeyDictionary()
+_paintings = weakref.WeakKeyDictionary()
 
 
 def _surroundings(image):

@@ -129,7 +129,7 @@ def _sources(socket):
 def _paint(socket, coordinates, numbers):
     key = (node_colours.fingerprint(socket), numbers,
            tuple((name, places[0].tobytes(), places[-1].tobytes()) for name, places in sorted(coordinates.items())))
-    return _remembered(key, lambda: _painting(socket, coordinates, numbers))
+    return node_colours.remembered(key, lambda: _painting(socket, coordinates, numbers))
 
 
 def _painting(socket, coordinates, numbers):
@@ -140,18 +140,3 @@ def _painting(socket, coordinates, numbers):
     else:
         texels[:, :3] = node_colours.colour(socket, places)
     return images.made(np.nan_to_num(texels).reshape(SIDE, SIDE, 4))
-
-
-_paintings = {}
-MOST_PAINTINGS = 16
-
-
-def _remembered(key, make):
-    """A slider elsewhere paints nothing anew."""
-    found = _paintings.pop(key, None)
-    if found is None:
-        found = make()
-        while len(_paintings) >= MOST_PAINTINGS:
-            del _paintings[next(iter(_paintings))]
-    _paintings[key] = found
-    return found

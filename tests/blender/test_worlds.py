@@ -1,0 +1,87 @@
+# Worlds whose nodes are painted once, against Cycles: as light on a ground and behind it.
+import math
+
+import bpy
+import numpy as np
+import pytest
+from mathutils import Euler, Matrix
+from test_export import add_object, read_scene
+from test_lights import assert_as_in_cycles, ground, make_world  # noqa: F401 (a fixture)
+
+from mesograin import compat
+from mesograin.scene import surroundings
+
+
+def look_over(ground):  # noqa: F811
+    camera = bpy.data.cameras.new("Wide")
+    camera.angle = 2.0
+    ground.camera = add_object("Wide", camera, Matrix.LocRotScale((0.0, -3.0, 1.5), Euler((1.2, 0.0, 0.0)), None))
+
+
+def nodes(tree, *kinds):
+    return [tree.nodes.new(f"ShaderNode{kind}") for kind in kinds]
+
+
+def gradient(tree, kind, turned):
+    """Colours over directions; the output of their nodes."""
+    places, turn, pattern, ramp = nodes(tree, "TexCoord", "Mapping", "TexGradient", "ValToRGB")
+    turn.inputs["Rotation"].default_value = turned
+    pattern.gradient_type = kind
+    ramp.color_ramp.elements[0].color = (0.9, 0.4, 0.1, 1.0)
+    ramp.color_ramp.elements[1].color = (0.05, 0.2, 0.8, 1.0)
+    tree.links.new(places.outputs["Generated"], turn.inputs["Vector"])
+    tree.links.new(turn.outputs["Vector"], pattern.inputs["Vector"])
+    tree.links.new(pattern.outputs["Color"], ramp.inputs["Fac"])
+    return ramp.outputs["Color"]
+
+
+@pytest.mark.parametrize("kind", ["LINEAR", "EASING", "SPHERICAL"])
+def test_a_gradient(ground, render, kind):  # noqa: F811
+    tree, background = make_world(ground, (0.0, 0.0, 0.0), 1.5)
+    tree.links.new(gradient(tree, kind, (0.0, math.radians(90.0), 0.4)), background.inputs["Color"])
+    look_over(ground)
+    assert_as_in_cycles(ground, render)
+    assert read_scene().warnings == ()
+
+
+def test_a_mix_of_backgrounds_by_a_texture(ground, render):  # noqa: F811
+    tree, background = make_world(ground, (0.1, 0.4, 0.2), 2.0)
+    other, mix = tree.nodes.new("ShaderNodeBackground"), tree.nodes.new("ShaderNodeMixShader")
+    other.inputs["Color"].default_value = (0.7, 0.2, 0.6, 1.0)
+    tree.links.new(gradient(tree, "LINEAR", (0.2, -0.9, 0.1)), mix.inputs["Fac"])
+    tree.links.new(background.outputs[0], mix.inputs[1])
+    tree.links.new(other.outputs[0], mix.inputs[2])
+    tree.links.new(mix.outputs[0], tree.get_output_node("CYCLES").inputs["Surface"])
+    look_over(ground)
+    assert_as_in_cycles(ground, render)
+
+
+def test_an_image_that_nodes_change(ground, render):  # noqa: F811
+    """Moved as well as turned, and tinted."""
+    image = bpy.data.images.new("Sky", 64, 32, float_buffer=True)
+    compat.set_linear(image)
+    pixels = np.ones((32, 64, 4), dtype=np.float32)
+    pixels[..., :3] = np.random.default_rng(3).random((32, 64, 3))
+    image.pixels.foreach_set(pixels.ravel())
+    tree, background = make_world(ground, (0.0, 0.0, 0.0), 0.5)
+    places, turn, texture, tint = nodes(tree, "TexCoord", "Mapping", "TexEnvironment", "MixRGB")
+    texture.image = image
+    turn.inputs["Rotation"].default_value, turn.inputs["Scale"].default_value = (0.3, -0.2, 1.1), (1.0, 1.0, 2.0)
+    tint.blend_type, tint.inputs["Fac"].default_value = "MULTIPLY", 1.0
+    tint.inputs["Color2"].default_value = (1.0, 0.6, 0.3, 1.0)
+    for output, inlet in ((places.outputs["Generated"], turn.inputs["Vector"]),
+                          (turn.outputs["Vector"], texture.inputs["Vector"]),
+                          (texture.outputs["Color"], tint.inputs["Color1"]),
+                          (tint.outputs["Color"], background.inputs["Color"])):
+        tree.links.new(output, inlet)
+    look_over(ground)
+    assert_as_in_cycles(ground, render)
+
+
+def test_a_changed_node_is_a_changed_world(ground):  # noqa: F811
+    tree, background = make_world(ground, (0.0, 0.0, 0.0), 1.0)
+    tree.links.new(gradient(tree, "LINEAR", (0.0, 0.0, 0.0)), background.inputs["Color"])
+    first, again = (surroundings.read(ground)[0] for _ in range(2))
+    assert first == again and first.image is again.image
+    background.inputs["Strength"].default_value = 2.0
+    assert surroundings.read(ground)[0] != first
