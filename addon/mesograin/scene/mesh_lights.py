@@ -51,4 +51,6 @@ def _light(name, corners, side, radiance):
     size = max(np.linalg.norm(half_x), np.linalg.norm(half_y))
     return lights.PlacedLightValues(name, "AreaLight", (
         ("position", tuple((corners.mean(axis=0) + APART * size * normal).tolist())),
-        ("half_x", tuple(half_x.tolist())), ("half_y", tuple(half_y.tolist())), ("radiance", tuple(radiance)), ("ellipse", False), ("spread", np.pi)))
+        ("half_x", tuple(half_x.tolist())),
+        ("half_y", tuple(half_y.tolist())),
+        ("radiance", tuple(radiance)), ("ellipse", False), ("spread", np.pi)))

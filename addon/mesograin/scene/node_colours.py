@@ -433,7 +433,8 @@ def _map_range(node, _socket, places):
 
 _NODES = {
     "RGB": _constant, "VALUE": _constant, "TEX_COORD": _coordinates, "UVMAP": _uv_map, "MAPPING": _mapping,
-    "TEX_IMAGE": _image, "TEX_ENVIRONMENT": _environment, "TEX_CHECKER": _checker, "TEX_GRADIENT": _gradient, "VALTORGB": _ramp,
+    "TEX_IMAGE": _image, "TEX_ENVIRONMENT": _environment, "TEX_CHECKER": _checker,
+    "TEX_GRADIENT": _gradient, "VALTORGB": _ramp,
     "MIX_RGB": _mix_rgb, "MIX": _mix, "MATH": _math, "INVERT": _invert, "GAMMA": _gamma,
     "BRIGHTCONTRAST": _bright_contrast, "CURVE_RGB": _curves, "RGBTOBW": _to_grey, "SEPRGB": _separate,
     "SEPARATE_COLOR": _separate, "SEPXYZ": _separate, "COMBRGB": _combine, "COMBINE_COLOR": _combine,
