@@ -3,7 +3,10 @@ import dataclasses
 
 import bpy
 import numpy as np
-from bpy.props import BoolProperty, FloatProperty, FloatVectorProperty, PointerProperty
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, FloatVectorProperty, PointerProperty
+
+from .. import compat
+from . import node_colours
 
 
 @dataclasses.dataclass(frozen=True)
@@ -19,12 +22,43 @@ class Variation:
                      for name, low, high in self.ranges)
 
 
-def read(material, parameters):
-    """Variation of a bpy.types.Material whose model takes these parameters, or None if it has none."""
+@dataclasses.dataclass(frozen=True)
+class NodeVariation:
+    """What nodes make of each instance. parameter: which is multiplied; socket: a linked colour input, which outlives
+    no reading; own_colour: of the object that is instanced."""
+
+    parameter: str
+    socket: object
+    own_colour: tuple
+
+    def factors(self, randoms):
+        """As Variation's."""
+        places = node_colours.Places(node_colours.of_instances(randoms, self.own_colour))
+        found = np.clip(node_colours.colour(self.socket, places), 0.0, 100.0).astype(np.float32)
+        return ((self.parameter, found.tobytes()),)
+
+
+def _colour_of_surface(material):
+    """The colour input of a material's surface that differs between instances, or None."""
+    output = material.node_tree.get_output_node("CYCLES") if compat.uses_nodes(material) else None
+    link = output and node_colours.feeding(output.inputs["Surface"])
+    for name in ("Base Color", "Color"):
+        socket = link and link.from_node.inputs.get(name)
+        if socket is not None and socket.is_linked and node_colours.by_instance(socket):
+            return socket
+    return None
+
+
+def read(material, parameters, own_colour):
+    """Variation or NodeVariation of a bpy.types.Material whose model takes these parameters, or None if it has none.
+    own_colour: of the object that wears it."""
     settings = material.mesograin_colours
     if not settings.vary:
         return None
     colour = "sigma_a" if "sigma_a" in parameters else "reflectance"
+    if settings.source == "NODES":
+        socket = _colour_of_surface(material)
+        return None if socket is None else NodeVariation(colour, socket, own_colour)
     ranges = [(colour, tuple(settings.colour_from), tuple(settings.colour_to))]
     if "sigma_s" in parameters:
         ranges.append(("sigma_s", (settings.scattering_from,) * 3, (settings.scattering_to,) * 3))
@@ -45,6 +79,11 @@ class ColourProperties(bpy.types.PropertyGroup):
 
     vary: BoolProperty(name="Vary Grains", default=False, update=_tag,
                        description="Give each of many instances a colour of its own; sand is never of one colour")
+    source: EnumProperty(name="Source", default="RANGE", update=_tag, items=(
+        ("RANGE", "Range", "Evenly and at random between two ends"),
+        ("NODES", "Nodes", "What the colour of the material's Cycles surface is for each: Object Info's Random along a "
+                           "Color Ramp, or its Color"),
+    ), description="What absorption, or an opaque grain's reflectance, is multiplied by")
     colour_from: FloatVectorProperty(name="Absorption From", default=(0.5, 0.5, 0.5), **_COLOUR,
                                      description="By what sigma_a, or an opaque grain's reflectance, is multiplied at "
                                                  "one end of the range: below 1 a translucent grain is clearer")

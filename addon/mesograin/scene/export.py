@@ -9,8 +9,8 @@ import numpy as np
 
 from .. import native_module
 from ..schema import models, parameters
-from . import (colours, heaps, lights, mesh_lights, meshes, plain_materials, properties, scattered, surroundings,
-               textures)
+from . import (colours, heaps, lights, mesh_lights, meshes, node_colours, plain_materials, properties, scattered,
+               surroundings, textures)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -277,6 +277,7 @@ class _Reader:
         self._cache = cache
         self._varied = varied
         self._materials = {}
+        self._by_instance = {}  # {key of a material: the input that says the reflectance of each instance}
         self._instances = []
         self._groups = []  # heaps.Group of each shape that is read with all its placings at once
         self._lights = []
@@ -337,12 +338,12 @@ class _Reader:
         parts = self._cache.parts(shape)
         if not any(part.has_area for part in parts) or any(part.broken_uvs for part in parts):
             return None
-        if any(material.finish and material.finish.radiance
-               for material in (self._material(shape, part.slot) for part in parts)):
+        materials = [self._material(shape, part.slot, many=True) for part in parts]
+        if any(material.finish and material.finish.radiance for material in materials):
             self._warn(f"Instances of '{shape.name}' shine, but on nothing: only objects of their own are lights to "
                        "others.")
-        return heaps.Group(shape.name, [heaps.Part(part.mesh, self._material(shape, part.slot),
-                                                   self._variation(shape, part.slot)) for part in parts])
+        return heaps.Group(shape.name, [heaps.Part(part.mesh, material, self._variation(shape, part.slot))
+                                        for part, material in zip(parts, materials)])
 
     def _read(self, shape, matrix_world):
         if meshes.is_shape(shape):
@@ -436,23 +437,41 @@ class _Reader:
         material = _in_slot(evaluated_object, slot)
         if material is None:
             return None
-        model = dict(self._material(evaluated_object, slot).values)["model"]
-        variation = colours.read(material, models.MODELS[model].parameters)
+        key = self._key(evaluated_object, material, many=True)
+        if key in self._by_instance:
+            return colours.NodeVariation("reflectance", self._by_instance[key], tuple(evaluated_object.color))
+        model = dict(self._material(evaluated_object, slot, many=True).values)["model"]
+        variation = colours.read(material, models.MODELS[model].parameters, tuple(evaluated_object.color))
         if variation is not None and not self._varied:
             self._warn(f"The grains of material '{material.name}' vary in colour, unknown to the reference: "
                        "they are compared in the material's own.")
             return None
         return variation
 
-    def _material(self, evaluated_object, slot):
+    def _key(self, evaluated_object, material, many):
+        """What tells how a material looks on an object: its name, then the object's Box and its colour and name, each
+        if it matters. many: it is instanced, and colours are each instance's own."""
+        box = own = None
+        if material is not None and plain_materials.is_plain(material):
+            if plain_materials.depends_on_place(material):
+                box = textures.Box.of(evaluated_object)
+            if self._varied and plain_materials.depends_on_object(material):
+                own = (many, evaluated_object.name, tuple(evaluated_object.color))
+        return material and material.name_full, box, own
+
+    def _material(self, evaluated_object, slot, many=False):
         material = _in_slot(evaluated_object, slot)
-        reading = box = None
-        if material is not None and plain_materials.is_plain(material) and plain_materials.depends_on_place(material):
-            box = textures.Box.of(evaluated_object)
-        key = (material and material.name_full, box)
+        reading = None
+        key = self._key(evaluated_object, material, many)
         if key not in self._materials:
             if material is not None and plain_materials.is_plain(material):
-                reading = plain_materials.read(material, box or textures.Box())
+                _, box, own = key
+                coordinates = plain_materials.AVERAGE
+                if own is not None:
+                    coordinates = None if many else node_colours.of_object(node_colours.random_of(own[1]), own[2])
+                reading = plain_materials.read(material, box or textures.Box(), coordinates)
+                if reading.by_instance is not None:
+                    self._by_instance[key] = reading.by_instance
                 for sentence in reading.sentences:
                     self._warn(sentence)
                 if reading.finish is not None and not self._varied:

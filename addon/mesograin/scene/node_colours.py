@@ -21,7 +21,7 @@ class Places:
 
     def get(self, name):
         if name not in self.coordinates:
-            raise Unknown(f"{name} coordinates")
+            raise Unknown(name)
         self.used.add(name)
         return self.coordinates[name]
 
@@ -71,6 +71,50 @@ def feeding(socket):
             return link
         socket = link.from_node.inputs[0]
     return None
+
+
+def by_instance(socket):
+    """Whether an input is the same on all of an object, but not for all objects."""
+    places = Places(of_object(0.5, (1.0, 1.0, 1.0)))
+    try:
+        colour(socket, places)
+    except Unknown:
+        return False
+    return bool(places.used)
+
+
+def of_object(random, own_colour):
+    """Coordinates of one object. random: Object Info's, 0 to 1; own_colour: its own."""
+    return {"random": np.array((random,)), "object colour": np.array((own_colour[:3],))}
+
+
+def of_instances(randoms, own_colour):
+    """Coordinates of the (n,) instances of one object."""
+    return {"random": randoms, "object colour": np.broadcast_to(np.array(own_colour[:3]), (len(randoms), 3))}
+
+
+def random_of(name):
+    """What Cycles' Object Info calls an object's random number, for one of its own: Blender's hash of its name."""
+    number = 0
+    for letter in name.encode():
+        number = (number * 37 + letter) & 0xFFFFFFFF
+    return _hashed(number) / 0xFFFFFFFF
+
+
+def _hashed(number):
+    """Jenkins' final mix of two numbers, the second 0, as BLI_hash_int_2d has it."""
+    def turned(value, by):
+        return (value << by | value >> (32 - by)) & 0xFFFFFFFF
+
+    a = b = c = 0xDEADBEEF + (2 << 2) + 13
+    a = (a + number) & 0xFFFFFFFF
+    c = ((c ^ b) - turned(b, 14)) & 0xFFFFFFFF
+    a = ((a ^ c) - turned(c, 11)) & 0xFFFFFFFF
+    b = ((b ^ a) - turned(a, 25)) & 0xFFFFFFFF
+    c = ((c ^ b) - turned(b, 16)) & 0xFFFFFFFF
+    a = ((a ^ c) - turned(c, 4)) & 0xFFFFFFFF
+    b = ((b ^ a) - turned(a, 14)) & 0xFFFFFFFF
+    return ((c ^ b) - turned(b, 24)) & 0xFFFFFFFF
 
 
 _paintings = {}
@@ -171,6 +215,18 @@ def _coordinates(node, socket, places):
     if socket.name not in names or getattr(node, "object", None) is not None:
         raise Unknown(f"{node.name}: {socket.name}")
     return places.get(names[socket.name])
+
+
+def _object_info(_node, socket, places):
+    names = {"Random": "random", "Color": "object colour"}
+    return places.get(names.get(socket.name, f"object's {socket.name.lower()}"))
+
+
+def _attribute(node, socket, places):
+    if node.attribute_type not in ("INSTANCER", "OBJECT"):
+        raise Unknown(f"attribute '{node.attribute_name}' of the geometry")
+    value = places.get(f"attribute '{node.attribute_name}'")
+    return _as_colour(value, places.count) if socket.name != "Fac" else value
 
 
 def _uv_map(node, _socket, places):
@@ -432,11 +488,10 @@ def _map_range(node, _socket, places):
 
 
 _NODES = {
-    "RGB": _constant, "VALUE": _constant, "TEX_COORD": _coordinates, "UVMAP": _uv_map, "MAPPING": _mapping,
-    "TEX_IMAGE": _image, "TEX_ENVIRONMENT": _environment, "TEX_CHECKER": _checker,
-    "TEX_GRADIENT": _gradient, "VALTORGB": _ramp,
-    "MIX_RGB": _mix_rgb, "MIX": _mix, "MATH": _math, "INVERT": _invert, "GAMMA": _gamma,
-    "BRIGHTCONTRAST": _bright_contrast, "CURVE_RGB": _curves, "RGBTOBW": _to_grey, "SEPRGB": _separate,
-    "SEPARATE_COLOR": _separate, "SEPXYZ": _separate, "COMBRGB": _combine, "COMBINE_COLOR": _combine,
-    "COMBXYZ": _combine, "CLAMP": _clamp, "MAP_RANGE": _map_range,
+    "RGB": _constant, "VALUE": _constant, "TEX_COORD": _coordinates, "UVMAP": _uv_map, "OBJECT_INFO": _object_info,
+    "ATTRIBUTE": _attribute, "MAPPING": _mapping, "TEX_IMAGE": _image, "TEX_ENVIRONMENT": _environment,
+    "TEX_CHECKER": _checker, "TEX_GRADIENT": _gradient, "VALTORGB": _ramp, "MIX_RGB": _mix_rgb, "MIX": _mix,
+    "MATH": _math, "INVERT": _invert, "GAMMA": _gamma, "BRIGHTCONTRAST": _bright_contrast, "CURVE_RGB": _curves,
+    "RGBTOBW": _to_grey, "SEPRGB": _separate, "SEPARATE_COLOR": _separate, "SEPXYZ": _separate, "COMBRGB": _combine,
+    "COMBINE_COLOR": _combine, "COMBXYZ": _combine, "CLAMP": _clamp, "MAP_RANGE": _map_range,
 }

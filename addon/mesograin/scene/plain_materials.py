@@ -33,8 +33,9 @@ class Reading:
     """What is found of one material. values: {parameter: value}; finish: FinishValues or None; sentences: about what is
     left out."""
 
-    def __init__(self, material, box):
-        self._material, self._box = material, box
+    def __init__(self, material, box, own):
+        self._material, self._box, self._own = material, box, own
+        self.by_instance = None  # the input that says the reflectance of each of many instances; here it is 1
         self._numbers, self._maps, self._left_out = {}, {}, []
         self.values = {}
 
@@ -96,6 +97,14 @@ class Reading:
         source = node_colours.feeding(socket)
         if source is None or source.from_node.type == "RGB":
             return source.from_socket.default_value if source else socket.default_value
+        if node_colours.by_instance(socket):
+            if self._own is not None:
+                places = node_colours.Places(self._own)
+                found = node_colours.number(socket, places) if numbers else node_colours.colour(socket, places)[0]
+                return found.tolist()
+            if of == "reflectance":
+                self.by_instance = socket
+                return (1.0, 1.0, 1.0)
         try:
             found = textures.read(socket, self._box, numbers)
         except node_colours.Unknown as unknown:
@@ -124,9 +133,14 @@ def is_plain(material):
     return not any(material.mesograin.is_property_set(name) for name in type(material.mesograin).__annotations__)
 
 
-def read(material, box=textures.Box()):
-    """Reading of a material for which `is_plain` holds. box: textures.Box of what wears it."""
-    found = Reading(material, box)
+AVERAGE = node_colours.of_object(0.5, (1.0, 1.0, 1.0))
+"""What an object has of its own where none is known."""
+
+
+def read(material, box=textures.Box(), own=AVERAGE):
+    """Reading of a material for which `is_plain` holds. box: textures.Box of what wears it; own: what that has of its
+    own, as node_colours.of_object has it, or None if that are many instances."""
+    found = Reading(material, box, own)
     if not compat.uses_nodes(material):
         found.be_lambert(material.diffuse_color)
         return found
@@ -144,6 +158,12 @@ def read(material, box=textures.Box()):
 def depends_on_place(material):
     """Whether what wears a plain material matters: its pictures may lie by place."""
     return compat.uses_nodes(material) and any(node.type.startswith("TEX_") for node in material.node_tree.nodes)
+
+
+def depends_on_object(material):
+    """Whether objects that wear a plain material may differ."""
+    return compat.uses_nodes(material) and any(node.type in ("OBJECT_INFO", "ATTRIBUTE")
+                                               for node in material.node_tree.nodes)
 
 
 def _reflectance(colour):

@@ -25,6 +25,9 @@ class MESOGRAIN_PT_colours(MesograinPanel, bpy.types.Panel):
         layout.active = settings.vary
         takes = models.MODELS[context.material.mesograin.model].parameters
         colour = "Absorption" if "sigma_a" in takes else "Reflectance"
+        layout.prop(settings, "source")
+        if settings.source == "NODES":
+            return
         column = layout.column(align=True)
         column.prop(settings, "colour_from", text=f"{colour} From")
         column.prop(settings, "colour_to", text="To")
