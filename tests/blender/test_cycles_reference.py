@@ -1,6 +1,8 @@
 # A reference leaves the user's scene as it was, is found again if and only if nothing that it shows has changed, and
 # shows what theory says.
+import json
 import math
+import pathlib
 
 import bpy
 import numpy as np
@@ -437,3 +439,28 @@ def test_subsurface_is_the_walk_we_claim():
         assert found == pytest.approx(expected, rel=tolerance)
         if abs(expected - not_expected) > 2.0 * tolerance * expected:
             assert abs(found - expected) < abs(found - not_expected)
+
+
+PHOTONS = pathlib.Path(__file__).resolve().parents[1] / "data/reference"
+
+
+@pytest.mark.parametrize("file", ["mc_H_e1.0_s1_K.exr", "mc_H_e1.0_s20_A.exr"])
+def test_volumes_are_what_photons_do(native, file):
+    """An index-matched sphere of 2.4 mean free paths lit from behind, and one of 48 lit from the front."""
+    photons = {each["file"]: each for each in json.loads((PHOTONS / "manifest.json").read_text())["images"]}[file]
+    medium, [light] = photons["material"], photons["lights"]
+    make_sphere([(light["direction_to_light"], light["irradiance_linear_rgb"][0])],
+                **{name: medium[name] for name in ("sigma_s", "sigma_a", "scale", "eta")})
+    bpy.context.scene.camera.rotation_euler = (0.0, 0.0, 0.0)
+    size, block = 32, 8
+    image = reference.render(depsgraph(), "volume_index_matched", (size, size), samples=64).mean[..., 1]
+    truth = native.read_exr(str(PHOTONS / file))[0][..., 1]
+    truth = truth.reshape(size, truth.shape[0] // size, size, -1).mean(axis=(1, 3))
+    covered = sphere_points(size)[2].all(axis=(2, 3))
+
+    def in_blocks(picture):
+        return np.where(covered, picture, 0.0).reshape(size // block, block, size // block, block).sum(axis=(1, 3))
+
+    found, expected = in_blocks(image), in_blocks(truth)
+    assert found.sum() == pytest.approx(expected.sum(), rel=0.01)
+    assert np.abs(found - expected).sum() < 0.03 * expected.sum()
