@@ -8,6 +8,7 @@ from mathutils import Euler, Matrix
 from test_export import add_camera, add_cube, add_mesh_object, add_object, add_sun, read_scene
 
 import mesograin
+from mesograin import compat
 from mesograin.grains import objects, pile
 from mesograin.scene import export, heaps, meshes, scattered
 
@@ -197,6 +198,8 @@ class Updates(list):
 
 
 class Update:
+    is_updated_geometry = is_updated_transform = True
+
     def __init__(self, thing):
         self.id = thing
 
@@ -220,6 +223,36 @@ def test_a_slider_reads_no_placing_and_sends_no_mesh(native):
     view.set_scene(after.to_native())
     view.render(1)
     assert native.sent()["meshes"] == sent["meshes"] and native.sent()["materials"] == sent["materials"] + 1
+
+
+def test_what_blender_tags_for_a_slider_is_no_more_than_a_slider():
+    """From Blender 5 on also what wears the material, and the nodes that each has."""
+    _, grain = scatter(grid())
+    materials = [bpy.data.materials.new(name) for name in ("Sand", "Other")]
+    for each in materials:
+        compat.use_nodes(each)
+        each.mesograin.model = "lambert"
+    grain.data.materials.append(materials[0])
+    before, told = read_scene(), []
+
+    def look(_, depsgraph):
+        told.append(export.with_new_materials(before, depsgraph))
+
+    def after(change):
+        told.clear()
+        change()
+        bpy.context.view_layer.update()
+        return told
+
+    bpy.app.handlers.depsgraph_update_post.append(look)
+    try:
+        [slid] = after(lambda: setattr(materials[0].mesograin, "reflectance", (0.1, 0.2, 0.3)))
+        assert slid == read_scene() != before
+        assert after(lambda: grain.data.materials.__setitem__(0, materials[1]))[-1] is None
+        assert after(lambda: setattr(grain.data.vertices[0].co, "x", 3.0) or grain.data.update())[-1] is None
+        assert after(lambda: setattr(grain.parent, "location", (1.0, 0.0, 0.0)))[-1] is None
+    finally:
+        bpy.app.handlers.depsgraph_update_post.remove(look)
 
 
 def test_whatever_may_be_more_than_a_slider_is_read_anew():

@@ -230,8 +230,8 @@ def with_new_materials(values, depsgraph):
     scene = depsgraph.scene
     for update in depsgraph.updates:
         material = update.id
-        if isinstance(material, bpy.types.Scene):
-            continue  # which Blender tags for mouse and keys; what counts of it is looked at below
+        if isinstance(material, bpy.types.Scene) or _goes_with_a_material(update):
+            continue  # Blender tags scenes for mouse and keys, too; what counts of them is looked at below
         if not isinstance(material, bpy.types.Material) or plain_materials.is_plain(material):
             return None
         told = f"Material '{material.name}'"
@@ -244,6 +244,14 @@ def with_new_materials(values, depsgraph):
     if not changed or not as_before or any(heap.factors and heap.material.name in changed for heap in values.heaps):
         return None
     return values.with_materials(lambda material: changed.get(material.name, material))
+
+
+def _goes_with_a_material(update):
+    """Whether a depsgraph's update says no more than that a material has changed: from Blender 5 on its nodes and what
+    wears it are tagged with it."""
+    if isinstance(update.id, (bpy.types.Object, bpy.types.Mesh, bpy.types.Curve, bpy.types.MetaBall)):
+        return not (update.is_updated_geometry or update.is_updated_transform)
+    return isinstance(update.id, bpy.types.ShaderNodeTree)
 
 
 def _parameters(grain, millimetres_per_unit):
