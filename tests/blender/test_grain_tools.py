@@ -119,3 +119,14 @@ def test_mistakes_are_said_in_a_sentence(native):
     bpy.context.object.select_set(True)
     with pytest.raises(RuntimeError, match="no active mesh"):
         bpy.ops.mesograin.add_pile(count=10, place="ACTIVE")
+
+
+def test_a_pile_settles_beside_blender_and_can_be_ended(native):
+    work = pile.Settling(300, 0.1, seed=7)
+    placings = work.result()
+    assert work.done and work.share > 0.9
+    assert pile.settle(300, 0.1, seed=7) is placings
+    ended = pile.Settling(20000, 0.1, seed=8)
+    ended.cancel()
+    with pytest.raises(native.Error, match="cancelled"):
+        ended.result()

@@ -20,6 +20,7 @@ LAUNCHES = {  # what is checked, in which environment, on a screen of which size
     "upheaval": ("checks_upheaval", {}, TALL, SIMULATED),
     "cancel": ("checks_cancel", {}, SMALL, []),
     "heap": ("checks_heap", {}, SMALL, SIMULATED),
+    "pile": ("checks_pile", {}, SMALL, SIMULATED),
     "compare": ("checks_compare", {}, TALL, SIMULATED),
     "bake": ("checks_bake", {}, TALLER, SIMULATED),
     "no_native_module": ("checks_unavailable", {"MESOGRAIN_NATIVE_DIR": EMPTY_FOLDER}, SMALL, SIMULATED),

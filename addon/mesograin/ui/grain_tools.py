@@ -6,12 +6,14 @@ from bpy_extras.object_utils import AddObjectHelper, object_data_add
 from mathutils import Vector
 
 from .. import native_module
-from ..grains import kinds, objects
+from ..grains import kinds, objects, pile
 
 KIND_ITEMS = tuple((kind, kind.replace("_", " ").title(), make.__doc__.split(".")[0].replace("\n   ", ""), number)
                    for number, (kind, make) in enumerate(kinds.KINDS.items()))
 # How finely heights of a surface are sampled, along its longer side.
 HEIGHT_SAMPLES = 96
+# Fewer grains than this are there within a blink.
+AT_ONCE = 500
 
 
 class _Habit:
@@ -54,7 +56,7 @@ class MESOGRAIN_OT_add_pile(bpy.types.Operator, _Habit):
     bl_options = {"REGISTER", "UNDO"}
 
     count: IntProperty(name="Grains", default=1000, min=1, soft_max=20000, max=1000000,
-                       description="How many grains fall; ten thousand take some seconds")
+                       description="How many grains fall; ten thousand take some seconds, beside Blender")
     shapes: IntProperty(name="Shapes", default=3, min=1, max=32,
                         description="How many grains are modelled; all others are instances")
     size: FloatProperty(name="Size", default=0.05, min=1e-6, subtype="DISTANCE",
@@ -82,6 +84,50 @@ class MESOGRAIN_OT_add_pile(bpy.types.Operator, _Habit):
             layout.prop(self, "settle_walls")
         for name in ("friction", "seed", "segments", "angularity", "roundness"):
             layout.prop(self, name)
+
+    def invoke(self, context, _event):
+        """A large pile settles beside Blender."""
+        if self.count < AT_ONCE:
+            return self.execute(context)
+        _leave_edit_mode(context)
+        try:
+            _, settling = self._settling(context)
+            self._work = pile.Settling(self.count, self.size, self.variation, self.shapes, self.seed, self.friction,
+                                       settling.get("walls"), settling.get("heights"), settling.get("corners"))
+        except _sentences() as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        manager = context.window_manager
+        self._timer = manager.event_timer_add(0.1, window=context.window)
+        manager.progress_begin(0, 100)
+        manager.modal_handler_add(self)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context, event):
+        if event.type == "ESC":
+            self._work.cancel()
+            self._leave(context)
+            self.report({"INFO"}, "The pile was cancelled.")
+            return {"CANCELLED"}
+        if event.type != "TIMER":
+            return {"PASS_THROUGH"}
+        if not self._work.done:
+            percent = 100.0 * self._work.share
+            context.window_manager.progress_update(percent)
+            context.workspace.status_text_set(f"{self.count} grains are falling, {percent:.0f} %. Esc cancels.")
+            return {"PASS_THROUGH"}
+        self._leave(context)
+        try:
+            self._work.result()
+        except _sentences() as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        return self.execute(context)
+
+    def _leave(self, context):
+        context.window_manager.event_timer_remove(self._timer)
+        context.window_manager.progress_end()
+        context.workspace.status_text_set(None)
 
     def execute(self, context):
         _leave_edit_mode(context)
@@ -167,6 +213,7 @@ class MESOGRAIN_MT_add(bpy.types.Menu):
         for kind, name, _description, _number in KIND_ITEMS:
             layout.operator(MESOGRAIN_OT_add_grain.bl_idname, text=name).kind = kind
         layout.separator()
+        layout.operator_context = "INVOKE_REGION_WIN"
         layout.operator(MESOGRAIN_OT_add_pile.bl_idname, text="Pile", icon="PARTICLES")
 
 

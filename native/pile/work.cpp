@@ -1,0 +1,32 @@
+// One thread a pile.
+#include "pile/work.h"
+
+#include <utility>
+
+namespace mesograin::pile {
+
+Work::Work(std::vector<double> radii, Ground ground, Walls walls, double friction, std::uint64_t seed)
+    : thread_([this, radii = std::move(radii), ground = std::move(ground), walls, friction, seed] {
+        try {
+          pile_ = settle(radii, ground, walls, friction, seed, [this](double share) {
+            share_ = share;
+            return !cancelled_;
+          });
+        } catch (...) {
+          error_ = std::current_exception();
+        }
+        done_ = true;
+      }) {}
+
+Work::~Work() {
+  cancel();
+  if (thread_.joinable()) thread_.join();
+}
+
+const Pile& Work::result() {
+  if (thread_.joinable()) thread_.join();
+  if (error_) std::rethrow_exception(error_);
+  return pile_;
+}
+
+}  // namespace mesograin::pile
