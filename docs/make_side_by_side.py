@@ -1,4 +1,4 @@
-# Makes docs/images/scene_*.jpg and the table of docs/scenes.md: scenes as artists have them, by both engines:
+# Makes docs/images/scene_*.jpg and their lines of docs/scenes.md: scenes as artists have them, by both engines:
 #   blender -b --factory-startup --python-exit-code 1 --python docs/make_side_by_side.py [-- NAME ...]
 import math
 import pathlib
@@ -15,7 +15,6 @@ sys.path.insert(0, str(DOCS.parent / "addon"))
 SIZE = (400, 300)
 BLOCK = 10
 SAMPLES = {"MESOGRAIN": 64, "CYCLES": 128}
-BEGIN, END = "<!-- made by make_side_by_side.py -->", "<!-- end -->"
 
 
 def start(empty=True):
@@ -136,10 +135,7 @@ def environment():
 
 def scatter():
     """Two thousand pebbles on a ground with a texture, under a sun and a sky."""
-    from mesograin.grains import shape as grain_shape
-
     start()
-    del grain_shape
     ground, node = principled("Ground", (0.4, 0.3, 0.2), Roughness=0.9)
     size = 64
     random = np.random.default_rng(1)
@@ -161,7 +157,7 @@ def scatter():
     settings = plane.modifiers.new("Scatter", "PARTICLE_SYSTEM").particle_system.settings
     settings.type, settings.count, settings.use_advanced_hair = "HAIR", 2000, True
     settings.render_type, settings.instance_object = "OBJECT", pebble
-    settings.particle_size, settings.size_random = 0.14, 0.6
+    settings.particle_size, settings.size_random = 0.02, 0.6
     settings.use_rotations, settings.rotation_factor_random, settings.phase_factor_random = True, 0.3, 2.0
     sun = bpy.data.lights.new("Sun", "SUN")
     sun.energy, sun.angle = 3.0, 0.02
@@ -235,10 +231,18 @@ def take(make):
         full_looks, full = render("CYCLES", folder)
         _, direct = render("CYCLES", folder, direct=True)
     save_beside(name, (looks, full_looks))
-    said = " ".join(warnings) or "nothing"
+    for warning in warnings:
+        print(f"{name}: {warning}", flush=True)
     return (f"| {make.__doc__.rstrip('.')} | {100.0 * difference(ours, direct):.1f} % | "
-            f"{100.0 * difference(ours, full):.1f} % | {said} |\n\n![{make.__doc__} Mesograin left, Cycles right]"
-            f"(images/scene_{name}.jpg)\n")
+            f"{100.0 * difference(ours, full):.1f} % | ![](images/scene_{name}.jpg) |\n")
+
+
+def write_row(name, row):
+    """Puts a scene's line in place of the one that docs/scenes.md has."""
+    page = DOCS / "scenes.md"
+    lines = page.read_text(encoding="utf-8").splitlines(keepends=True)
+    kept = [row if f"images/scene_{name}.jpg" in line else line for line in lines]
+    page.write_text("".join(kept), encoding="utf-8")
 
 
 def main():
@@ -248,7 +252,7 @@ def main():
     asked = sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else []
     for make in SCENES:
         if not asked or make.__name__ in asked:
-            print("MADE", make.__name__, take(make), flush=True)
+            write_row(make.__name__, take(make))
 
 
 main()

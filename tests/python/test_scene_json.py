@@ -94,3 +94,46 @@ def test_a_scene_is_not_written_where_it_cannot_be(tmp_path):
     scene, camera, size = native.load_scene(SPHERE)
     with pytest.raises(native.Error, match=r"\.$"):
         native.write_scene(tmp_path / "none" / "heap.json", scene, camera, size)
+
+
+def test_a_finish_is_written_and_read(tmp_path):
+    """Byte pictures as sRGB, by UV and by place, wrapped in every way; the numbers beside them."""
+    random = np.random.default_rng(5)
+    mesh = native.Mesh(np.float32([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]]), None,
+                       np.uint32([[0, 1, 2], [0, 2, 3]]), np.float32([[0, 0], [2, 0], [2, 2], [0, 2]]))
+    coloured = native.Picture(random.integers(0, 256, (6, 9, 4), dtype=np.uint8), srgb=True)
+    grey = native.Picture(np.repeat(np.float32(random.random((4, 4, 1))), 4, axis=2))
+    finish = native.Finish(
+        reflectance=native.TextureMap(coloured, wrap="mirror"), metallic=native.TextureMap(grey, wrap="extend"),
+        roughness=native.TextureMap(grey, by_position=True, wrap="clip",
+                                    to_picture=[[0.4, 0.1, 0, 0.2], [0, 0.7, 0, 0]]),
+        emission=native.TextureMap(coloured, smooth=False), normal=native.TextureMap(coloured), normal_strength=0.5,
+        coat=0.05, coat_roughness=0.4, retro_reflective=True, radiance=(0.5, 0.4, 0.3))
+    material = native.Material(model="lambert", reflectance=(0.5, 0.4, 0.3), finish=finish)
+    scene = native.Scene(instances=[native.Instance(mesh, material)],
+                         lights=[native.DirectionalLight((0.3, 0.2, 1), (3, 2, 1))])
+    camera = native.Camera.look_at((0, -1, 4), (0, 0, 0), (0, 1, 0), 30.0)
+    native.write_scene(tmp_path / "tile.json", scene, camera, (32, 32))
+    read, _, size = native.load_scene(tmp_path / "tile.json")
+
+    pictures = []
+    for each in (scene, read):
+        view = native.View(*size)
+        view.set_scene(each)
+        view.set_camera(camera)
+        view.render(4)
+        pictures.append(view.read())
+    assert pictures[0][..., :3].std() > 0.05
+    # A device may interpolate bytes in bytes, which are numbers once they were read.
+    assert np.abs(pictures[0] - pictures[1]).sum() < 0.01 * pictures[0].sum()
+
+
+@pytest.mark.parametrize("finish, part", [
+    ({"coat": 2}, "coat must lie between 0 and 1"), ({"coats": 1}, "coats is an unknown key"),
+    ({"reflectance_map": {"image": "none.exr"}}, "none.exr"),
+    ({"normal_map": {"image": "none.exr", "by": "luck"}}, "none.exr")])
+def test_a_finish_that_makes_no_sense_is_said(finish, part):
+    scene = json.loads(SPHERE.read_text())
+    scene["material"] = {"kind": "diffuse", "reflectance": 0.5, "finish": finish}
+    with pytest.raises(native.Error, match=part):
+        native.load_scene(scene)

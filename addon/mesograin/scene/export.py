@@ -218,7 +218,7 @@ def material_values(material, millimetres_per_unit, reading=None):
 def read_scene(depsgraph, cache, varied=True):
     """SceneValues of an evaluated dependency graph; `cache` spares reading meshes twice. varied: whether instances have
     colours of their own, which a comparison's other side does not know."""
-    reader = _Reader(depsgraph.scene.mesograin.millimetres_per_unit, cache, varied)
+    reader = _Reader(depsgraph, cache, varied)
     reader.read_all(depsgraph)
     return reader.scene_values(depsgraph.scene)
 
@@ -240,10 +240,14 @@ def with_new_materials(values, depsgraph):
         changed[material.name_full] = material_values(material, scene.mesograin.millimetres_per_unit)
     as_before = (values.millimetres_per_unit == scene.mesograin.millimetres_per_unit
                  and values.exchange == scene.mesograin.exchange
-                 and values.world == surroundings.read(scene)[0])
+                 and values.world == surroundings.read(scene, _world_side(depsgraph))[0])
     if not changed or not as_before or any(heap.factors and heap.material.name in changed for heap in values.heaps):
         return None
     return values.with_materials(lambda material: changed.get(material.name, material))
+
+
+def _world_side(depsgraph):
+    return surroundings.COARSE if depsgraph.mode == "VIEWPORT" else surroundings.SIDE
 
 
 def _goes_with_a_material(update):
@@ -280,8 +284,11 @@ def _in_slot(evaluated_object, slot):
 class _Reader:
     """Collects what one pass over the instances finds; complaints come once, however often an object is instanced."""
 
-    def __init__(self, millimetres_per_unit, cache, varied):
-        self._millimetres_per_unit = millimetres_per_unit
+    def __init__(self, depsgraph, cache, varied):
+        self._millimetres_per_unit = depsgraph.scene.mesograin.millimetres_per_unit
+        # An artist who drags waits for what is painted.
+        self._side = textures.COARSE if depsgraph.mode == "VIEWPORT" else textures.SIDE
+        self._world_side = _world_side(depsgraph)
         self._cache = cache
         self._varied = varied
         self._materials = {}
@@ -392,7 +399,7 @@ class _Reader:
         gathered = self._gather()
         if not self._instances and not gathered:
             self._warn("There is nothing to draw: add a mesh that is visible in renders.")
-        around, sentences = surroundings.read(scene)
+        around, sentences = surroundings.read(scene, self._world_side)
         for sentence in sentences:
             self._warn(sentence)
         if not self._lights and not around.shines:
@@ -477,7 +484,7 @@ class _Reader:
                 coordinates = plain_materials.AVERAGE
                 if own is not None:
                     coordinates = None if many else node_colours.of_object(node_colours.random_of(own[1]), own[2])
-                reading = plain_materials.read(material, box or textures.Box(), coordinates)
+                reading = plain_materials.read(material, box or textures.Box(), coordinates, self._side)
                 if reading.by_instance is not None:
                     self._by_instance[key] = reading.by_instance
                 for sentence in reading.sentences:

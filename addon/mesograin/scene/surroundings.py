@@ -10,8 +10,8 @@ from mathutils import Euler, Matrix
 from .. import compat, native_module
 from . import node_colours
 
-SIDE = 512
-"""Texels from bottom to top of what is painted of a world's nodes."""
+SIDE, COARSE = 512, 256
+"""Texels from bottom to top of what is painted of a world's nodes; where a viewport waits for it."""
 
 STRAIGHT = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
 
@@ -38,17 +38,17 @@ class WorldValues:
         return native.World(radiance=self.radiance, image=self.image, rotation=rotation, seen=self.seen)
 
 
-def read(scene):
-    """(WorldValues, sentences about what is left out) of a scene's world."""
+def read(scene, side=SIDE):
+    """(WorldValues, sentences about what is left out) of a scene's world. side: of what is painted, in texels."""
     world = scene.world
     if world is None:
         return WorldValues(), ()
-    values, sentences = _read(world)
+    values, sentences = _read(world, side)
     # Where nothing shines the picture is black, whether the world is drawn or not.
     return dataclasses.replace(values, seen=values.shines and not scene.render.film_transparent), sentences
 
 
-def _read(world):
+def _read(world, side):
     if not compat.uses_nodes(world):
         return WorldValues(tuple(world.color)), ()
     output = world.node_tree.get_output_node("CYCLES")
@@ -58,7 +58,7 @@ def _read(world):
     background = links[0].from_node
     strength = _constant(background.inputs["Strength"]) if background.type == "BACKGROUND" else None
     if strength is None:
-        return _painted(world, output.inputs["Surface"])
+        return _painted(world, output.inputs["Surface"], side)
     colour = _constant(background.inputs["Color"])
     if colour is not None:
         return WorldValues(tuple(strength * channel for channel in colour[:3])), ()
@@ -67,13 +67,13 @@ def _read(world):
         values, sentences = _read_image(world, texture, strength)
         if not sentences or values.image is None:
             return values, sentences
-    return _painted(world, output.inputs["Surface"])
+    return _painted(world, output.inputs["Surface"], side)
 
 
-def _painted(world, socket):
+def _painted(world, socket, side):
     """What nodes make of every direction."""
     try:
-        pixels = node_colours.remembered(node_colours.fingerprint(socket), lambda: _paint(socket))
+        pixels = node_colours.remembered((node_colours.fingerprint(socket), side), lambda: _paint(socket, side))
     except node_colours.Unknown as unknown:
         return WorldValues(tuple(world.color)), (
             f"World '{world.name}' is drawn in its viewport colour, for Mesograin knows no {unknown}: use colours, "
@@ -83,15 +83,15 @@ def _painted(world, socket):
     return WorldValues((1.0,) * 3, surroundings, "", _digests[surroundings]), ()
 
 
-def _paint(socket):
+def _paint(socket, side):
     """(h, w, 3) float32."""
-    turn = (0.5 - (np.arange(2 * SIDE) + 0.5) / (2 * SIDE)) * 2.0 * np.pi
-    rise = (0.5 - (np.arange(SIDE) + 0.5) / SIDE) * np.pi
+    turn = (0.5 - (np.arange(2 * side) + 0.5) / (2 * side)) * 2.0 * np.pi
+    rise = (0.5 - (np.arange(side) + 0.5) / side) * np.pi
     turn, rise = (angles.ravel() for angles in np.meshgrid(turn, rise))
     directions = np.stack((np.cos(rise) * np.cos(turn), np.cos(rise) * np.sin(turn), np.sin(rise)), axis=1)
     places = node_colours.Places({"generated": directions, "object": directions})
     radiance = np.nan_to_num(node_colours.radiance(socket, places), nan=0.0, posinf=3e38, neginf=0.0)
-    return np.ascontiguousarray(radiance.clip(min=0.0).reshape(SIDE, 2 * SIDE, 3), dtype=np.float32)
+    return np.ascontiguousarray(radiance.clip(min=0.0).reshape(side, 2 * side, 3), dtype=np.float32)
 
 
 def image_of(values, name):

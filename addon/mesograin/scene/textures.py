@@ -5,8 +5,8 @@ import numpy as np
 
 from . import images, node_colours
 
-SIDE = 1024
-"""Texels on a side of what is painted."""
+SIDE, COARSE = 1024, 512
+"""Texels on a side of what is painted; where a viewport waits for it."""
 
 _AFFINE = {"MAPPING", "TEX_COORD", "UVMAP", "REROUTE"}
 _WRAPS = {"REPEAT": "repeat", "EXTEND": "extend", "CLIP": "clip", "MIRROR": "mirror"}
@@ -58,15 +58,16 @@ class Box:
         return (places - 0.5 * (lower + upper)) / size + 0.5
 
 
-def read(socket, box, numbers):
-    """MapValues of a linked colour input, or of one of numbers. Raises node_colours.Unknown."""
+def read(socket, box, numbers, side=SIDE):
+    """MapValues of a linked colour input, or of one of numbers. side: of what is painted. Raises
+    node_colours.Unknown."""
     link = node_colours.feeding(socket)
     if link.from_node.type == "TEX_IMAGE" and link.from_socket.name == "Color" and not link.from_node.mute:
         found = _image(link.from_node, box)
         # A number is a colour's luminance, which only grey pictures hold in each channel.
         if found is not None and not (numbers and not images.is_grey(found.picture)):
             return found
-    return _painted(socket, box, numbers)
+    return _painted(socket, box, numbers, side)
 
 
 def _image(node, box):
@@ -97,25 +98,33 @@ def _is_affine(socket):
         _is_affine(each) for each in link.from_node.inputs if each.name == "Vector")
 
 
-def _painted(socket, box, numbers):
+def _painted(socket, box, numbers, side):
     """MapValues of what nodes make of every UV from 0 to 1, or of every place of a flat mesh."""
-    row = (np.arange(SIDE) + 0.5) / SIDE
-    u, v = (axis.ravel() for axis in np.meshgrid(row, row[::-1]))
-    uv = np.stack((u, v, np.zeros_like(u)), axis=1)
     used = _sources(socket)
+    told = (node_colours.fingerprint(socket), numbers, side)
     if used == {"UV"}:
-        return MapValues(_paint(socket, {"UV": uv}, numbers))
+        return MapValues(node_colours.remembered(told, lambda: _painting(socket, {"UV": _grid(side)}, numbers)))
     if "UV" in used:
         raise node_colours.Unknown("coordinates of several kinds")
     if not box.flat:
         raise node_colours.Unknown("a texture in space, which is drawn on what is flat only")
     lower, upper = np.array(box.lower), np.array(box.upper)
     size = np.maximum(upper - lower, 1e-30)
-    places = lower + uv * size
-    places[:, 2] = lower[2]
-    picture = _paint(socket, {"object": places, "generated": box.generated(places)}, numbers)
+
+    def paint():
+        places = lower + _grid(side) * size
+        return _painting(socket, {"object": places, "generated": box.generated(places)}, numbers)
+
     to_picture = (1.0 / size[0], 0.0, 0.0, -lower[0] / size[0], 0.0, 1.0 / size[1], 0.0, -lower[1] / size[1])
-    return MapValues(picture, True, tuple(float(number) for number in to_picture), "extend")
+    return MapValues(node_colours.remembered((*told, box), paint), True,
+                     tuple(float(number) for number in to_picture), "extend")
+
+
+def _grid(side):
+    """(n, 3): middles of the texels of a picture over the unit square, row by row, the top one first."""
+    row = (np.arange(side) + 0.5) / side
+    u, v = (axis.ravel() for axis in np.meshgrid(row, row[::-1]))
+    return np.stack((u, v, np.zeros_like(u)), axis=1)
 
 
 def _sources(socket):
@@ -126,17 +135,12 @@ def _sources(socket):
     return places.used or {"UV"}
 
 
-def _paint(socket, coordinates, numbers):
-    key = (node_colours.fingerprint(socket), numbers,
-           tuple((name, places[0].tobytes(), places[-1].tobytes()) for name, places in sorted(coordinates.items())))
-    return node_colours.remembered(key, lambda: _painting(socket, coordinates, numbers))
-
-
 def _painting(socket, coordinates, numbers):
     places = node_colours.Places(coordinates)
-    texels = np.ones((SIDE * SIDE, 4), dtype=np.float32)
+    side = int(np.sqrt(places.count))
+    texels = np.ones((side * side, 4), dtype=np.float32)
     if numbers:
         texels[:, :3] = node_colours.number(socket, places)[:, None]
     else:
         texels[:, :3] = node_colours.colour(socket, places)
-    return images.made(np.nan_to_num(texels).reshape(SIDE, SIDE, 4))
+    return images.made(np.nan_to_num(texels).reshape(side, side, 4))
