@@ -28,6 +28,7 @@ PARTS = {
 BENCHMARKS = {
     "frame": "what each model costs relative to lambert: shade pass alone, 400x400, sphere, two lights",
     "heap": "what heaps of a thousand to a million grains cost relative to one lambert sphere, and how much memory",
+    "exchange": "what light between grains costs while a scene changes: milliseconds to the first and the final answer",
     "accuracy": "how far each model's sphere is from photon Monte Carlo; about twelve minutes",
     "shapes": "how far pictures of grains of any shape are from photon Monte Carlo, such as tests/data/shapes holds",
     "false_alarms": "how often the significance test calls renders different that differ in their seed alone",

@@ -8,13 +8,13 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "addon"))
 
 from mesograin.schema.models import MODELS  # noqa: E402
-from mesograin.schema.parameters import PARAMETERS  # noqa: E402
+from mesograin.schema.parameters import PARAMETERS, SCENE  # noqa: E402
 
 HEAD = """# Parameters and models
 
 What a grain's material says, by the names that GLSL, C++, Python, JSON, TOML, the command line and the panel share.
 `length` is the millimetre in Blender, on the command line and in sweeps, and the scene's unit elsewhere. These tables
-are made from `addon/mesograin/schema/grain.json` by `docs/make_parameters.py`.
+are made from `grain.json` and `scene.json` in `addon/mesograin/schema` by `docs/make_parameters.py`.
 """
 
 
@@ -48,6 +48,11 @@ def page():
             lines += [f"## `{name}`", ""]
             lines += table(("value", "meaning"),
                            [(f"`{choice.name}`", text(choice.sentence)) for choice in parameter.choices])
+    lines += ["## Of a scene", "", "A key of a scene's JSON and of `native.Scene`, `--exchange` of the commands, a switch in the render panel.", ""]
+    for name, parameter in SCENE.items():
+        lines += [f"`{name}`, by default `{shown(parameter)}`. {text(parameter.sentence, parameter.note)}", ""]
+        lines += table(("value", "meaning"),
+                       [(f"`{choice.name}`", text(choice.sentence)) for choice in parameter.choices])
     lines += ["## Models", ""]
     lines += table(("model", "meaning", "parameters that it reads"),
                    [(f"`{model.name}`", text(model.sentence), _parameters(model)) for model in MODELS.values()])

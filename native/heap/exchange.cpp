@@ -1,9 +1,21 @@
-// One solution from nothing but what is sent.
+// How finely, and one solution from nothing but what is sent.
 #include "heap/exchange.h"
+
+#include <algorithm>
 
 #include "heap/solver.h"
 
 namespace mesograin::heap {
+
+Quality quality_for(std::size_t grains) {
+  constexpr std::size_t most_links = 16'000'000;
+  const auto each = static_cast<int>(most_links / std::max(grains, std::size_t{1}));
+  Quality quality;
+  quality.rays = std::clamp(each, coarse.rays, quality.rays);
+  quality.light_rays = std::clamp(each, coarse.light_rays, quality.light_rays);
+  quality.seen_rays = std::clamp(each / 2, coarse.seen_rays, quality.seen_rays);
+  return quality;
+}
 
 HeapLight solve_exchange(const Heap& heap, const Quality& quality, const Field& before,
                          const transport::Effort& effort) {

@@ -21,9 +21,11 @@ struct Quality {
   bool quick = false;                  ///< links that were found at other materials will do
 };
 
+/// As fine as the memory for a heap of so many grains allows: half a gigabyte for its links.
+Quality quality_for(std::size_t grains);
+
 /// For a first picture: within a tenth of what the default finds.
 inline constexpr Quality coarse{
-
     .rays = 16, .wall_rays = 32, .light_rays = 16, .seen_rays = 8, .tolerance = 5e-3F, .walks = 512, .quick = true};
 
 /// How often each part of a solution was found anew.

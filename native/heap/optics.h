@@ -1,7 +1,9 @@
 // What a spherical grain is made of, as light meets it: lengths are in its radius.
 #pragma once
 
+#include <array>
 #include <glm/vec3.hpp>
+#include <string_view>
 
 #include "scene/material.h"
 
@@ -9,6 +11,8 @@ namespace mesograin::heap {
 
 /// What happens at the surface. The last two are the boundaries of scene::Boundary with a cosine lobe.
 enum class Surface { lambert, mirror, index_matched, dielectric, lambert_lambert, lambert_refracted };
+inline constexpr std::array<std::string_view, 6> surface_names{"lambert",    "mirror",          "index_matched",
+                                                               "dielectric", "lambert_lambert", "lambert_refracted"};
 
 struct Optics {
   Surface surface = Surface::lambert;

@@ -97,7 +97,7 @@ void Solvers::work(const std::weak_ptr<Solving>& of, const std::stop_token& stop
   };
   try {
     tell(coarse, transport::part_of(effort, 0.0, quick_share), false);
-    tell({}, transport::part_of(effort, quick_share, 1.0), true);
+    tell(quality_for(heap.grains.grains.size()), transport::part_of(effort, quick_share, 1.0), true);
   } catch (const transport::Stopped&) {
     return;
   } catch (const std::exception& failure) {

@@ -159,8 +159,8 @@ Camera read_camera(const Node& node, double aspect) {
 
 SceneFile read(const Json& json, const std::filesystem::path& folder, const SceneChoices& choices) {
   const Node root(json, "");
-  root.require_object(std::array<std::string_view, 9>{"geometry", "camera", "resolution", "lights", "world", "material",
-                                                      "instances", "objects", "materials"},
+  root.require_object(std::array<std::string_view, 10>{"geometry", "camera", "resolution", "lights", "world",
+                                                       "material", "instances", "objects", "materials", "exchange"},
                       provenance_keys);
   SceneFile file;
   file.width = choices.width;
@@ -173,6 +173,10 @@ SceneFile read(const Json& json, const std::filesystem::path& folder, const Scen
   }
   file.scene.lights = read_lights(root);
   if (root.has("world")) file.scene.world = read_world(root["world"], folder);
+  if (choices.exchange)
+    file.scene.exchange = *choices.exchange;
+  else if (root.has("exchange"))
+    file.scene.exchange = at(root["exchange"], [&] { return parse_choice<Exchange>(root["exchange"].text()); });
   read_objects(root, folder, choices, file.scene);
   file.camera = read_camera(root["camera"], static_cast<double>(file.width) / file.height);
   file.source = json.dump(-1, ' ', true, Json::error_handler_t::replace);

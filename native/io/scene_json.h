@@ -25,6 +25,7 @@ struct SceneChoices {
   std::optional<scene::Model> model;  ///< else the best that answers the material's kind
   int width = 0;                      ///< 0: as in the scene
   int height = 0;
+  std::optional<scene::Exchange> exchange{};  ///< else as in the scene
 };
 
 /// Throws Error unless the chosen size is one that can be rendered, or is left to the scene.

@@ -134,6 +134,7 @@ void write_scene(const std::filesystem::path& path, const SceneFile& file) {
               {"camera_to_clip", rows_of(file.camera.camera_to_clip)}}},
             {"resolution", {file.width, file.height}},
             {"world", writer.world(file.scene.world)},
+            {"exchange", exchange_names[static_cast<std::size_t>(file.scene.exchange)]},
             {"lights", Json::array()}};
   for (const Light& light : file.scene.lights) json["lights"].push_back(to_json(light));
   base::write_file_atomically(path, json.dump(1) + "\n");

@@ -186,18 +186,22 @@ void bind_scene(py::module_& module) {
                        const std::optional<scene::World>& world, std::vector<scene::InstanceArray> arrays,
                        const std::string& exchange) {
              scene::Scene scene{std::move(instances), std::move(lights), world.value_or(scene::World{}),
-                                std::move(arrays), scene::parse_exchange(exchange)};
+                                std::move(arrays), scene::parse_choice<scene::Exchange>(exchange)};
              validate(scene);
              return scene;
            }),
            py::kw_only(), py::arg("instances") = std::vector<scene::Instance>{},
            py::arg("lights") = std::vector<scene::Light>{}, py::arg("world") = py::none(),
-           py::arg("arrays") = std::vector<scene::InstanceArray>{}, py::arg("exchange") = "off",
+           py::arg("arrays") = std::vector<scene::InstanceArray>{},
+           py::arg("exchange") = std::string(scene::exchange_names[static_cast<std::size_t>(scene::default_exchange)]),
            "arrays: InstanceArrays, drawn beside the instances. exchange: 'order_1', and light goes from grain to "
-           "grain; "
-           "'off', and it does not. Raises Error for a transform that cannot be inverted.")
+           "grain; 'heaps', where there are arrays of them; 'off', and it does not. Raises Error for a transform that "
+           "cannot be inverted.")
       .def_readonly("instances", &scene::Scene::instances)
       .def_readonly("arrays", &scene::Scene::arrays)
+      .def_property_readonly(
+          "exchange",
+          [](const scene::Scene& scene) { return scene::exchange_names[static_cast<std::size_t>(scene.exchange)]; })
       .def_readonly("lights", &scene::Scene::lights)
       .def_readonly("world", &scene::Scene::world);
 }

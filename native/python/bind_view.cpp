@@ -157,6 +157,16 @@ py::dict of_exchange(const render::ExchangeStatistics& exchange) {
   found["sources"] = exchange.parts.sources;
   found["solutions"] = exchange.parts.solutions;
   result["found"] = found;
+  result["balls"] = exchange.balls;
+  py::list stuff;
+  for (const render::Stuff& one : exchange.stuff) {
+    py::dict entry;
+    entry["surface"] = heap::surface_names[static_cast<std::size_t>(one.surface)];
+    entry["thickness"] = py::make_tuple(one.thinnest, one.thickest);
+    entry["albedo"] = py::make_tuple(one.darkest, one.brightest);
+    stuff.append(entry);
+  }
+  result["stuff"] = stuff;
   return result;
 }
 
@@ -301,7 +311,10 @@ void bind_view(py::module_& module) {
            "of light from grain to grain, None where there is none: {'grains': that send light to each other, "
            "'others': objects that do not, 'kinds': of grains, 'links': ways of light between them, 'steps' and "
            "'residual' of the solution, 'milliseconds' that it took, 'final': no better one is under way, 'found': how "
-           "often its 'tables', 'links', 'sources' and 'solutions' were found so far}}.")
+           "often its 'tables', 'links', 'sources' and 'solutions' were found so far, 'balls': whether all grains are "
+           "about "
+           "that, 'stuff': [{'surface', 'thickness', 'albedo'}] of what they are made of, the last two from least to "
+           "most, in mean free paths to the radius and of one scattering}}.")
       .def("read_surfaces", &read_surfaces,
            "What rays through the pixels' middles meet, whatever the samples so far: {'position': (height, width, 4) "
            "float32, in the world, and 1, or 0 where they meet nothing; 'normal': (height, width, 3), of unit length, "

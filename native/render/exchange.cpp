@@ -19,10 +19,14 @@ constexpr std::size_t object_numbers = 7;
 struct Shape {
   bool grain;
   double radius_over_reach;  // of the sphere of its area
+  double roundness;
 };
 
 // A ground, a wall or a bowl encloses little for its area (the isoperimetric quotient; a sphere's is 1, a cube's .52).
 constexpr double least_roundness = 0.02;
+
+// Of a mesh that stands for a ball.
+constexpr double roundness_of_balls = 0.95;
 
 Shape shape_of(const scene::Mesh& mesh) {
   double area = 0.0;
@@ -37,7 +41,7 @@ Shape shape_of(const scene::Mesh& mesh) {
   }
   const double roundness = 36.0 * std::numbers::pi * volume * volume / std::max(area * area * area, 1e-300);
   const double radius = std::sqrt(area / (4.0 * std::numbers::pi));
-  return {roundness > least_roundness && mesh.reach() > 0.0, radius / std::max(mesh.reach(), 1e-300)};
+  return {roundness > least_roundness && mesh.reach() > 0.0, radius / std::max(mesh.reach(), 1e-300), roundness};
 }
 
 // Sizes of a kind's optics. Each grain is at most 4.5 % thicker or thinner than its kind, and as many are the one as
@@ -81,6 +85,7 @@ class Gatherer {
 
   heap::Grains grains;
   std::vector<Exchange::Role> roles;
+  bool balls = true;
 
  private:
   const Shape& shape(const scene::Mesh& mesh) {
@@ -95,6 +100,7 @@ class Gatherer {
     const double radius = ball.w * shape(*mesh).radius_over_reach;
     roles.emplace_back();
     if (!shape(*mesh).grain || !(radius > 0.0)) return;
+    balls = balls && shape(*mesh).roundness > roundness_of_balls;
     roles.back().grain = static_cast<std::uint32_t>(grains.grains.size());
     grains.grains.push_back(
         {glm::vec3(ball), static_cast<float>(radius), grains.kind(heap::optics_of(material, rounded(radius)))});
@@ -120,7 +126,9 @@ void append(std::vector<glm::vec4>& numbers, const heap::Coefficients& coefficie
 
 void Exchange::set(const Content& content, const scene::Scene& scene) {
   Gatherer gathered;
-  if (scene.exchange != scene::Exchange::off) gathered.add(content);
+  if (scene.exchange == scene::Exchange::order_1 ||
+      (scene.exchange == scene::Exchange::heaps && content.instances() != nullptr))
+    gathered.add(content);
   const heap::Grains& grains = gathered.grains;
   const bool heaped = content.instances() != nullptr && grains.grains.size() > 1;
   if (grains.grains.empty() || (!heaped && grains.walls.empty())) {
@@ -136,6 +144,7 @@ void Exchange::set(const Content& content, const scene::Scene& scene) {
   solving_ = heap::Solvers::instance().ask(std::move(heap), solving_);
   news_ = 0;
   roles_ = std::move(gathered.roles);
+  balls_ = gathered.balls;
   if (regrouped) send();
 }
 
@@ -149,6 +158,33 @@ bool Exchange::take_news() {
   return true;
 }
 
+namespace {
+
+double least(const glm::dvec3& colour) { return std::min({colour.r, colour.g, colour.b}); }
+double most(const glm::dvec3& colour) { return std::max({colour.r, colour.g, colour.b}); }
+
+std::vector<Stuff> stuff_of(const heap::Grains& grains) {
+  std::vector<bool> used(grains.kinds.size(), false);
+  for (const heap::Grain& grain : grains.grains) used[grain.kind] = true;
+  std::map<heap::Surface, Stuff> found;
+  for (std::size_t kind = 0; kind < used.size(); ++kind) {
+    if (!used[kind]) continue;
+    const heap::Optics& optics = grains.kinds[kind];
+    const glm::dvec3& albedo = optics.opaque() ? optics.reflectance : optics.albedo;
+    const Stuff own{optics.surface, least(optics.sigma_t), most(optics.sigma_t), least(albedo), most(albedo)};
+    Stuff& stuff = found.try_emplace(optics.surface, own).first->second;
+    stuff.thinnest = std::min(stuff.thinnest, own.thinnest);
+    stuff.thickest = std::max(stuff.thickest, own.thickest);
+    stuff.darkest = std::min(stuff.darkest, own.darkest);
+    stuff.brightest = std::max(stuff.brightest, own.brightest);
+  }
+  std::vector<Stuff> all;
+  for (const auto& [surface, stuff] : found) all.push_back(stuff);
+  return all;
+}
+
+}  // namespace
+
 ExchangeStatistics Exchange::statistics() const {
   ExchangeStatistics result;
   if (!solving_) return result;
@@ -157,6 +193,8 @@ ExchangeStatistics Exchange::statistics() const {
   result.others = roles_.size() - result.grains - grains.walls.size();
   result.kinds = grains.kinds.size();
   result.final = solving_->news().final;
+  result.balls = balls_;
+  result.stuff = stuff_of(grains);
   if (!known_) return result;
   const heap::HeapLight& light = *known_->light;
   result.links = light.links;

@@ -16,6 +16,15 @@
 
 namespace mesograin::render {
 
+/// What the grains of one surface are made of, over all of them and all channels.
+struct Stuff {
+  heap::Surface surface;
+  double thinnest;  ///< mean free paths to the radius; 0 of what is opaque
+  double thickest;
+  double darkest;  ///< albedo of one scattering, or reflectance of what is opaque
+  double brightest;
+};
+
 /// What is drawn of light between grains.
 struct ExchangeStatistics {
   std::size_t grains = 0;     ///< that send light to each other
@@ -27,6 +36,8 @@ struct ExchangeStatistics {
   double milliseconds = 0.0;  ///< that the solution took
   bool final = true;          ///< no better one is under way
   heap::Parts parts;          ///< found anew so far
+  bool balls = true;          ///< all grains are about as round as a sphere
+  std::vector<Stuff> stuff;
 };
 
 class Exchange {
@@ -73,6 +84,7 @@ class Exchange {
 
   void send();
 
+  bool balls_ = true;
   std::vector<Role> roles_;  // of objects, by their numbers
   std::shared_ptr<const heap::Solving> solving_;
   int news_ = 0;  // taken in of it

@@ -2,18 +2,12 @@
 #include "scene/scene.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <glm/matrix.hpp>
 
 #include "base/error.h"
 
 namespace mesograin::scene {
-
-Exchange parse_exchange(std::string_view name) {
-  constexpr std::array<std::string_view, 2> names{"off", "order_1"};
-  return static_cast<Exchange>(find_name("exchange", names, name));
-}
 
 namespace {
 

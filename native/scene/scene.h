@@ -1,8 +1,10 @@
 // What is drawn: instances of meshes with a material each, the lights on them and the world around them.
 #pragma once
 
+#include <array>
 #include <glm/mat4x4.hpp>
 #include <memory>
+#include <span>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -41,19 +43,20 @@ class InstanceArray {
   std::shared_ptr<const ColourFactors> factors_;
 };
 
-/// Whether light goes from grain to grain: not, or as four numbers a channel for each grain (spherical harmonics to
-/// order 1).
-enum class Exchange { off, order_1 };
-
-/// Throws Error that lists the names allowed.
-Exchange parse_exchange(std::string_view name);
+/// Whether light goes from grain to grain: not, where there are arrays of them, or always; as four numbers a channel
+/// for each grain (spherical harmonics to order 1). addon/mesograin/schema/scene.json says the same.
+enum class Exchange { off, heaps, order_1 };
+inline constexpr std::array<std::string_view, 3> exchange_names{"off", "heaps", "order_1"};
+inline constexpr Exchange default_exchange = Exchange::heaps;
+constexpr std::span<const std::string_view> names_of(Exchange) { return exchange_names; }
+constexpr std::string_view parameter_of(Exchange) { return "exchange"; }
 
 struct Scene {
   std::vector<Instance> instances;
   std::vector<Light> lights;
   World world{};
   std::vector<InstanceArray> arrays{};
-  Exchange exchange = Exchange::off;
+  Exchange exchange = default_exchange;
 };
 
 /// The materials of all that is drawn, each once, in the order of the scene.

@@ -46,6 +46,7 @@ struct Options {
   std::string output;
   std::string model;
   std::string size;
+  std::string exchange;
   int samples = 64;
   std::uint32_t seed = 0;
   bool bake = false;
@@ -58,6 +59,7 @@ struct Options {
 io::SceneChoices parse_choices(const Options& options) {
   io::SceneChoices choices;
   if (!options.model.empty()) choices.model = scene::parse_model(options.model);
+  if (!options.exchange.empty()) choices.exchange = scene::parse_choice<scene::Exchange>(options.exchange);
   if (options.size.empty()) return choices;
   const char* const end = options.size.data() + options.size.size();
   const auto width = std::from_chars(options.size.data(), end, choices.width);
@@ -101,7 +103,7 @@ void run(const Options& options) {
   tool::Progress progress(options.samples);
   std::future<double> done = view.start(options.samples);
   while (done.wait_for(std::chrono::milliseconds(50)) != std::future_status::ready)
-    if (!options.quiet) progress.show(view.samples());
+    if (!options.quiet) progress.show(view.samples(), view.preparing());
   done.get();
   for (const std::string& warning : view.warnings()) fmt::print(stderr, "mesograin-render: {}\n", warning);
   const double seconds = progress.seconds();
@@ -140,6 +142,11 @@ int command(int argument_count, char** arguments) {
   app.add_option("--seed", options.seed, "Of the samples' places and of the models' own; default 0")->option_text("S");
   app.add_option("--size", options.size, "Pixels, instead of the scene's resolution")
       ->option_text("WIDTHxHEIGHT or SIDE");
+  app.add_option(
+         "--exchange", options.exchange,
+         fmt::format("Light between grains: {}; default: as the scene says", fmt::join(scene::exchange_names, ", ")))
+      ->check(CLI::IsMember(std::vector<std::string>(scene::exchange_names.begin(), scene::exchange_names.end())))
+      ->option_text("HOW");
   CLI::Option* bake =
       app.add_flag("--bake", options.bake, "The surface's texture, unwrapped at its UVs with v upwards");
   app.add_option(

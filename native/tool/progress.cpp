@@ -24,10 +24,16 @@ Progress::Progress(int samples) : terminal_(::isatty(STDERR_FILENO) == 1), sampl
 
 double Progress::seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
 
-void Progress::show(int samples_done) {
+void Progress::show(int samples_done, std::optional<double> preparing) {
   const Clock::duration pause = terminal_ ? std::chrono::milliseconds(100) : std::chrono::seconds(5);
   if (Clock::now() - shown_ < pause) return;
   shown_ = Clock::now();
+  if (preparing && samples_done == 0) {
+    fmt::print(stderr, "{}light in and between grains: {:.0f} %{}", terminal_ ? "\r\033[K" : "", 100.0 * *preparing,
+               terminal_ ? "" : "\n");
+    std::fflush(stderr);
+    return;
+  }
   const std::string left =
       samples_done == 0 ? "" : ", " + duration(seconds() / samples_done * (samples_ - samples_done)) + " left";
   fmt::print(stderr, "{}{} of {} samples{}{}", terminal_ ? "\r\033[K" : "", samples_done, samples_, left,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <optional>
 
 namespace mesograin::tool {
 
@@ -10,8 +11,8 @@ class Progress {
  public:
   explicit Progress(int samples);
 
-  /// May be called as often as one likes.
-  void show(int samples_done);
+  /// May be called as often as one likes. `preparing`: the share done of what comes before the first sample.
+  void show(int samples_done, std::optional<double> preparing);
 
   /// Clears the terminal's line.
   void finish();

@@ -33,6 +33,7 @@ std::map<std::string, std::string> provenance(const io::SceneFile& file, int sam
           {"mesograin:scene", file.source},
           {"mesograin:samples", std::to_string(samples)},
           {"mesograin:seed", std::to_string(seed)},
+          {"mesograin:exchange", std::string(scene::exchange_names[static_cast<std::size_t>(file.scene.exchange)])},
           {"mesograin:units", "linear RGB radiance, premultiplied by the coverage in A; coefficients per scene unit"},
           {"mesograin:pixel_filter", "box, one pixel"},
           {"mesograin:device", device.renderer},

@@ -2,7 +2,8 @@
 
     heap.py BUILD_FOLDER [--grains N ...] [--samples N] [--shapes sphere ...] [--models lambert ...] [--json FILE]
 
-The picture has 960x540 pixels, and the heap fills it; one sun, which casts shadows. Each heap is measured in a process
+The picture has 960x540 pixels, and the heap fills it; one sun, which casts shadows, and no light between grains, which
+exchange.py measures. Each heap is measured in a process
 of its own, whose peak memory is told; so is the first picture after a material has changed, in samples.
 """
 import argparse
@@ -95,7 +96,7 @@ def measure(native, shape, model, count, samples, visibility):
 
     def scene(**changes):
         heap = native.InstanceArray(mesh, native.Material(model=model, **{**PARAMETERS, **changes}), transforms)
-        return native.Scene(arrays=[heap], lights=[native.DirectionalLight(*SUN)])
+        return native.Scene(arrays=[heap], lights=[native.DirectionalLight(*SUN)], exchange="off")
 
     eye = (0.0, -0.6 * width, 1.05 * width)
     view.set_camera(native.Camera.look_at(eye, (0.0, 0.0, -0.15 * width), (0.0, 0.0, 1.0), 18.0, SIZE[0] / SIZE[1]))

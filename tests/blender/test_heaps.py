@@ -9,8 +9,10 @@ from test_export import add_camera, add_cube, add_mesh_object, add_object, add_s
 
 import mesograin
 from mesograin import compat
+from mesograin.engine import status
 from mesograin.grains import objects, pile
 from mesograin.scene import export, heaps, meshes, scattered
+from mesograin.studies.comparison.ours import Ours
 
 SIDE = 12
 
@@ -82,19 +84,42 @@ def test_a_heap_is_seen(render):
     np.testing.assert_allclose(covered, 0.04, atol=0.005)
 
 
-def test_grains_light_each_other_where_the_scene_says_so(render):
+def test_grains_light_each_other_unless_the_scene_says_no(render):
     scene = bpy.context.scene
+    assert scene.mesograin.exchange == "heaps", "of a new scene"
     scene.render.resolution_x = scene.render.resolution_y = 32
     scene.render.film_transparent = True
     scene.mesograin.samples = 8
     add_sun((0.0, 0.6, 0.8), math.pi)
     add_camera((0.0, 0.0, 20.0), type="ORTHO", ortho_scale=0.25 * SIDE)
     scatter([(0.25 * x, 0.25 * y, z) for x, y, z in grid()])
-    alone = render()
-    scene.mesograin.exchange = True
     together = render()
+    exchange = status.get(status.RENDER).exchange
+    assert (exchange.grains, exchange.kinds, exchange.final) == (SIDE ** 2, 1, True)
+    scene.mesograin.exchange = "off"
+    alone = render()
+    assert status.get(status.RENDER).exchange is None
     assert np.isfinite(together).all()
     assert together[..., :3].sum() > 1.02 * alone[..., :3].sum()
+
+
+def test_a_comparison_with_direct_light_alone_has_no_other(render):
+    add_sun((0.0, 0.6, 0.8), math.pi)
+    add_camera((0.0, 0.0, 20.0), type="ORTHO", ortho_scale=0.25 * SIDE)
+    scatter([(0.25 * x, 0.25 * y, z) for x, y, z in grid()])
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    ours = Ours(depsgraph, (32, 32), {}, parts=1)
+    for direct in (False, True):
+        ours.begin({"model": "lambert"}, direct=direct)
+        ours.refine(1)
+        assert (ours.exchanged is None) == direct
+    ours.begin({"model": "model_2"})
+    ours.refine(1)
+    assert ours.exchanged["grains"] >= SIDE ** 2 and "not measured" in ours.exchanged["stated_error"]
+    without = Ours(depsgraph, (32, 32), {}, parts=1, exchange="off")
+    without.begin({"model": "model_2"})
+    without.refine(1)
+    assert without.exchanged is None
 
 
 def makes_point_clouds():

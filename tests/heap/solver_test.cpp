@@ -135,10 +135,41 @@ TEST(Solver, KeepsWhatItFoundBeforeItWasStopped) {
   EXPECT_EQ(light.parts.sources, 1);
 }
 
-// A scene at rest has no noise at all: its rays are the same in each frame.
+TEST(Solver, HasFewerRaysWhereGrainsAreMany) {
+  EXPECT_EQ(quality_for(100'000).rays, Quality().rays);
+  for (const std::size_t grains : {std::size_t{0}, std::size_t{1}, std::size_t{100'000'000}}) {
+    EXPECT_GE(quality_for(grains).rays, coarse.rays);
+    EXPECT_LE(quality_for(grains).rays, Quality().rays);
+  }
+  EXPECT_LE(quality_for(1'000'000).rays * sizeof(Link), 600U);
+}
+
+// A scene at rest has no noise at all: its rays are the same in each frame. With others the light of the whole is the
+// same within .5 %.
 TEST(Solver, HasTheSameLightInEachFrame) {
-  const Heap heap = lit(medium(3.0, 0.95));
-  EXPECT_EQ(difference(solve_exchange(heap, {}, {}, {}).sent, solve_exchange(heap, {}, {}, {}).sent), 0.0);
+  for (const Optics& optics : {medium(3.0, 0.95), medium(1.0, 0.999), lambert(0.8)}) {
+    const Heap heap = lit(optics);
+    const HeapLight light = solve_exchange(heap, {}, {}, {});
+    EXPECT_EQ(difference(light.sent, solve_exchange(heap, {}, {}, {}).sent), 0.0);
+    transport::Effort other;
+    other.seed = 12345;
+    const HeapLight again = solve_exchange(heap, {}, {}, other);
+    EXPECT_NEAR(mean(again.sent), mean(light.sent), 0.005 * mean(light.sent));
+    EXPECT_NEAR(mean(again.answer), mean(light.answer), 0.005 * mean(light.answer));
+  }
+}
+
+TEST(Solver, FollowsAFallingHeap) {
+  Solver solver;
+  Heap heap = lit(medium(3.0, 0.99));
+  const int cold = solver.solve(heap, {}, {}).steps;
+  for (int frame = 1; frame <= 4; ++frame) {
+    for (Grain& grain : heap.grains.grains) grain.middle.z *= 0.99F;
+    const HeapLight light = solver.solve(heap, {}, {});
+    EXPECT_LT(light.steps, cold) << frame;
+    EXPECT_LT(difference(light.sent, solve_exchange(heap, {}, {}, {}).sent), 2e-3) << frame;
+    EXPECT_EQ(light.parts.tables, 1) << "the grains are of what they were";
+  }
 }
 
 }  // namespace

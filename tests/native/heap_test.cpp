@@ -42,6 +42,8 @@ scene::Scene array_of(const scene::MeshPointer& mesh, const scene::Material& mat
   scene::Scene scene;
   scene.lights = std::move(lights);
   scene.arrays.emplace_back(mesh, material, std::move(places));
+  // So that an array can be held against grains one by one.
+  scene.exchange = scene::Exchange::off;
   return scene;
 }
 
@@ -196,6 +198,7 @@ TEST_F(HeapTest, ManyCastMaterialsAreEachShadedWithTheirOwn) {
     const glm::dmat4 place = glm::translate(glm::dmat4(1.0), glm::dvec3(i % side, i / side, 0.0));
     scene.arrays.emplace_back(ball, material, std::vector<glm::dmat4>{glm::scale(place, glm::dvec3(0.45))});
   }
+  scene.exchange = scene::Exchange::off;
   const scene::Camera camera{glm::translate(glm::dmat4(1.0), glm::dvec3(0.5 - side / 2.0, 0.5 - side / 2.0, -5.0)),
                              glm::ortho(-side / 2.0, side / 2.0, -side / 2.0, side / 2.0, 0.1, 20.0)};
   constexpr int size = side * 5;
@@ -215,7 +218,8 @@ TEST_F(HeapTest, ManyEqualInstancesAreAnArrayAndLookAlike) {
   std::vector<glm::dmat4> places = eight_places();
   places.push_back(glm::translate(glm::dmat4(1.0), glm::dvec3(0.0, 4.0, 0.0)));
   for (const glm::dmat4& place : places) scene.instances.push_back({mesh, {}, place});
-  const scene::Scene array = array_of(mesh, {}, places, scene.lights);
+  scene::Scene array = array_of(mesh, {}, places, scene.lights);
+  array.exchange = scene.exchange;
   const scene::Camera camera = scene::Camera::look_at({0, 0, 16}, {0, 0, 0}, {0, 1, 0}, 30.0, 2.0);
   EXPECT_EQ(picture(scene, camera, 128, 64, 2), picture(array, camera, 128, 64, 2));
 }

@@ -81,7 +81,7 @@ def test_a_heap_is_as_bright_as_it_is(file, model):
 
 
 def test_an_unknown_exchange_is_refused_with_what_is_allowed():
-    with pytest.raises(native.Error, match="off, order_1"):
+    with pytest.raises(native.Error, match="off, heaps, order_1"):
         native.Scene(exchange="order_9")
 
 
@@ -155,6 +155,18 @@ def test_a_viewport_shows_what_is_known_of_a_heaps_light_and_then_more():
     statistics = view.statistics()["exchange"]
     assert statistics["final"] and statistics["grains"] == len(SPHERES) and statistics["others"] == 0
     assert statistics["links"] > 50 * len(SPHERES) and statistics["residual"] < 1e-3 < statistics["milliseconds"]
+
+
+def test_who_waits_for_the_light_sees_how_far_it_is_and_can_cancel():
+    view = native.View(*MANIFEST["resolution"])
+    view.set_scene(lit(heap(white(3.0))))
+    view.set_camera(camera())
+    task = view.start(4)
+    assert not task.wait(0.01) and 0.0 <= view.preparing < 1.0 and view.samples == 0
+    view.cancel()
+    assert task.wait(5.0) and view.samples == 0
+    view.render(1)
+    assert view.preparing is None and view.samples == 1
 
 
 def test_a_camera_finds_no_light_anew(viewport):

@@ -69,13 +69,14 @@ def test_a_scene_that_is_written_is_the_one_that_is_read(tmp_path):
     world = native.World(radiance=(0.5, 0.25, 1), image=native.Surroundings(np.float32(random.random((4, 8, 3)))),
                          rotation=np.float64([[0, 1, 0], [-1, 0, 0], [0, 0, 1]]), seen=True)
     scene = native.Scene(instances=[native.Instance(mesh, ground, transforms[0])], lights=lights, world=world,
-                         arrays=[native.InstanceArray(mesh, sand, transforms)])
+                         arrays=[native.InstanceArray(mesh, sand, transforms)], exchange="order_1")
     camera = native.Camera.look_at((0, -5, 2), (0, 0, 0), (0, 0, 1), 40.0, 1.5)
 
     native.write_scene(tmp_path / "heap.json", scene, camera, (48, 32))
     read, read_camera, size = native.load_scene(tmp_path / "heap.json")
     assert size == (48, 32) and read_camera == camera
     np.testing.assert_array_equal(read.arrays[0].transforms, transforms)
+    assert read.exchange == "order_1" and native.Scene().exchange == "heaps"
     assert read.arrays[0].material == sand and read.instances[0].material == ground
     assert [type(light) for light in read.lights] == [type(light) for light in lights]
 
@@ -88,6 +89,14 @@ def test_a_scene_that_is_written_is_the_one_that_is_read(tmp_path):
         pictures.append(view.read())
     assert pictures[0].max() > 0.1
     np.testing.assert_array_equal(*pictures)
+
+
+def test_light_between_grains_is_one_of_its_names():
+    described = {**json.loads(pathlib.Path(SPHERE).read_text()), "exchange": "order_9"}
+    with pytest.raises(native.Error, match="exchange.*off, heaps, order_1"):
+        native.load_scene(described)
+    read, *_ = native.load_scene({**described, "exchange": "off"})
+    assert read.exchange == "off"
 
 
 def test_a_scene_is_not_written_where_it_cannot_be(tmp_path):

@@ -18,6 +18,15 @@ def test_the_native_module_was_built_with_this_schema():
     assert native.schema() == schema.GRAIN
 
 
+def test_scenes_are_said_alike_on_both_sides():
+    exchange = room("schema.parameters").SCENE["exchange"]
+    assert native.Scene().exchange == exchange.default
+    for choice in exchange.choices:
+        assert native.Scene(exchange=choice.name).exchange == choice.name
+    with pytest.raises(native.Error, match=", ".join(choice.name for choice in exchange.choices)):
+        native.Scene(exchange="somehow")
+
+
 def test_defaults_are_the_native_module_s():
     standard = native.Material()
     for name, parameter in PARAMETERS.items():

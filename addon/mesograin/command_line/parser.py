@@ -1,10 +1,10 @@
 # The parser of every command, and the options that several of them have.
-"""See `Parser` and `add_settings`, `add_cache`. Readable without Blender."""
+"""See `Parser` and `add_settings`, `add_exchange`, `add_cache`. Readable without Blender."""
 
 import argparse
 from pathlib import Path
 
-from ..schema.parameters import SETTABLE
+from ..schema.parameters import SCENE, SETTABLE
 from . import values
 
 BAD_INPUT = 2
@@ -43,6 +43,18 @@ def add_settings(parser, where):
             f"a material parameter{where}: {', '.join(SETTABLE)}; RGB as one number or three with commas; may be"
             " repeated"
         ),
+    )
+
+
+def add_exchange(parser):
+    """--exchange, as the schema has it."""
+    exchange = SCENE["exchange"]
+    parser.add_argument(
+        "--exchange",
+        choices=[choice.name for choice in exchange.choices],
+        default=None,
+        help=f"{exchange.label}: {'; '.join(f'{choice.name}, {choice.sentence}' for choice in exchange.choices)}"
+        " (default: as the scene says)",
     )
 
 

@@ -60,6 +60,11 @@ class Kind:
         return words[0].upper() + words[1:]
 
     @property
+    def direct(self):
+        """Whether it shows nothing but what lights do directly, so that grains send each other none."""
+        return self.bounces == 0 and not self.referee
+
+    @property
     def has_texture(self):
         """Whether it can be baked; the others are pictures."""
         return not (self.referee or self.smooth_interface)

@@ -1,6 +1,8 @@
 # What the last picture of each kind was made of and what was wrong with it, for panels to show.
 import dataclasses
 
+from . import stated_error
+
 RENDER, VIEWPORT = "render", "viewport"
 
 
@@ -16,13 +18,14 @@ class Exchange:
     residual: float
     milliseconds: float
     final: bool
+    stated_error: str
 
     def lines(self):
         """Short lines of text."""
         if not self.links:
-            return (f"between {self.grains} grains: being found",)
+            return (f"light between {self.grains} grains: being found",)
         others = f", {self.others} other objects without" if self.others else ""
-        return (f"between {self.grains} grains of {self.kinds} kinds: {self.milliseconds:.0f} ms{others}",
+        return (f"light between {self.grains} grains of {self.kinds} kinds: {self.milliseconds:.0f} ms{others}",
                 f"{self.links} links, {self.steps} steps, {self.residual:.1g} left"
                 + ("" if self.final else ", being refined"))
 
@@ -30,7 +33,8 @@ class Exchange:
 def exchange(view):
     """Exchange of what a native.View draws; None where no light goes from grain to grain."""
     counts = view.statistics()["exchange"]
-    return counts and Exchange(**{field.name: counts[field.name] for field in dataclasses.fields(Exchange)})
+    return counts and Exchange(**{field.name: counts[field.name] for field in dataclasses.fields(Exchange)
+                                  if field.name in counts}, stated_error=stated_error.sentence(counts))
 
 
 @dataclasses.dataclass(frozen=True)

@@ -71,7 +71,7 @@ class SceneValues:
     world: surroundings.WorldValues = surroundings.WorldValues()
     heaps: tuple = ()  # heaps.HeapValues, drawn beside the instances
     millimetres_per_unit: float = 1.0
-    exchange: bool = False  # whether grains send light to each other
+    exchange: str = parameters.SCENE["exchange"].default  # how grains send light to each other
 
     @property
     def materials(self):
@@ -93,7 +93,7 @@ class SceneValues:
         return native.Scene(
             instances=instances, arrays=arrays,
             lights=[light.to_native(native) for light in self.lights], world=self.world.to_native(native),
-            exchange="order_1" if self.exchange else "off")
+            exchange=self.exchange)
 
 
 def scene_from_depsgraph(depsgraph, cache=None):

@@ -10,7 +10,7 @@ MATERIAL_PARAMETERS = tuple(parameters.PARAMETERS)
 def choices(name):
     """The items of a choice. Numbered as the schema has them, so that files keep their meaning when one is added."""
     return tuple((choice.name, choice.label, choice.sentence, number)
-                 for number, choice in enumerate(parameters.PARAMETERS[name].choices))
+                 for number, choice in enumerate((parameters.PARAMETERS | parameters.SCENE)[name].choices))
 
 
 # Blender tags nothing when a script sets a value of ours; an update function does, and redraws follow.
@@ -51,9 +51,7 @@ class SceneProperties(bpy.types.PropertyGroup):
     millimetres_per_unit: FloatProperty(
         name="Millimetres per unit", default=1.0, min=1e-6, max=1e9, soft_min=0.001, soft_max=1000.0, precision=4,
         update=_tag, description="Length of one Blender unit in mm; coefficients in 1/mm are multiplied by it")
-    exchange: BoolProperty(
-        name="Light between grains", default=False, update=_tag,
-        description="Light that grains of a heap send each other, solved once for grains, materials and lights")
+    exchange: _property(parameters.SCENE["exchange"])
 
 
 _register_classes, _unregister_classes = bpy.utils.register_classes_factory((MaterialProperties, SceneProperties))

@@ -6,3 +6,6 @@ from pathlib import Path
 
 GRAIN = json.loads(Path(__file__).with_name("grain.json").read_text(encoding="utf-8"))
 """The file as it stands."""
+
+SCENE = json.loads(Path(__file__).with_name("scene.json").read_text(encoding="utf-8"))
+"""What is said of a whole scene; native/scene/scene.h says the same."""

@@ -5,6 +5,7 @@ import math
 from dataclasses import dataclass
 
 from . import GRAIN, models
+from . import SCENE as _SCENE
 
 
 @dataclass(frozen=True)
@@ -88,6 +89,8 @@ def _parameter(entry):
 
 
 PARAMETERS = {entry["name"]: _parameter(entry) for entry in GRAIN["parameters"]}
+SCENE = {entry["name"]: _parameter(entry) for entry in _SCENE}
+"""What is said of a whole scene."""
 SETTABLE = tuple(name for name, parameter in PARAMETERS.items() if not parameter.decided_by)
 """Those that a comparison may set; the reference or the command decides the others."""
 

@@ -9,7 +9,7 @@ import bpy
 from .. import native_module
 from ..cycles import kinds, stage
 from ..cycles.cache import Cache
-from ..schema.parameters import PARAMETERS, SETTABLE
+from ..schema.parameters import PARAMETERS, SCENE, SETTABLE
 from .comparison import arguments, mask_names, progress, report_page, results, run, verdict
 
 PICTURES = ("model", "reference", "error")
@@ -97,8 +97,8 @@ class Comparison:
 
 def compare(models=arguments.DEFAULT_MODELS, references=None, out="//comparison", size=None, samples=64,
             reference_samples=None, seeds=2, until=None, most_seeds=arguments.MOST_SEEDS, masks=(), part=None,
-            controls=False, settings=None, frames=9, cache=None, cache_limit=None, report=True, on_progress=None,
-            command=None):
+            controls=False, settings=None, exchange=None, frames=9, cache=None,
+            cache_limit=None, report=True, on_progress=None, command=None):
     """Renders the current scene with every model and with the Cycles materials that mean the same, and measures.
 
     models: of schema.models.NAMES; every material is rendered with each.
@@ -114,6 +114,7 @@ def compare(models=arguments.DEFAULT_MODELS, references=None, out="//comparison"
     controls: also tests the significance test: the reference's own renderer with the same and with a wrong material.
     settings: {parameter: value} for every material on both sides: reflectance, sigma_a, sigma_s (1/mm; one number or
     three), g, eta, roughness (GGX alpha), scale, profile. frames: how many are timed for `frame_ms`.
+    exchange: light between grains, 'off', 'heaps' or 'order_1'; None as the scene says.
     cache: folder of rendered references, None for the usual one. cache_limit: bytes that it may take.
     report: whether to write report.html. on_progress: called with a `progress.Step` (what, number, count, fraction,
     seconds_left), a few times a second, from any thread. command: the line that repeats this comparison, for
@@ -140,11 +141,12 @@ def compare(models=arguments.DEFAULT_MODELS, references=None, out="//comparison"
             part=_part(part),
             controls=bool(controls),
             settings=_settings(settings or {}),
+            exchange=_exchange(exchange),
             frames=_count("frames", frames),
             cache=Cache(cache, cache_limit),
             command=command or call(models=models, references=references, out=str(out), size=size, samples=samples,
                                     reference_samples=reference_samples, seeds=seeds, until=until, masks=masks or None,
-                                    part=part, controls=controls or None, settings=settings))
+                                    part=part, controls=controls or None, settings=settings, exchange=exchange))
         if request.controls and request.seeds < 2:
             raise ComparisonError("controls needs 2 or more seeds, since one does not tell its noise; 1 came.")
         for kind in request.references or ():
@@ -173,6 +175,13 @@ def _part(part):
     if part is not None and part not in kinds.PARTS:
         raise ComparisonError(f"part takes {' or '.join(kinds.PARTS)}, or None for the whole; {part!r} came.")
     return part
+
+
+def _exchange(exchange):
+    if exchange is not None and SCENE["exchange"].check(exchange) is None:
+        raise ComparisonError(
+            f"exchange takes {SCENE['exchange'].allowed}, or None as the scene says; {exchange!r} came.")
+    return exchange
 
 
 def _mask(text):

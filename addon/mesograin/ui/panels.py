@@ -199,7 +199,7 @@ class MESOGRAIN_PT_sampling(MesograinPanel, bpy.types.Panel):
         column.prop(settings, "samples", text="Render")
         column.prop(settings, "viewport_samples", text="Viewport")
         layout.prop(settings, "millimetres_per_unit", text="mm per Unit")
-        layout.prop(settings, "exchange")
+        layout.prop(settings, "exchange", text="Grain to Grain")
         layout.prop(context.scene.render, "film_transparent", text="Transparent Film")
 
 
@@ -227,7 +227,7 @@ class MESOGRAIN_PT_statistics(MesograinPanel, bpy.types.Panel):
         for kind, title in ((status.RENDER, "Last render"), (status.VIEWPORT, "Viewport")):
             latest = status.get(kind)
             if latest is not None and latest.samples:
-                self._draw_picture(title, latest)
+                self._draw_picture(context, title, latest)
 
     def _draw_device(self, context):
         native = native_module.get()
@@ -239,13 +239,15 @@ class MESOGRAIN_PT_statistics(MesograinPanel, bpy.types.Panel):
         kind = "hardware" if info["hardware"] else "software"
         draw_sentence(self.layout, context, f"{info['renderer']} ({kind}), OpenGL {info['version']}", icon="DESKTOP")
 
-    def _draw_picture(self, title, latest):
+    def _draw_picture(self, context, title, latest):
         column = self.layout.column(align=True)
         column.label(text=f"{title}: {latest.width} x {latest.height}, {latest.samples} samples")
         for name, milliseconds in latest.passes:
             column.label(text=f"{name}: {milliseconds:.2f} ms", icon="BLANK1")
-        for line in latest.exchange.lines() if latest.exchange else ():
-            column.label(text=f"light {line}", icon="BLANK1")
+        if latest.exchange:
+            for line in latest.exchange.lines():
+                column.label(text=line, icon="BLANK1")
+            draw_sentence(column, context, f"Light between grains: {latest.exchange.stated_error}.", icon="BLANK1")
 
 
 register, unregister = bpy.utils.register_classes_factory(

@@ -36,6 +36,7 @@ def build():
                         help="texels by which what is baked reaches beyond the UVs (default: 16)")
     parser.add_argument("--half", action="store_true", help="16-bit instead of 32-bit floats")
     shared.add_settings(parser, "")
+    shared.add_exchange(parser)
     parser.add_argument("--compare", action="store_true",
                         help="also bakes what can be compared with Cycles, without a margin: OUT.mesograin.exr,"
                         " OUT.cycles.exr, OUT.error.exr, PNGs, and numbers in OUT.json")

@@ -39,7 +39,8 @@ def _bake_shown(chosen, depsgraph, progress):
     overrides = export.overrides(chosen.settings, depsgraph.scene)
     name = surface.choose(depsgraph, chosen.object)
     own = {**overrides, "model": chosen.model} if chosen.model else overrides
-    ours = surface.Surface(depsgraph, name, chosen.size, chosen.view_from, own)
+    ours = surface.Surface(depsgraph, name, chosen.size, chosen.view_from, own,
+                           exchange=chosen.exchange)
     if chosen.compare:
         _compare(chosen, depsgraph, ours, overrides, progress)
         return
@@ -66,7 +67,7 @@ def _compare(chosen, depsgraph, own, overrides, progress):
 
     pair = comparison.Pair(
         depsgraph, own.name, chosen.size, chosen.samples, chosen.view_from, overrides, chosen.model, chosen.reference,
-        chosen.reference_samples, Cache())
+        chosen.reference_samples, Cache(), chosen.exchange)
     written, results = comparison.bake(
         chosen.output, own, pair, chosen.samples, chosen.margin, chosen.half, progress)
     metrics, floor = results["metrics"], results["noise_floor"]

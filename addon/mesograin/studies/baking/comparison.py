@@ -30,18 +30,20 @@ class Pair:
     name: of the object. size: (width, height) in texels. samples: a texel on our side, reference_samples: a texel and
     seed on Cycles' (None: the kind's default). overrides: {parameter: value} for every material, coefficients per
     scene unit. model: of ours, None for the material's. kind: of reference, None for the model's. cache:
-    `cycles.cache.Cache`.
+    `cycles.cache.Cache`. exchange: of the schema's choices, or None for the scene's own.
     Raises BakeError, ReferenceError or native.Error, before anything is rendered.
     """
 
-    def __init__(self, depsgraph, name, size, samples, view_from, overrides, model, kind, reference_samples, cache):
+    def __init__(self, depsgraph, name, size, samples, view_from, overrides, model, kind, reference_samples, cache,
+                 exchange=None):
         model = model or _only_model(depsgraph, name, size, overrides)
         kind = kind or kinds.default_kind(model)
         if model not in kinds.KINDS[kind].models:
             raise BakeError(f"The reference {kind} does not answer {model}: choose another.")
         self._model, self._kind, self._samples = model, kind, samples
         chosen = {"model": model, **kinds.our_side(kind, nodes.features())}
-        self._ours = Surface(depsgraph, name, size, view_from, {**overrides, **chosen}, min(SEEDS, samples))
+        self._ours = Surface(depsgraph, name, size, view_from, {**overrides, **chosen}, min(SEEDS, samples),
+                             "off" if kinds.KINDS[kind].direct else exchange)
         # What Cycles cannot bake at all is an error here; what it can only approximate, a note.
         self._sampling = reference.Sampling(
             depsgraph, kind, size, reference_samples, cache, overrides, Unwrapping(name, view_from))

@@ -1,6 +1,7 @@
 # Our side of a bake: one object of a scene, unwrapped at its UVs and shaded by Mesograin.
 """See `Surface`. The user's file is read, never written."""
 
+import dataclasses
 import json
 import tempfile
 import time
@@ -31,11 +32,13 @@ class Surface:
 
     depsgraph: evaluated. name: of the object; its first instance counts. size: (width, height) in texels.
     view_from: of VIEW_FROM. overrides: {parameter: value} for every material, coefficients per scene unit.
-    parts: of independent noise that the texture is the mean of, so that its noise is known.
+    parts: of independent noise that the texture is the mean of, so that its noise is known. exchange: of the schema's
+    choices, or None for the scene's own.
     Raises BakeError or native.Error with one sentence.
     """
 
-    def __init__(self, depsgraph, name, size, view_from=VIEW_FROM[0], overrides=None, parts=1):
+    def __init__(self, depsgraph, name, size, view_from=VIEW_FROM[0], overrides=None, parts=1,
+                 exchange=None):
         native = native_module.get()
         scene = export.read_scene(depsgraph, meshes.MeshCache())
         instances = _instances(scene, name)
@@ -44,6 +47,8 @@ class Surface:
         if not all(scene.instances[index].mesh.has_uvs for index in instances):
             raise BakeError(f"Object '{name}' has no UVs to bake at: unwrap it (UV > Unwrap in Edit Mode).")
         scene = scene.with_materials(lambda material: _with(material, overrides or {}))
+        if exchange:
+            scene = dataclasses.replace(scene, exchange=exchange)
         changed = scene.instances
         self.name, self.size, self.view_from = name, tuple(size), view_from
         self.materials = {changed[index].material.name: dict(changed[index].material.values) for index in instances}

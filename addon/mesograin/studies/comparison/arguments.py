@@ -131,6 +131,7 @@ def build():
     parser.add_argument(
         "--frames", type=positive, default=9, metavar="N", help="frames timed for frame_ms (default: 9)"
     )
+    shared.add_exchange(parser)
     shared.add_cache(parser)
     parser.add_argument("--clear-cache", action="store_true", help="empty the reference cache and do nothing else")
     parser.add_argument("--no-report", action="store_true", help="write no report.html")

@@ -45,6 +45,7 @@ def _run(chosen, words):
         part=chosen.part,
         controls=chosen.controls,
         settings=chosen.settings,
+        exchange=chosen.exchange,
         frames=chosen.frames,
         cache=cache,
         command=_command(words),

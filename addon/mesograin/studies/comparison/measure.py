@@ -64,7 +64,7 @@ def measure(case, chosen, request, depsgraph, size, overrides, ours, progress):
     progress.end(learn=not theirs.cached)
     progress.begin()
     started = time.monotonic()
-    ours.begin(chosen, sampling.kind.least_sun)
+    ours.begin(chosen, sampling.kind.least_sun, direct=sampling.kind.direct)
     images = ours.refine(request.samples)
     our_samples = ours.samples
     our_seconds = time.monotonic() - started

@@ -5,6 +5,7 @@ import dataclasses
 import statistics
 
 from ... import native_module
+from ...engine import stated_error
 from ...scene import export, lights, meshes
 
 
@@ -16,14 +17,17 @@ class Ours:
     """One evaluated scene and views of it, ready for any number of models.
 
     depsgraph: evaluated. size: (width, height) in pixels. overrides: {parameter: value} for every material,
-    coefficients per scene unit. parts: of independent noise that a picture consists of, at most.
+    coefficients per scene unit. parts: of independent noise that a picture consists of, at most. exchange: of the
+    schema's choices, or None for the scene's own.
     Raises native.Error with a sentence if the scene has no camera or cannot be drawn.
     """
 
-    def __init__(self, depsgraph, size, overrides, parts=SEEDS):
+    def __init__(self, depsgraph, size, overrides, parts=SEEDS, exchange=None):
         native = native_module.get()
         self._overrides = overrides
         scene = export.read_scene(depsgraph, meshes.MeshCache(), varied=False)
+        if exchange:
+            scene = dataclasses.replace(scene, exchange=exchange)
         # What is behind the grains is no part of a comparison: alpha tells where they are.
         self._scene = dataclasses.replace(scene, world=dataclasses.replace(scene.world, seen=False))
         self._views = self._all_views = [native.View(*size, seed=seed) for seed in range(parts)]
@@ -55,11 +59,13 @@ class Ours:
             else light for light in self._scene.lights
         )
 
-    def begin(self, chosen, least_sun=0.0, taps=None):
+    def begin(self, chosen, least_sun=0.0, taps=None, direct=False):
         """Starts a picture without samples. chosen: the case's choice of parameters. least_sun: radians; narrower suns
-        are widened to this. taps: of model 3, for each sample; None as they were."""
+        are widened to this. taps: of model 3, for each sample; None as they were. direct: without light between
+        grains."""
         changed = self._scene.with_materials(lambda material: self._material(material, chosen))
-        scene = dataclasses.replace(changed, lights=self._lights(least_sun)).to_native()
+        scene = dataclasses.replace(changed, lights=self._lights(least_sun),
+                                    exchange="off" if direct else self._scene.exchange).to_native()
         self._views = self._all_views
         for view in self._views:
             if taps:
@@ -75,6 +81,18 @@ class Ours:
         for view in self._views:
             view.render(share - view.samples)
         return [view.read() for view in self._views]
+
+    @property
+    def exchange(self):
+        """Of the schema's choices, as asked for."""
+        return self._scene.exchange
+
+    @property
+    def exchanged(self):
+        """What native.View.statistics says of light between grains in the last picture, and its stated error; None
+        where there is none."""
+        counts = self._views[0].statistics()["exchange"]
+        return counts and {**counts, "stated_error": stated_error.sentence(counts)}
 
     @property
     def drawn_otherwise(self):

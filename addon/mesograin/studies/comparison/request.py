@@ -35,7 +35,7 @@ class Request:
     other. until: adds seeds until the reference's noise is at most this fraction of the measured error, but no more
     than `most_seeds` in all; None for `seeds` as they are. masks: of `mask_names.parse`, applied in this order.
     part: of `kinds.PARTS`, or None for the whole. controls: whether the test itself is tested.
-    command: the line that repeats it."""
+    exchange: of the schema's choices, or None for the scene's own. command: the line that repeats it."""
 
     models: tuple
     out: Path
@@ -50,6 +50,7 @@ class Request:
     part: str = None
     controls: bool = False
     settings: dict = field(default_factory=dict)
+    exchange: str = None
     frames: int = 9
     cache: Cache = field(default_factory=Cache)
     command: str = ""

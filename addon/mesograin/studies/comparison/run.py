@@ -35,7 +35,7 @@ def _compare(request, depsgraph, progress):
     output = Output(request.out)
     size = request.size or _size(scene)
     overrides = export.overrides(request.settings, scene)
-    ours = Ours(depsgraph, size, overrides)
+    ours = Ours(depsgraph, size, overrides, exchange=request.exchange)
     for warning in ours.warnings:
         progress.say(warning)
 
@@ -53,6 +53,7 @@ def _compare(request, depsgraph, progress):
         "settings": {
             **origin.COMMON_SETTINGS,
             "samples": request.samples,
+            "exchange": ours.exchange,
             "seeds": request.seeds,
             "until": request.until,
             "masks": [[name, *numbers] for name, numbers in request.masks],
@@ -103,6 +104,7 @@ class _Comparison:
         left = self.progress.steps_left
         try:
             entry.update(self._measure(case, chosen))
+            entry["exchange"] = self.ours.exchanged
             for sentence in self.ours.drawn_otherwise:
                 self.progress.say(f"{case.name}: {sentence}")
         except (reference.ReferenceError, StageError, native.Error, RuntimeError, MemoryError, ValueError) as error:

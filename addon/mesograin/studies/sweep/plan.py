@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ...cycles.kinds import KINDS, PARTS, default_kind, has, missing_part
-from ...schema.parameters import PARAMETERS, SETTABLE
+from ...schema.parameters import PARAMETERS, SCENE, SETTABLE
 
 MODELS = tuple(dict.fromkeys(model for kind in KINDS.values() for model in kind.models))
 REFERENCES = tuple(KINDS)
@@ -70,6 +70,7 @@ SETTINGS = {
     "seeds": Whole(1, 1024),
     "part": Choice(PARTS),
     "controls": Switch(),
+    "exchange": Choice(tuple(choice.name for choice in SCENE["exchange"].choices)),
 }
 MOST_CASES = 100_000
 """More than anyone waits for, and fewer than fill the memory."""
@@ -112,7 +113,7 @@ class Case:
     @property
     def shared(self):
         """Equal for cases that are compared with one and the same reference."""
-        ours = ("samples",)
+        ours = ("samples", "exchange")
         theirs = [setting for setting in self.settings if setting[0] not in ours]
         return _digest([self.content, self.reference, self.parameters, theirs])
 

@@ -82,6 +82,7 @@ def build():
         "--frames", type=positive, default=25, metavar="N", help="frames whose median is the time of one (default: 25)"
     )
     shared.add_settings(parser, " for every material, on both sides")
+    shared.add_exchange(parser)
     shared.add_cache(parser)
     return parser
 

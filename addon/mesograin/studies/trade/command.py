@@ -35,6 +35,7 @@ def _run(chosen, words):
                 size=chosen.size,
                 frames=chosen.frames,
                 settings=chosen.settings,
+                exchange=chosen.exchange,
                 cache=cache,
                 command=shlex.join(["./mesograin", "trade", *words]),
             ),

@@ -36,13 +36,15 @@ DEFINITIONS = {
     ),
     "resolved": f"whether the error is above {curve.RESOLVED:g} of the noise floor; if not, it is at most what stands",
     "milliseconds": (
-        "ours: samples times frame_ms; the path tracer's: wall-clock time of one render on all cores of the CPU, with"
+        "ours: samples times frame_ms, without exchange_ms; the path tracer's: wall-clock time of one render on all"
+        " cores of the CPU, with"
         " the preparation of its scene"
     ),
     "frame_ms": (
         "milliseconds of all passes of a frame, one sample a pixel, on the device named; the median of frames_timed"
         " frames after a first one that prepared the device"
     ),
+    "exchange_ms": "milliseconds that light between grains took to be solved, once before the first sample; 0 if none",
     "noise_floor": "the error that a perfect picture would score, because the converged render is noisy itself",
     "front": "no other point is both faster and nearer to the converged render",
 }
@@ -52,8 +54,8 @@ DEFINITIONS = {
 class Request:
     """What to measure. reference: a name in `kinds.KINDS`; models: some of those that it answers. samples: a pixel, on
     our side; taps: of model 3. reference_samples: a pixel and seed, of the converged render; traced_samples: of those
-    that are measured against it. settings: {material parameter: value}, coefficients in 1/mm. command: the line that
-    repeats it."""
+    that are measured against it. settings: {material parameter: value}, coefficients in 1/mm. exchange: of the schema's
+    choices, or None for the scene's own. command: the line that repeats it."""
 
     out: Path
     reference: str
@@ -65,6 +67,7 @@ class Request:
     size: tuple
     frames: int = 25
     settings: dict = field(default_factory=dict)
+    exchange: str = None
     cache: Cache = field(default_factory=Cache)
     command: str = ""
 
@@ -85,7 +88,7 @@ def _measure(request, depsgraph, progress):
     native = native_module.get()
     output = Output(request.out)
     overrides = export.overrides(request.settings, bpy.context.scene)
-    ours = Ours(depsgraph, request.size, overrides, parts=1)
+    ours = Ours(depsgraph, request.size, overrides, parts=1, exchange=request.exchange)
     for warning in ours.warnings:
         progress.say(warning)
     progress.plan(_steps(request))
@@ -114,6 +117,7 @@ def _measure(request, depsgraph, progress):
         "settings": {
             **origin.COMMON_SETTINGS,
             "frames_timed": request.frames,
+            "exchange": ours.exchange,
         },
         "definitions": {**DEFINITIONS, **{name: definitions.definition(name) for name in METRICS}},
         "material": ours.parameters(chosen),
@@ -170,16 +174,20 @@ def _measure_model(request, ours, chosen, taps, book, progress, provenance):
     if not missing:
         progress.end(learn=False)
         return
-    ours.begin(chosen, kinds.KINDS[request.reference].least_sun, taps)
+    kind = kinds.KINDS[request.reference]
+    ours.begin(chosen, kind.least_sun, taps, kind.direct)
     images = {}
     for name, count in missing.items():
         (images[name],) = ours.refine(count)
         book.picture(name, images[name], {**provenance, "model": model, "samples": count, "taps": taps})
         progress.update(count / (request.samples[-1] + request.frames))
     frame_ms, passes = ours.time_frames(request.frames)
+    solved = ours.exchanged
+    exchange_ms = solved["milliseconds"] if solved else 0.0
     for name, count in missing.items():
         book.add(name, images[name], side="mesograin", model=model, taps=taps, samples=count,
-                 milliseconds=count * frame_ms, frame_ms=frame_ms, frames_timed=request.frames, passes_ms=passes)
+                 milliseconds=count * frame_ms, frame_ms=frame_ms, exchange_ms=exchange_ms,
+                 frames_timed=request.frames, passes_ms=passes)
     progress.end()
 
 
@@ -246,6 +254,7 @@ def _fingerprint(request, results, truth):
         results["device"]["renderer"],
         results["cpu"],
         request.frames,
+        results["settings"]["exchange"],
     ]
     return hashlib.sha256(json.dumps(described, sort_keys=True).encode()).hexdigest()
 
