@@ -174,6 +174,7 @@ def render(engine, folder, direct=False):
     scene = bpy.context.scene
     scene.render.engine = engine
     scene.mesograin.samples = SAMPLES["MESOGRAIN"]
+    scene.mesograin.exchange = "off"  # direct light is what is held against direct light
     cycles = scene.cycles
     cycles.samples, cycles.use_denoising, cycles.use_adaptive_sampling = SAMPLES["CYCLES"], False, False
     cycles.pixel_filter_type = "BOX"
