@@ -45,6 +45,7 @@ def heap(material, side=16):
     cube.data.materials.append(material)
     add_sun((0.2, 0.1, 1.0), 3.0)
     scene = bpy.context.scene
+    scene.mesograin.exchange = "off"  # direct light is what colours are compared in
     scene.render.resolution_x = scene.render.resolution_y = SIZE
     scene.render.resolution_percentage = 100
     add_camera((0.0, 0.0, 5.0), type="ORTHO", ortho_scale=2.0)
