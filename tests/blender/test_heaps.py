@@ -213,6 +213,8 @@ def test_few_grains_vary_as_well():
 class Updates(list):
     """What export.with_new_materials takes of a dependency graph."""
 
+    mode = "VIEWPORT"
+
     @property
     def updates(self):
         return self
