@@ -72,7 +72,7 @@ def measure(shapes, models, taps, samples, pictures=None):
     for image in shapes.images:
         truth = shapes.truth(image)
         for model in models:
-            drawn = shapes.draw(image, model, taps, samples)[..., 0]
+            drawn = shapes.draw(image, model, taps, samples)[..., "RGB".index(image.get("channel", "R"))]
             if pictures:
                 shapes.keep(pictures / f"{pathlib.Path(image['file']).stem}_{model}.exr", drawn)
             yield {"file": image["file"], "shape": pathlib.Path(image["mesh"]).stem, "eta": image["eta"],

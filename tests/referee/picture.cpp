@@ -10,8 +10,10 @@
 #include <optional>
 
 #include "base/error.h"
+#include "mesh_picture.h"
 #include "parallel.h"
 #include "reduced_light.h"
+#include "view.h"
 #include "walk.h"
 
 namespace mesograin::referee {
@@ -19,22 +21,12 @@ namespace {
 
 using scene::Boundary;
 
-struct Ray {
-  glm::dvec3 origin, direction;
-};
-
-/// Through the point x, y of the image, from -1 to 1, to the right and upwards.
-Ray view_ray(const glm::dmat4& clip_to_world, double x, double y) {
-  const glm::dvec4 near = clip_to_world * glm::dvec4(x, y, -1, 1), far = clip_to_world * glm::dvec4(x, y, 1, 1);
-  const glm::dvec3 origin = glm::dvec3(near) / near.w;
-  return {origin, glm::normalize(glm::dvec3(far) / far.w - origin)};
-}
-
 void check(const PictureCase& setup) {
   const scene::Material& material = setup.material;
   if (material.boundary == Boundary::dielectric && material.roughness > 0)
     throw Error("The referee's interface is smooth: roughness must be 0; got {}.", material.roughness);
   if (!(std::abs(material.g) < 1)) throw Error("The referee needs g inside (-1, 1); got {}.", material.g);
+  if (setup.mesh) return;
   if (!(setup.radius > 0)) throw Error("The sphere's radius must be positive; got {}.", setup.radius);
   if (glm::distance(view_ray(setup.clip_to_world, 0, 0).origin, setup.centre) <= setup.radius)
     throw Error("The camera must stand outside the sphere, its near plane too; move it away.");
@@ -131,16 +123,11 @@ std::optional<double> hit(const glm::dvec3& origin, const glm::dvec3& direction,
   return -along - std::sqrt(room);
 }
 
-glm::dvec3 sample_sun(const scene::DirectionalLight& sun, Rng& rng) {
-  const glm::dvec3 centre = glm::normalize(sun.direction_to_light);
-  if (sun.angle <= 0) return centre;
-  return sample_cone(centre, 1 - rng.uniform() * (1 - std::cos(sun.angle / 2)), rng);
-}
-
 }  // namespace
 
 Picture trace_picture(const PictureCase& setup, const std::function<void()>& row_done) {
   check(setup);
+  if (setup.mesh) return trace_mesh_picture(setup, row_done);
   const scene::Material& material = setup.material;
   std::vector<Grain> grains;
   std::size_t grain_of[3];

@@ -1,4 +1,4 @@
-// What a camera sees of a sphere in sunlight: radiance by backward walks, light of at least one scattering.
+// What a camera sees of a sphere or a mesh in sunlight: radiance by backward walks, light of at least one scattering.
 #pragma once
 
 #include <cstdint>
@@ -9,13 +9,17 @@
 
 #include "scene/light.h"
 #include "scene/material.h"
+#include "scene/mesh.h"
 
 namespace mesograin::referee {
 
-/// One sphere; lengths in scene units, coefficients per scene unit. Of the material its medium, eta and boundary count.
+/// One sphere, or one mesh; lengths in scene units, coefficients per scene unit. Of the material its medium, eta and
+/// boundary count.
 struct PictureCase {
   glm::dvec3 centre{0};
   double radius = 1;
+  scene::MeshPointer mesh;  ///< instead of the sphere
+  glm::dmat4 mesh_to_world{1};
   scene::Material material;
   std::vector<scene::DirectionalLight> lights;
   glm::dmat4 clip_to_world{1};  ///< OpenGL clip space

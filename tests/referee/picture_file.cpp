@@ -13,8 +13,9 @@ namespace mesograin::referee {
 PictureCase picture_case(const io::SceneFile& file) {
   const nlohmann::json source = nlohmann::json::parse(file.source);  // already read once, and found complete
   const nlohmann::json& geometry = source.at("geometry");
-  if (geometry.at("shape") != "sphere")
-    throw Error("The referee traces spheres: geometry.shape must be 'sphere'; got '{}'.",
+  const bool mesh = geometry.at("shape") == "mesh";
+  if (!mesh && geometry.at("shape") != "sphere")
+    throw Error("The referee traces spheres and meshes: geometry.shape must be 'sphere' or 'mesh'; got '{}'.",
                 geometry.at("shape").get<std::string>());
   const std::string kind = source.at("material").at("kind");
   if (kind == "diffuse" || kind == "conductor")
@@ -23,7 +24,12 @@ PictureCase picture_case(const io::SceneFile& file) {
   PictureCase setup;
   if (geometry.contains("centre"))
     for (int axis = 0; axis < 3; ++axis) setup.centre[axis] = geometry["centre"][static_cast<std::size_t>(axis)];
-  setup.radius = geometry.at("radius");
+  if (mesh) {
+    setup.mesh = file.scene.instances.front().mesh;
+    setup.mesh_to_world = file.scene.instances.front().object_to_world;
+  } else {
+    setup.radius = geometry.at("radius");
+  }
   setup.material = file.scene.instances.front().material;
   for (const scene::Light& light : file.scene.lights) {
     const auto* sun = std::get_if<scene::DirectionalLight>(&light);
