@@ -123,6 +123,7 @@ MaterialInputs prototype_inputs(const scene::Material& material, const StoredTra
   const glm::dvec3 sigma_t = stored.unit * stored_medium(material).sigma_t;
   if (stored.mean_chord * std::min({sigma_t.r, sigma_t.g, sigma_t.b}) < most_clear)
     inputs.defines.emplace_back("CLEAR");
+  if (stored.terms > (stored.channels == 1 ? 16 : 8)) inputs.defines.emplace_back("MANY_TERMS");
   inputs.uniforms["stored.x_axis"] = stored.axes[0];
   inputs.uniforms["stored.y_axis"] = stored.axes[1];
   inputs.uniforms["stored.z_axis"] = stored.axes[2];

@@ -2,13 +2,14 @@
 #include "transport/exchange.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <optional>
-#include <utility>
 
 #include "physics/physics.h"
 #include "transport/directions.h"
+#include "transport/near_extinctions.h"
 #include "transport/random.h"
 
 namespace mesograin::transport {
@@ -69,51 +70,66 @@ void find_way(const Body& body, double eta, glm::vec3 place, glm::vec3 direction
   way.ends_outside = false;
 }
 
-struct Row {
-  std::vector<std::pair<std::uint32_t, float>> entries;
-  double scattered = 0.0;
+struct Entry {
+  std::uint32_t column;
+  float value;
+  float distance;
 };
 
-void add_way(const Grid& grid, const Way& way, float sigma_t, float share, Random& random, Row& row) {
+struct Row {
+  std::vector<Entry> entries;
+  std::array<double, near_extinctions> scattered{};
+};
+
+/// How likely a way is ended by a scattering.
+float scattered_on(const Way& way, float sigma_t) {
+  return way.ends_outside ? -std::expm1(-sigma_t * way.length()) : 1.0F;
+}
+
+void add_way(const Grid& grid, const Way& way, const std::array<float, near_extinctions>& sigma_t, float share,
+             Random& random, Row& row) {
   if (way.segments.empty()) return;
-  const float within = -std::expm1(-sigma_t * way.length());
-  const float scattered = way.ends_outside ? within : 1.0F;
-  row.scattered += share * scattered;
+  for (std::size_t e = 0; e < near_extinctions; ++e) row.scattered[e] += share * scattered_on(way, sigma_t[e]);
+  const float middle = sigma_t[near_middle];
+  const float within = -std::expm1(-middle * way.length());
+  const float scattered = scattered_on(way, middle);
   if (!(scattered > 0.0F)) return;
   for (int sample = 0; sample < samples_a_way; ++sample) {
     const float u = (static_cast<float>(sample) + random.uniform()) / samples_a_way;
-    const float distance = sigma_t * way.length() > 1e-4F ? -std::log1p(-u * within) / sigma_t : u * way.length();
-    float choice = random.uniform();
-    std::uint32_t node = 0;
-    for (const Corner& corner : grid.corners(way.place_at(distance))) {
-      if (corner.weight <= 0.0F) continue;
-      node = static_cast<std::uint32_t>(corner.node);
-      choice -= corner.weight;
-      if (choice < 0.0F) break;
-    }
-    row.entries.emplace_back(node, share * scattered / samples_a_way);
+    const float distance = middle * way.length() > 1e-4F ? -std::log1p(-u * within) / middle : u * way.length();
+    const glm::vec3 choice(random.uniform(), random.uniform(), random.uniform());
+    const int node = grid.corner(way.place_at(distance), choice);
+    row.entries.push_back({static_cast<std::uint32_t>(node), share * scattered / samples_a_way, distance});
   }
 }
 
-void merge(std::vector<std::pair<std::uint32_t, float>>& entries) {
-  std::sort(entries.begin(), entries.end());
+/// Makes one of those of each column, the way their mean.
+void merge(std::vector<Entry>& entries) {
+  if (entries.empty()) return;
+  std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) { return a.column < b.column; });
   std::size_t last = 0;
-  for (std::size_t i = 1; i < entries.size(); ++i)
-    if (entries[i].first == entries[last].first)
-      entries[last].second += entries[i].second;
-    else
+  for (std::size_t i = 1; i < entries.size(); ++i) {
+    if (entries[i].column != entries[last].column) {
       entries[++last] = entries[i];
-  if (!entries.empty()) entries.resize(last + 1);
+      continue;
+    }
+    const float sum = entries[last].value + entries[i].value;
+    entries[last].distance += (entries[i].distance - entries[last].distance) * entries[i].value / sum;
+    entries[last].value = sum;
+  }
+  entries.resize(last + 1);
 }
 
 }  // namespace
 
-std::vector<Exchange> trace_exchange(const Body& body, const Grid& grid, double eta,
-                                     const std::vector<double>& extinctions, int across, const Effort& effort) {
+std::vector<TracedExchange> trace_exchange(const Body& body, const Grid& grid, double eta,
+                                           const std::vector<double>& extinctions, int across, const Effort& effort) {
   const std::size_t count = grid.places().size();
   const auto longest =
       static_cast<float>(deepest / std::max(*std::min_element(extinctions.begin(), extinctions.end()), 1e-6));
   const float share = 1.0F / static_cast<float>(across * across);
+  std::vector<std::array<float, near_extinctions>> near;
+  for (const double sigma_t : extinctions) near.push_back(extinctions_near(sigma_t));
   std::vector<std::vector<Row>> rows(extinctions.size(), std::vector<Row>(count));
   constexpr std::size_t nodes_a_piece = 64;
   run_pieces(effort, (count + nodes_a_piece - 1) / nodes_a_piece, [&](std::size_t piece) {
@@ -125,27 +141,56 @@ std::vector<Exchange> trace_exchange(const Body& body, const Grid& grid, double 
         const glm::vec3 direction = isotropic((static_cast<float>(i % across) + random.uniform()) / across,
                                               (static_cast<float>(row) + random.uniform()) / across);
         find_way(body, eta, grid.places()[node], direction, longest, random, way);
-        for (std::size_t e = 0; e < extinctions.size(); ++e)
-          add_way(grid, way, static_cast<float>(extinctions[e]), share, random, rows[e][node]);
+        for (std::size_t e = 0; e < extinctions.size(); ++e) add_way(grid, way, near[e], share, random, rows[e][node]);
       }
       for (std::vector<Row>& each : rows) merge(each[node].entries);
     }
   });
-  std::vector<Exchange> exchanges(extinctions.size());
+  std::vector<TracedExchange> exchanges(extinctions.size());
   for (std::size_t e = 0; e < extinctions.size(); ++e) {
-    Exchange& exchange = exchanges[e];
-    exchange.first.push_back(0);
+    TracedExchange& exchange = exchanges[e];
+    exchange.sigma_t = extinctions[e];
+    std::size_t entries = 0;
+    for (const Row& row : rows[e]) entries += row.entries.size();
+    exchange.traced.first.reserve(count + 1);
+    exchange.traced.columns.reserve(entries);
+    exchange.traced.values.reserve(entries);
+    exchange.distances.reserve(entries);
+    exchange.traced.escape.reserve(count);
+    exchange.escapes.reserve(near_extinctions * count);
+    exchange.traced.first.push_back(0);
     for (Row& row : rows[e]) {
-      for (const auto& [column, value] : row.entries) {
-        exchange.columns.push_back(column);
-        exchange.values.push_back(value);
+      for (const Entry& entry : row.entries) {
+        exchange.traced.columns.push_back(entry.column);
+        exchange.traced.values.push_back(entry.value);
+        exchange.distances.push_back(entry.distance);
       }
-      exchange.first.push_back(exchange.columns.size());
-      exchange.escape.push_back(static_cast<float>(1.0 - row.scattered));
+      exchange.traced.first.push_back(exchange.traced.columns.size());
+      exchange.traced.escape.push_back(static_cast<float>(1.0 - row.scattered[near_middle]));
+      for (const double scattered : row.scattered)
+        exchange.escapes.push_back(known_logarithm(static_cast<float>(1.0 - scattered)));
       row.entries = {};
     }
   }
   return exchanges;
+}
+
+// What came a way d was met with the density sigma_t exp(-sigma_t d).
+Exchange TracedExchange::at(double other_sigma_t) const {
+  Exchange exchange = traced;
+  const auto change = static_cast<float>(other_sigma_t - sigma_t);
+  if (change == 0.0F) return exchange;
+  const NearWeights weights(sigma_t, other_sigma_t);
+  for (std::size_t row = 0; row < exchange.rows(); ++row) {
+    exchange.escape[row] = weights.decayed(&escapes[row * near_extinctions]);
+    double sum = 0.0;
+    for (std::size_t entry = exchange.first[row]; entry < exchange.first[row + 1]; ++entry)
+      sum += exchange.values[entry] *= std::exp(-change * distances[entry]);
+    const float right = (1.0F - exchange.escape[row]) / static_cast<float>(std::max(sum, 1e-30));
+    for (std::size_t entry = exchange.first[row]; entry < exchange.first[row + 1]; ++entry)
+      exchange.values[entry] *= right;
+  }
+  return exchange;
 }
 
 }  // namespace mesograin::transport

@@ -1,12 +1,14 @@
 // How much of the light at a node comes from scattering at every other one: rays from each node, reflected inside.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
 #include "transport/body.h"
 #include "transport/effort.h"
 #include "transport/grid.h"
+#include "transport/near_extinctions.h"
 
 namespace mesograin::transport {
 
@@ -21,8 +23,18 @@ struct Exchange {
   std::size_t rows() const { return escape.size(); }
 };
 
+/// The same, that knows how long the ways of its entries were, and so what it is at extinctions near its own.
+struct TracedExchange {
+  Exchange traced;
+  double sigma_t = 1.0;            ///< that it was traced at
+  std::vector<float> distances;    ///< of each entry: the mean way from the node
+  std::vector<Logarithm> escapes;  ///< [row][extinction of `near_extinctions`]
+
+  Exchange at(double other_sigma_t) const;
+};
+
 /// One for each of `extinctions` (sigma_t per unit of the body), all from the same rays, `across` squared a node.
-std::vector<Exchange> trace_exchange(const Body& body, const Grid& grid, double eta,
-                                     const std::vector<double>& extinctions, int across, const Effort& effort);
+std::vector<TracedExchange> trace_exchange(const Body& body, const Grid& grid, double eta,
+                                           const std::vector<double>& extinctions, int across, const Effort& effort);
 
 }  // namespace mesograin::transport

@@ -68,29 +68,68 @@ Grid::Grid(const Body& body, int nodes, const Effort& effort) {
     places_.push_back(nearest[i]);
     depths_.push_back(std::max(-distances_[i], 0.0F));
   }
+  list_cells();
   measure_volumes(body);
   choose_deputies();
 }
 
-std::array<Corner, 8> Grid::corners(const glm::vec3& place) const {
+void Grid::list_cells() {
+  for (int z = 0; z + 1 < size_.z; ++z)
+    for (int y = 0; y + 1 < size_.y; ++y)
+      for (int x = 0; x + 1 < size_.x; ++x) {
+        Cell cell{{}, true};
+        for (unsigned corner = 0; corner < 8; ++corner) {
+          const glm::ivec3 step(static_cast<int>(corner & 1U), static_cast<int>(corner >> 1U & 1U),
+                                static_cast<int>(corner >> 2U));
+          cell.used[corner] = used_[index(glm::ivec3(x, y, z) + step)];
+          cell.whole = cell.whole && cell.used[corner] >= 0;
+        }
+        cells_.push_back(cell);
+      }
+}
+
+const Grid::Cell& Grid::cell(const glm::vec3& place, glm::vec3& along) const {
   const glm::vec3 scaled = (place - lower_) / spacing_;
-  const glm::ivec3 cell = glm::clamp(glm::ivec3(glm::floor(scaled)), glm::ivec3(0), size_ - 2);
-  const glm::vec3 along = glm::clamp(scaled - glm::vec3(cell), 0.0F, 1.0F);
+  const glm::ivec3 at = glm::clamp(glm::ivec3(scaled), glm::ivec3(0), size_ - 2);
+  along = glm::clamp(scaled - glm::vec3(at), 0.0F, 1.0F);
+  const int number = (at.z * (size_.y - 1) + at.y) * (size_.x - 1) + at.x;
+  return cells_[static_cast<std::size_t>(number)];
+}
+
+std::array<Corner, 8> Grid::corners(const glm::vec3& place) const {
+  glm::vec3 along;
+  const Cell& around = cell(place, along);
+  const glm::vec3 rest = 1.0F - along;
+  const float low[] = {rest.x * rest.y, along.x * rest.y, rest.x * along.y, along.x * along.y};
   std::array<Corner, 8> result{};
+  for (unsigned corner = 0; corner < 8; ++corner)
+    result[corner] = {around.used[corner], low[corner & 3U] * (corner < 4 ? rest.z : along.z)};
+  if (around.whole) return result;
+  // What rounding takes for outside has a corner that is not used.
   float sum = 0.0F;
-  for (unsigned corner = 0; corner < 8; ++corner) {
-    const glm::ivec3 step(static_cast<int>(corner & 1U), static_cast<int>(corner >> 1U & 1U),
-                          static_cast<int>(corner >> 2U));
-    const glm::ivec3 node = cell + step;
-    const int used = used_[index(node)];
-    const glm::vec3 share = glm::mix(1.0F - along, along, glm::vec3(step));
-    // What rounding takes for outside has a corner that is not used.
-    const float weight = used < 0 ? 0.0F : share.x * share.y * share.z;
-    result[corner] = {std::max(used, 0), weight};
-    sum += weight;
+  for (Corner& corner : result) {
+    if (corner.node < 0) corner = {0, 0.0F};
+    sum += corner.weight;
   }
   for (Corner& corner : result) corner.weight /= std::max(sum, 1e-6F);
   return result;
+}
+
+int Grid::corner(const glm::vec3& place, const glm::vec3& random) const {
+  glm::vec3 along;
+  const Cell& around = cell(place, along);
+  if (around.whole)
+    return around
+        .used[(random.x < along.x ? 1U : 0U) + (random.y < along.y ? 2U : 0U) + (random.z < along.z ? 4U : 0U)];
+  float choice = random.x;
+  int node = 0;
+  for (const Corner& corner : corners(place)) {
+    if (corner.weight <= 0.0F) continue;
+    node = corner.node;
+    choice -= corner.weight;
+    if (choice < 0.0F) break;
+  }
+  return node;
 }
 
 std::size_t Grid::index(const glm::ivec3& node) const {
@@ -99,8 +138,8 @@ std::size_t Grid::index(const glm::ivec3& node) const {
 }
 
 void Grid::measure_volumes(const Body& body) {
-  // By straight lines from three sides.
-  constexpr int across = 96;
+  // By straight lines from three sides, four through each cell's side.
+  const int across = 4 * std::max({size_.x, size_.y, size_.z});
   std::vector<double> volumes(places_.size(), 0.0);
   const float step = 0.25F * std::min({spacing_.x, spacing_.y, spacing_.z});
   const glm::vec3 sides[] = {{1.0F, 0.02F, 0.03F}, {0.03F, 1.0F, 0.02F}, {0.02F, 0.03F, 1.0F}};
@@ -110,8 +149,8 @@ void Grid::measure_volumes(const Body& body) {
     const double share = incidence.area() / (3.0 * across * across);
     for (int i = 0; i < across * across; ++i) {
       const int row = i / across;
-      glm::vec3 place =
-          incidence.start((static_cast<float>(i % across) + 0.5F) / across, (static_cast<float>(row) + 0.5F) / across);
+      glm::vec3 place = incidence.start((static_cast<float>(i % across) + 0.5F) / static_cast<float>(across),
+                                        (static_cast<float>(row) + 0.5F) / static_cast<float>(across));
       while (const std::optional<Hit> hit = body.first_hit(place, direction)) {
         if (glm::dot(hit->normal, direction) > 0.0F) {
           const int steps = std::max(1, static_cast<int>(std::ceil(hit->distance / step)));

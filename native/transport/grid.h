@@ -50,8 +50,18 @@ class Grid {
   /// The used nodes around a place inside the body; their weights make 1.
   std::array<Corner, 8> corners(const glm::vec3& place) const;
 
+  /// One of them, as often as its weight says for `random` uniform in [0, 1), each for itself.
+  int corner(const glm::vec3& place, const glm::vec3& random) const;
+
  private:
+  struct Cell {
+    std::array<int, 8> used;
+    bool whole;  ///< all corners are used
+  };
+
   std::size_t index(const glm::ivec3& node) const;
+  const Cell& cell(const glm::vec3& place, glm::vec3& along) const;
+  void list_cells();
   void measure_volumes(const Body& body);
   void choose_deputies();
 
@@ -60,6 +70,7 @@ class Grid {
   glm::vec3 spacing_{1.0F};
   std::vector<float> distances_;
   std::vector<int> used_;
+  std::vector<Cell> cells_;
   std::vector<glm::vec3> places_;
   std::vector<float> depths_;
   std::vector<float> volumes_;

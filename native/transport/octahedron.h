@@ -10,7 +10,7 @@
 namespace mesograin::transport {
 
 /// Texels along each side of the map.
-inline constexpr int octahedron_side = 16;
+inline constexpr int octahedron_side = 32;
 inline constexpr int octahedron_texels = octahedron_side * octahedron_side;
 
 /// The direction at u, v in [0, 1]: z is up in the middle and down in the corners.

@@ -2,23 +2,25 @@
 #include "transport/stored_transport.h"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <glm/matrix.hpp>
+#include <memory>
 
-#include "transport/exchange.h"
-#include "transport/grid.h"
-#include "transport/multiple.h"
 #include "transport/octahedron.h"
-#include "transport/unscattered.h"
+#include "transport/random.h"
 
 namespace mesograin::transport {
 namespace {
 
 // Terms that the light is solved for; fewer of them are stored.
 constexpr int solved_terms = 32;
-constexpr int grey_terms = 16;
-constexpr int coloured_terms = 8;
+
+int stored_terms(const StoredMedium& medium, const Quality& quality) {
+  const int grey = quality.many_terms ? 24 : 16;
+  return medium.grey() ? grey : grey / 2;
+}
 
 /// A few functions of the direction, and how much of each is in every row.
 struct Terms {
@@ -26,14 +28,45 @@ struct Terms {
   Lights lobes;    ///< a row a term, a column a texel of the octahedral map
 };
 
-/// The terms that leave least out, `weights` of rows and solid angles of texels considered (principal components).
+/// The directions of the row space that most of `rows` is in, a column each: subspace iteration from random directions
+/// (Halko, Martinsson and Tropp, "Finding structure with randomness", 2011, algorithm 4.4).
+Eigen::MatrixXf leading_directions(const Lights& rows, int count) {
+  constexpr int more = 8;
+  constexpr int turns = 4;
+  Random random(1, 0);
+  Eigen::MatrixXf basis(rows.cols(), count + more);
+  for (Eigen::Index i = 0; i < basis.size(); ++i) basis.data()[i] = random.uniform() - 0.5F;
+  const auto orthonormal = [](const Eigen::MatrixXf& columns) -> Eigen::MatrixXf {
+    return Eigen::HouseholderQR<Eigen::MatrixXf>(columns).householderQ() *
+           Eigen::MatrixXf::Identity(columns.rows(), columns.cols());
+  };
+  for (int turn = 0; turn < turns; ++turn) {
+    const Eigen::MatrixXf seen = rows * basis;
+    basis = orthonormal(rows.transpose() * seen);
+  }
+  const Eigen::MatrixXf seen = rows * basis;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXf> solver(seen.transpose() * seen);
+  return basis * solver.eigenvectors().rightCols(count);
+}
+
+/// The terms that leave least out, solid angles of texels considered (principal components). So that light which hardly
+/// enters, for it grazes a flat grain, is told well too, directions count by the root of what they let in. They are
+/// found from a part of the rows.
 Terms principal_terms(const Lights& light, int terms) {
   const std::array<float, octahedron_texels> angles = octahedron_solid_angles();
-  const Eigen::RowVectorXf roots = Eigen::Map<const Eigen::RowVectorXf>(angles.data(), octahedron_texels).cwiseSqrt();
-  const Eigen::MatrixXf weighed = light.array().rowwise() * roots.array();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXf> solver(weighed.transpose() * weighed);
-  const Eigen::MatrixXf vectors = solver.eigenvectors().rightCols(terms);
-  return {weighed * vectors, (vectors.array().colwise() / roots.transpose().array()).matrix().transpose()};
+  const Eigen::ArrayXf entered = light.colwise().norm().transpose().array();
+  const Eigen::RowVectorXf weights =
+      (Eigen::Map<const Eigen::ArrayXf>(angles.data(), octahedron_texels) / entered.max(1e-3F * entered.mean()))
+          .sqrt()
+          .matrix()
+          .transpose();
+  const Lights weighed = light.array().rowwise() * weights.array();
+  constexpr Eigen::Index enough_rows = 4000;
+  const Eigen::Index stride = 1 + light.rows() / enough_rows;
+  Lights part(light.rows() / stride, light.cols());
+  for (Eigen::Index row = 0; row < part.rows(); ++row) part.row(row) = weighed.row(row * stride);
+  const Eigen::MatrixXf vectors = leading_directions(part, terms);
+  return {weighed * vectors, (vectors.array().colwise() / weights.transpose().array()).matrix().transpose()};
 }
 
 /// Takes the terms apart anew, so that the first of them say most of what leaves the body.
@@ -62,16 +95,16 @@ double node_spacing(const Body& body, const Quality& quality) {
   return std::cbrt(extent.x * extent.y * extent.z / quality.nodes);
 }
 
-StoredTransport compute_transport(const Body& body, const StoredMedium& medium, const Quality& quality,
-                                  const Effort& effort) {
-  const Grid grid(body, quality.nodes, part_of(effort, 0.0, 0.1));
+StoredTransport compute_transport(Walks& walks, const StoredMedium& medium, const Effort& effort) {
+  const Body& body = walks.body();
+  const Grid& grid = walks.grid();
   StoredTransport stored{.size = grid.size(),
                          .lower = grid.lower(),
                          .spacing = grid.spacing(),
                          .unit = body.unit(),
                          .axes = glm::mat3(glm::transpose(body.axes())),
                          .mean_chord = 4.0 * body.volume() / body.area(),  // Cauchy
-                         .terms = medium.grey() ? grey_terms : coloured_terms,
+                         .terms = stored_terms(medium, walks.quality()),
                          .channels = medium.grey() ? 1 : 3,
                          .distances = grid.distances(),
                          .sources = {},
@@ -90,22 +123,16 @@ StoredTransport compute_transport(const Body& body, const StoredMedium& medium, 
     extinction_of[static_cast<std::size_t>(channel)] = static_cast<std::size_t>(found - extinctions.begin());
     if (found == extinctions.end()) extinctions.push_back(medium.sigma_t[channel]);
   }
-  const auto entered =
-      unscattered_light(body, grid, medium.eta, extinctions, quality.light_across, part_of(effort, 0.1, 0.4));
-  const std::vector<Exchange> exchanges =
-      trace_exchange(body, grid, medium.eta, extinctions, quality.way_across, part_of(effort, 0.4, 0.8));
+  walks.trace(extinctions, part_of(effort, 0.0, 0.8));
+  std::vector<Exchange> exchanges;
+  for (const double sigma_t : extinctions) exchanges.push_back(walks.exchange(sigma_t));
 
   // One set of lobes for all channels.
   const auto nodes = static_cast<Eigen::Index>(grid.places().size());
   Lights all(nodes * channels, octahedron_texels);
   for (int channel = 0; channel < channels; ++channel) {
     const std::size_t e = extinction_of[static_cast<std::size_t>(channel)];
-    Lights light(nodes, octahedron_texels);
-    for (Eigen::Index texel = 0; texel < octahedron_texels; ++texel)
-      for (Eigen::Index node = 0; node < nodes; ++node)
-        light(node, texel) =
-            entered[static_cast<std::size_t>(texel)]
-                   [static_cast<std::size_t>(grid.deputies()[static_cast<std::size_t>(node)]) * extinctions.size() + e];
+    Lights light = walks.unscattered(extinctions[e]);
     calibrate(light, exchanges[e], medium.eta);
     all.middleRows(channel * nodes, nodes) = light;
   }
@@ -138,6 +165,12 @@ StoredTransport compute_transport(const Body& body, const StoredMedium& medium, 
   for (int term = 0; term < kept; ++term)
     for (Eigen::Index texel = 0; texel < octahedron_texels; ++texel) stored.lobes.push_back(terms.lobes(term, texel));
   return stored;
+}
+
+StoredTransport compute_transport(const Body& body, const StoredMedium& medium, const Quality& quality,
+                                  const Effort& effort) {
+  Walks walks(std::make_shared<Body>(body), medium.eta, quality, part_of(effort, 0.0, 0.1));
+  return compute_transport(walks, medium, part_of(effort, 0.1, 1.0));
 }
 
 }  // namespace mesograin::transport

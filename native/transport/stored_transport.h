@@ -9,6 +9,7 @@
 
 #include "transport/body.h"
 #include "transport/effort.h"
+#include "transport/walks.h"
 
 namespace mesograin::transport {
 
@@ -21,13 +22,6 @@ struct StoredMedium {
   bool grey() const {
     return sigma_t.r == sigma_t.g && sigma_t.r == sigma_t.b && albedo.r == albedo.g && albedo.r == albedo.b;
   }
-};
-
-/// How much work goes into it.
-struct Quality {
-  int nodes = 12000;      ///< of the grid in the body's box
-  int light_across = 64;  ///< rays for each direction of light, squared
-  int way_across = 16;    ///< rays from each node, squared
 };
 
 struct StoredTransport {
@@ -49,6 +43,10 @@ struct StoredTransport {
 /// How far the grid's nodes will be from one another, in units of the body.
 double node_spacing(const Body& body, const Quality& quality);
 
+/// Traces what `walks`, which have the medium's eta, do not know yet. The answer does not depend on what they know.
+StoredTransport compute_transport(Walks& walks, const StoredMedium& medium, const Effort& effort = {});
+
+/// With walks of its own.
 StoredTransport compute_transport(const Body& body, const StoredMedium& medium, const Quality& quality = {},
                                   const Effort& effort = {});
 

@@ -26,6 +26,8 @@ class Tracks {
       : grid_(grid),
         extinctions_(extinctions.begin(), extinctions.end()),
         sums_(grid.places().size() * extinctions.size(), 0.0F),
+        passed_(extinctions.size()),
+        tracks_(extinctions.size()),
         step_(0.5F * std::min({grid.spacing().x, grid.spacing().y, grid.spacing().z})) {}
 
   /// Leaves the fluence of a ray of `flux` on its way; each extinction has so much of it left as `left` says.
@@ -34,14 +36,17 @@ class Tracks {
     const int steps = std::max(1, static_cast<int>(std::ceil(length / step_)));
     const float step = length / static_cast<float>(steps);
     const std::size_t count = extinctions_.size();
+    for (std::size_t e = 0; e < count; ++e) {
+      passed_[e] = std::exp(-extinctions_[e] * step);
+      tracks_[e] = flux * (extinctions_[e] * step > 1e-4F ? (1.0F - passed_[e]) / extinctions_[e] : step);
+    }
     for (int s = 0; s < steps; ++s) {
       const auto corners = grid_.corners(place + (static_cast<float>(s) + random.uniform()) * step * direction);
       for (std::size_t e = 0; e < count; ++e) {
-        const float passed = left[e] * std::exp(-extinctions_[e] * step);
-        const float track = extinctions_[e] * step > 1e-4F ? (left[e] - passed) / extinctions_[e] : left[e] * step;
-        left[e] = passed;
+        const float track = left[e] * tracks_[e];
+        left[e] *= passed_[e];
         for (const Corner& corner : corners)
-          sums_[static_cast<std::size_t>(corner.node) * count + e] += flux * track * corner.weight;
+          sums_[static_cast<std::size_t>(corner.node) * count + e] += track * corner.weight;
       }
     }
   }
@@ -52,6 +57,8 @@ class Tracks {
   const Grid& grid_;
   std::vector<float> extinctions_;
   std::vector<float> sums_;
+  std::vector<float> passed_;  // of a step, for each extinction
+  std::vector<float> tracks_;  // of a whole ray's step
   float step_;
 };
 
@@ -77,10 +84,8 @@ void follow(const Body& body, float eta, glm::vec3 place, glm::vec3 direction, f
 
 }  // namespace
 
-std::vector<std::vector<float>> unscattered_light(const Body& body, const Grid& grid, double eta,
-                                                  const std::vector<double>& extinctions, int across,
-                                                  const Effort& effort) {
-  std::vector<std::vector<float>> light(octahedron_texels);
+void unscattered_light(const Body& body, const Grid& grid, double eta, const std::vector<double>& extinctions,
+                       int across, const KeepLight& keep, const Effort& effort) {
   const auto index = static_cast<float>(eta);
   run_pieces(effort, octahedron_texels, [&](std::size_t texel) {
     const Incidence incidence(body, octahedron_direction(static_cast<int>(texel)));
@@ -105,9 +110,8 @@ std::vector<std::vector<float>> unscattered_light(const Body& body, const Grid& 
     for (std::size_t node = 0; node < grid.places().size(); ++node)
       for (std::size_t e = 0; e < extinctions.size(); ++e)
         radiance[node * extinctions.size() + e] *= share / std::max(grid.volumes()[node], 1e-12F);
-    light[texel] = std::move(radiance);
+    keep(texel, radiance);
   });
-  return light;
 }
 
 }  // namespace mesograin::transport

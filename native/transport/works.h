@@ -1,5 +1,5 @@
 // Where prototypes' transport is computed: on a thread of its own, coarsely first, given up when nobody waits any more,
-// and not at all if it was computed before.
+// and not at all if it was computed before. What rays found in a mesh is kept for its next medium.
 #pragma once
 
 #include <atomic>
@@ -15,6 +15,7 @@
 #include "scene/mesh.h"
 #include "transport/stored_transport.h"
 #include "transport/transport_cache.h"
+#include "transport/walks_shelf.h"
 
 namespace mesograin::transport {
 
@@ -73,13 +74,16 @@ class Works {
     Order order;
     std::string name;
     std::string about;
+    std::string about_body;  // what its walks depend on, besides their quality
     std::weak_ptr<Computation> computation;
   };
 
   void loop(const std::stop_token& stop);
-  void work(const Job& job, const std::stop_token& stop) const;
+  void work(const Job& job, const std::stop_token& stop);
+  std::shared_ptr<Walks> walks(const Job& job, const Quality& quality, const Effort& effort);
 
   TransportCache cache_;
+  WalksShelf shelf_;  // of the thread
   std::mutex mutex_;
   std::condition_variable_any wake_;
   std::vector<Job> jobs_;

@@ -4,6 +4,7 @@
 //
 // What is chosen at compile time (models::transport_inputs), besides what dielectric.glsl names:
 //   CLEAR                so much crosses the grain unscattered that it is seen
+//   MANY_TERMS           a half more of them: the grain is not thick
 //   GREY                 red, green and blue are the same medium: a texel of `sources` holds four terms, else one in three colours
 #include "models/dielectric.glsl"
 #include "models/interface.glsl"
@@ -33,11 +34,19 @@ uniform mat3 grain_to_prototype;  // a turn
 #ifdef GREY
 #define Spectrum float
 #define SPECTRUM(value) (value).r
+#ifdef MANY_TERMS
+const int TERMS = 24;
+#else
 const int TERMS = 16;
+#endif
 #else
 #define Spectrum vec3
 #define SPECTRUM(value) (value).rgb
+#ifdef MANY_TERMS
+const int TERMS = 12;
+#else
 const int TERMS = 8;
+#endif
 #endif
 
 // Terms of the source function: of the place, blocks of nodes behind one another; of the light's direction, octahedral maps with frames below

@@ -81,7 +81,7 @@ std::vector<scene::Material> every_choice() {
 
 void write_shading(Writer& writer) {
   // As render::Shading.
-  const std::vector<std::string> clear = {"CLEAR", "WORLD"};
+  const std::vector<std::string> clear = {"CLEAR", "WORLD", "MANY_TERMS"};
   const std::vector<std::string> cast = {"SHADOWS", "CAST_SHADOWS"};
   const std::vector<std::vector<std::string>> shadings = {
       {"INSTANCED"}, {"SHADOWS"}, cast, {"EXCHANGE"}, {"LIGHTS_AT_PLACE"}, {"INSTANCED", "SHADOWS", "LIGHTS_AT_PLACE"},

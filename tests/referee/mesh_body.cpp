@@ -119,7 +119,8 @@ std::optional<MeshHit> MeshBody::first_hit(const glm::dvec3& origin, const glm::
 
 std::size_t MeshBody::cell(const glm::dvec3& place) const {
   const glm::ivec3 at = glm::clamp(glm::ivec3(glm::floor((place - lower_) / cell_size_)), 0, cells_ - 1);
-  return static_cast<std::size_t>((at.z * cells_ + at.y) * cells_ + at.x);
+  const int number = (at.z * cells_ + at.y) * cells_ + at.x;
+  return static_cast<std::size_t>(number);
 }
 
 double MeshBody::clearance(const glm::dvec3& place) const { return clearances_[cell(place)]; }
@@ -127,10 +128,12 @@ double MeshBody::clearance(const glm::dvec3& place) const { return clearances_[c
 // Cells that a triangle's box reaches into have none; those k cells beyond have that many less one.
 void MeshBody::measure_clearance() {
   cell_size_ = glm::max((upper_ - lower_) / static_cast<double>(cells_), glm::dvec3(1e-12));
-  std::vector<int> steps(static_cast<std::size_t>(cells_ * cells_ * cells_), -1);
+  constexpr int count = cells_ * cells_ * cells_;
+  std::vector<int> steps(count, -1);
   std::deque<glm::ivec3> border;
   const auto index = [](const glm::ivec3& at) {
-    return static_cast<std::size_t>((at.z * cells_ + at.y) * cells_ + at.x);
+    const int number = (at.z * cells_ + at.y) * cells_ + at.x;
+    return static_cast<std::size_t>(number);
   };
   const auto each = [](const glm::ivec3& first, const glm::ivec3& last, const auto& visit) {
     for (int z = std::max(first.z, 0); z <= std::min(last.z, cells_ - 1); ++z)
@@ -157,7 +160,7 @@ void MeshBody::measure_clearance() {
     });
   }
   const double side = std::min({cell_size_.x, cell_size_.y, cell_size_.z});
-  for (const int count : steps) clearances_.push_back(static_cast<float>(0.999 * side * std::max(count - 1, 0)));
+  for (const int away : steps) clearances_.push_back(static_cast<float>(0.999 * side * std::max(away - 1, 0)));
 }
 
 }  // namespace mesograin::referee

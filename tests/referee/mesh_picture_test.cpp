@@ -91,7 +91,8 @@ TEST(MeshPicture, OfACubeIsAnotherMonteCarlos) {
         double theirs = 0;
         for (int i = 0; i < finer * finer; ++i)
           theirs += truth.image.view().at(x * finer + i % finer, y * finer + i / finer)[red] / (finer * finer);
-        const auto block = static_cast<std::size_t>(y * blocks + x);
+        const int number = y * blocks + x;
+        const auto block = static_cast<std::size_t>(number);
         const double ours = picture.radiance[block].x;
         noise += picture.noise[block].x * std::sqrt(2 / std::numbers::pi);
         total += ours;

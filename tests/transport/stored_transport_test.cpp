@@ -6,15 +6,20 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 
 #include "scene/sphere.h"
 #include "shapes.h"
+#include "transport/exchange.h"
+#include "transport/multiple.h"
+#include "transport/near_extinctions.h"
 #include "transport/octahedron.h"
+#include "transport/walks.h"
 
 namespace mesograin::transport {
 namespace {
 
-constexpr Quality coarse{.nodes = 2500, .light_across = 32, .way_across = 12};
+constexpr Quality coarse{.nodes = 2500, .light_across = 16, .way_across = 12};
 
 /// The source function under radiance 1 from everywhere, at nodes inside the body.
 std::vector<float> under_even_light(const StoredTransport& stored) {
@@ -49,7 +54,7 @@ TEST(StoredTransport, KeepsItsEnergy) {
 TEST(StoredTransport, DependsOnTheSeedAloneNotOnThreads) {
   const Body body(cube());
   const StoredMedium medium{{2.0, 3.0, 4.0}, {0.9, 0.5, 0.99}, 1.3};
-  constexpr Quality quick{.nodes = 400, .light_across = 8, .way_across = 4};
+  constexpr Quality quick{.nodes = 400, .light_across = 4, .way_across = 4};
   const StoredTransport one = compute_transport(body, medium, quick, {.threads = 1});
   const StoredTransport three = compute_transport(body, medium, quick, {.threads = 3});
   EXPECT_EQ(one.sources, three.sources);
@@ -73,6 +78,38 @@ TEST(StoredTransport, KeepsItsChannelsApart) {
   };
   const double grey = green(glm::dvec3(3.0), glm::dvec3(0.9));
   EXPECT_NEAR(green({1.0, 3.0, 6.0}, {0.5, 0.9, 0.99}) / grey, 1.0, 0.01);
+}
+
+// Another colour traces nothing: walks that were traced for one extinction and albedo answer for others nearby as
+// walks that were traced for these.
+TEST(StoredTransport, ReusesItsWalksForOtherColours) {
+  const auto body = std::make_shared<const Body>(cube());
+  Walks walks(body, 1.3, coarse, {});
+  const double step = nearest_step(3.0);
+  walks.trace({step}, {});
+  const std::size_t known = walks.bytes();
+  for (const double change : {0.83, 1.0, 1.2}) {
+    const StoredMedium medium{glm::dvec3(step * change), glm::dvec3(0.95), 1.3};
+    compute_transport(walks, medium);
+    EXPECT_EQ(walks.bytes(), known) << "nothing was traced";
+    const TracedExchange fresh =
+        trace_exchange(*body, walks.grid(), 1.3, {step * change}, coarse.way_across, Effort{.seed = 7})[0];
+    const Exchange near = walks.exchange(step * change);
+    double difference = 0.0, sum = 0.0;
+    for (std::size_t row = 0; row < near.rows(); ++row) {
+      difference += std::abs(near.escape[row] - fresh.traced.escape[row]);
+      sum += fresh.traced.escape[row];
+    }
+    EXPECT_LT(difference / sum, 0.07) << change;  // two seeds at one extinction: 0.05
+    Lights one(static_cast<Eigen::Index>(near.rows()), 1);
+    one.col(0) = walks.unscattered(step * change).col(octahedron_texels / 2 + 5);
+    const Lights ours = solve_multiple(near, 0.95, one, {}), theirs = solve_multiple(fresh.traced, 0.95, one, {});
+    EXPECT_NEAR(ours.sum() / theirs.sum(), 1.0, 0.01) << change;
+    EXPECT_LT((ours - theirs).cwiseAbs().sum() / theirs.sum(), 0.05) << change;
+  }
+  // The same medium, whatever was asked for before.
+  const StoredMedium medium{glm::dvec3(1.1 * step), glm::dvec3(0.95), 1.3};
+  EXPECT_EQ(compute_transport(walks, medium).sources, compute_transport(*body, medium, coarse).sources);
 }
 
 TEST(StoredTransport, IsBrighterWhereTheLightComesFrom) {

@@ -12,6 +12,7 @@
 
 #include "base/file.h"
 #include "shapes.h"
+#include "transport/octahedron.h"
 #include "transport/transport_file.h"
 
 namespace mesograin::transport {
@@ -38,7 +39,7 @@ class WorksTest : public testing::Test {
     stored.channels = 1;
     stored.distances.assign(8, 0.5F);
     stored.sources.assign(32, 0.25F);
-    stored.lobes.assign(4 * 256, 1.0F);
+    stored.lobes.assign(4 * octahedron_texels, 1.0F);
     return stored;
   }
 
