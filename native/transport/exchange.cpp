@@ -129,6 +129,7 @@ std::vector<TracedExchange> trace_exchange(const Body& body, const Grid& grid, d
       static_cast<float>(deepest / std::max(*std::min_element(extinctions.begin(), extinctions.end()), 1e-6));
   const float share = 1.0F / static_cast<float>(across * across);
   std::vector<std::array<float, near_extinctions>> near;
+  near.reserve(extinctions.size());
   for (const double sigma_t : extinctions) near.push_back(extinctions_near(sigma_t));
   std::vector<std::vector<Row>> rows(extinctions.size(), std::vector<Row>(count));
   constexpr std::size_t nodes_a_piece = 64;
