@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/error.h"
-#include "casting/embree.h"
+#include "casting/device.h"
 
 namespace mesograin::casting {
 

@@ -9,7 +9,8 @@
 #include <utility>
 
 #include "base/error.h"
-#include "casting/embree.h"
+#include "casting/device.h"
+#include "embree/packets.h"
 
 namespace mesograin::casting {
 namespace {
@@ -72,10 +73,10 @@ void intersect_instance(const RTCIntersectFunctionNArguments* arguments) {
   RTCRayHit8 inside;
   ToMesh(group.rows + 3 * std::size_t{arguments->primID}).turn(rays.ray, inside.ray);
   for (unsigned& geometry : inside.hit.geomID) geometry = RTC_INVALID_GEOMETRY_ID;
-  Context context;
+  embree::Context context;
   alignas(32) int valid[rays_in_packet];
   for (unsigned i = 0; i < rays_in_packet; ++i) valid[i] = arguments->valid[i];
-  intersect(valid, to_scene(group.mesh->scene()), context, inside);
+  embree::intersect(valid, to_scene(group.mesh->scene()), context, inside);
   for (unsigned i = 0; i < rays_in_packet; ++i) {
     if (valid[i] == 0 || inside.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
     rays.ray.tfar[i] = inside.ray.tfar[i];
@@ -91,7 +92,7 @@ void occlude_instance(const RTCOccludedFunctionNArguments* arguments) {
   const auto& group = *static_cast<const PlacedGroup*>(arguments->geometryUserPtr);
   const std::uint32_t number = group.first_number + arguments->primID;
   RTCRay8& rays = *reinterpret_cast<RTCRay8*>(arguments->ray);
-  const float* own = reinterpret_cast<const Context*>(arguments->context)->own;
+  const float* own = reinterpret_cast<const embree::Context*>(arguments->context)->own;
   alignas(32) int valid[rays_in_packet];
   RTCRay8 inside;
   bool any = false;
@@ -103,8 +104,8 @@ void occlude_instance(const RTCOccludedFunctionNArguments* arguments) {
   ToMesh(group.rows + 3 * std::size_t{arguments->primID}).turn(rays, inside);
   for (unsigned i = 0; i < rays_in_packet; ++i)
     if (rays.id[i] == number) inside.tnear[i] = own[i];
-  Context context;
-  occlude(valid, to_scene(group.mesh->scene()), context, inside);
+  embree::Context context;
+  embree::occlude(valid, to_scene(group.mesh->scene()), context, inside);
   for (unsigned i = 0; i < rays_in_packet; ++i)
     if (valid[i] != 0 && inside.tfar[i] < 0.0F) rays.tfar[i] = -std::numeric_limits<float>::infinity();
 }
@@ -155,8 +156,8 @@ void PlacedTree::first_hits(Packet& packet, Hits& hits) const {
   RTCRayHit8 rays;
   fill(packet, rays.ray, valid);
   for (unsigned& geometry : rays.hit.geomID) geometry = RTC_INVALID_GEOMETRY_ID;
-  Context context;
-  intersect(valid, to_scene(scene_), context, rays);
+  embree::Context context;
+  embree::intersect(valid, to_scene(scene_), context, rays);
   for (unsigned i = 0; i < rays_in_packet; ++i) {
     if (valid[i] == 0 || rays.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
     packet.farthest[i] = rays.ray.tfar[i];
@@ -174,9 +175,9 @@ void PlacedTree::find_occluded(Packet& packet) const {
   alignas(32) int valid[rays_in_packet];
   RTCRay8 rays;
   fill(packet, rays, valid);
-  Context context;
+  embree::Context context;
   context.own = packet.own;
-  occlude(valid, to_scene(scene_), context, rays);
+  embree::occlude(valid, to_scene(scene_), context, rays);
   for (unsigned i = 0; i < rays_in_packet; ++i)
     if (valid[i] != 0 && rays.tfar[i] < 0.0F) packet.cast[i] = false;
 }

@@ -1,20 +1,14 @@
 // Embree's own spheres, and triangles.
 #include "heap/grains.h"
 
-#if __has_include(<embree4/rtcore.h>)
-#include <embree4/rtcore.h>
-#else
-#include <embree3/rtcore.h>
-#endif
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <glm/geometric.hpp>
 #include <glm/vec4.hpp>
-#include <limits>
 
 #include "base/error.h"
+#include "embree/first_hit.h"
 
 namespace mesograin::heap {
 
@@ -64,28 +58,6 @@ struct Neighbourhood::Device {
     rtcReleaseGeometry(geometry);
   }
 
-  static RTCRayHit shoot(RTCScene at, const glm::vec3& origin, const glm::vec3& direction, float near, float far) {
-    RTCRayHit ray{};
-    ray.ray.org_x = origin.x;
-    ray.ray.org_y = origin.y;
-    ray.ray.org_z = origin.z;
-    ray.ray.dir_x = direction.x;
-    ray.ray.dir_y = direction.y;
-    ray.ray.dir_z = direction.z;
-    ray.ray.tnear = near;
-    ray.ray.tfar = far;
-    ray.ray.mask = ~0U;
-    ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-#if RTC_VERSION_MAJOR >= 4
-    rtcIntersect1(at, &ray);
-#else
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    rtcIntersect1(at, &context, &ray);
-#endif
-    return ray;
-  }
-
   static Meeting on_wall(std::uint32_t wall, const glm::vec3& origin, const glm::vec3& direction,
                          const RTCRayHit& ray) {
     const glm::vec3 normal = glm::normalize(glm::vec3(ray.hit.Ng_x, ray.hit.Ng_y, ray.hit.Ng_z));
@@ -114,8 +86,7 @@ std::optional<Meeting> Neighbourhood::first(const glm::vec3& origin, const glm::
   float near = 0.0F;
   constexpr int most_left = 64;
   for (int left = 0; left < most_left; ++left) {
-    const RTCRayHit ray =
-        Device::shoot(device_->scene, origin, direction, near, std::numeric_limits<float>::infinity());
+    const RTCRayHit ray = embree::first_hit(device_->scene, origin, direction, near);
     if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
     if (ray.hit.geomID != Device::of_grains)
       return Device::on_wall(ray.hit.geomID - Device::of_grains - 1, origin, direction, ray);
@@ -134,7 +105,7 @@ std::optional<Meeting> Neighbourhood::first_on(std::uint32_t wall, const glm::ve
   float near = 0.0F;
   constexpr int most_passed = 16;
   for (int passed = 0; passed < most_passed; ++passed) {
-    const RTCRayHit ray = Device::shoot(device_->only_walls, origin, direction, near, reach);
+    const RTCRayHit ray = embree::first_hit(device_->only_walls, origin, direction, near, reach);
     if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
     if (ray.hit.geomID == wall) return Device::on_wall(wall, origin, direction, ray);
     near = ray.ray.tfar + 1e-6F * reach;

@@ -1,12 +1,6 @@
 // Welds the mesh, makes sure that it is closed, and hands it to Embree.
 #include "transport/body.h"
 
-#if __has_include(<embree4/rtcore.h>)
-#include <embree4/rtcore.h>
-#else
-#include <embree3/rtcore.h>
-#endif
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -19,6 +13,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "embree/first_hit.h"
 #include "transport/axes.h"
 #include "transport/directions.h"
 #include "transport/random.h"
@@ -179,24 +174,7 @@ Body::Body(const scene::Mesh& mesh, const glm::dmat3& linear) {
 }
 
 std::optional<Hit> Body::first_hit(const glm::vec3& origin, const glm::vec3& direction) const {
-  RTCRayHit ray{};
-  ray.ray.org_x = origin.x;
-  ray.ray.org_y = origin.y;
-  ray.ray.org_z = origin.z;
-  ray.ray.dir_x = direction.x;
-  ray.ray.dir_y = direction.y;
-  ray.ray.dir_z = direction.z;
-  ray.ray.tnear = 1e-6F;
-  ray.ray.tfar = std::numeric_limits<float>::infinity();
-  ray.ray.mask = ~0U;
-  ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-#if RTC_VERSION_MAJOR >= 4
-  rtcIntersect1(device_->scene, &ray);
-#else
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  rtcIntersect1(device_->scene, &context, &ray);
-#endif
+  const RTCRayHit ray = embree::first_hit(device_->scene, origin, direction, 1e-6F);
   if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
   return Hit{ray.ray.tfar, normals_[ray.hit.primID]};
 }

@@ -1,16 +1,9 @@
-// Embree 3 and 4 under one name.
+// Eight rays at a time, which go nearly the same way.
 #pragma once
 
-#if __has_include(<embree4/rtcore.h>)
-#include <embree4/rtcore.h>
-#else
-#include <embree3/rtcore.h>
-#endif
+#include "embree/rtcore.h"
 
-namespace mesograin::casting {
-
-/// The one device of the process; null if Embree does not start or has no packets of eight on this machine.
-RTCDevice embree_device();
+namespace mesograin::embree {
 
 /// What goes with the rays of a packet on their way through user geometry.
 struct Context {
@@ -55,4 +48,4 @@ inline void occlude(const int* valid, RTCScene scene, Context& context, RTCRay8&
 #endif
 }
 
-}  // namespace mesograin::casting
+}  // namespace mesograin::embree

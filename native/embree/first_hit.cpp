@@ -1,0 +1,28 @@
+// Fills in what Embree wants to know of a ray.
+#include "embree/first_hit.h"
+
+namespace mesograin::embree {
+
+RTCRayHit first_hit(RTCScene scene, const glm::vec3& origin, const glm::vec3& direction, float near, float far) {
+  RTCRayHit ray{};
+  ray.ray.org_x = origin.x;
+  ray.ray.org_y = origin.y;
+  ray.ray.org_z = origin.z;
+  ray.ray.dir_x = direction.x;
+  ray.ray.dir_y = direction.y;
+  ray.ray.dir_z = direction.z;
+  ray.ray.tnear = near;
+  ray.ray.tfar = far;
+  ray.ray.mask = ~0U;
+  ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+#if RTC_VERSION_MAJOR >= 4
+  rtcIntersect1(scene, &ray);
+#else
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect1(scene, &context, &ray);
+#endif
+  return ray;
+}
+
+}  // namespace mesograin::embree
