@@ -48,7 +48,7 @@ def tweak():
     """Set by Look: browner, and clearer."""
     look = bpy.data.objects["Cube"].active_material.mesograin_look
     look.way = "look"
-    look.colour = (0.85, 0.55, 0.22)
+    look.colour = (0.8, 0.35, 0.1)
     look.mean_free_path = [2.0 * path for path in look.mean_free_path]
 
 
