@@ -67,9 +67,9 @@ class MESOGRAIN_OT_add_preset(AddPresetBase, bpy.types.Operator):
     bl_description = "Keep this grain among your own materials, for every file"
     preset_menu = "MESOGRAIN_MT_own_presets"
     preset_subdir = "mesograin/materials"
-    preset_defines = ["material = getattr(bpy.context, 'material', None) or bpy.context.object.active_material",
-                      "grain = material.mesograin"]
-    preset_values = [f"grain.{name}" for name in PARAMETERS]
+    preset_defines = []  # which Blender 4.3 no longer finds in the next line where its Python is 3.13 (PEP 667)
+    preset_values = [f"(getattr(bpy.context, 'material', None) or bpy.context.object.active_material).mesograin.{name}"
+                     for name in PARAMETERS]
 
 
 class MESOGRAIN_MT_own_presets(bpy.types.Menu):
