@@ -40,9 +40,10 @@ struct Parts {
 /// cosine: that of `answer` times the lobe of its kind's table, and that of `behind` times what crosses the grain
 /// there.
 struct HeapLight {
-  Field answer;  ///< exitance over pi, but for what answers to light that comes straight from a light
-  Field behind;  ///< of grains only: what is seen through a transparent one
-  Field sent;    ///< exitance over pi because of all light, to begin the next solution from
+  Field answer;   ///< exitance over pi, but for what answers to light that comes straight from a light
+  Field crossed;  ///< of `answer`: what comes from lights straight through others, but from no even world
+  Field behind;   ///< of grains only: what is seen through a transparent one
+  Field sent;     ///< exitance over pi because of all light, to begin the next solution from
   Patches patches;
   std::vector<Kind> kinds;
   std::size_t links = 0;

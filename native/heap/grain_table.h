@@ -38,9 +38,9 @@ class GrainTable {
   /// Radiance of light that leaves, over exitance / pi, for light from everywhere: at the middles of intervals of the
   /// cosine, linear between them, flat beyond.
   const std::array<glm::vec3, lobe_nodes>& lobe() const { return lobe_; }
+  glm::vec3 lobe_at(float mu) const;
 
  private:
-  glm::vec3 lobe_at(float mu) const;
   void take_albedo(const GrainTable& grey, int channel);
   void trace(const Optics& optics, Sense sense, const transport::Effort& effort);
 

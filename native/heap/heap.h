@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "heap/coefficients.h"
 #include "heap/grain_table.h"
 #include "heap/grains.h"
 #include "heap/patches.h"
@@ -77,6 +78,10 @@ class Space {
   /// On to the grain or wall that it meets; nothing if it leaves the heap. Where a grain lets a part straight through,
   /// one of the two ways is taken at random.
   std::optional<Source> follow(Ray& ray, transport::Random& random) const;
+
+  /// Radiance that comes against `ray`'s direction because of what grains and walls send out, straight through those
+  /// that let it.
+  glm::vec3 seen_along(Ray ray, const Field& sent, transport::Random& random) const;
 
   /// What is left of light that comes from `reach` away, against `ray`'s direction, straight through all in between.
   /// Does not change its weight.

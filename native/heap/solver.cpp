@@ -170,6 +170,7 @@ WorldLit Solver::find_direct(const Heap& heap, const Quality& quality, const tra
     const Source& source = find_source(lights[i], quality, part);
     add_lit(source.lit, *source.matter, glm::vec3(1.0F));
   }
+  lights_crossed_ = sum.crossed;
   if (!heap.world.image) add_lit(ways_->world, *ways_->matter, glm::vec3(heap.world.radiance));
   return sum;
 }
@@ -198,6 +199,7 @@ HeapLight Solver::solve(const Heap& heap, const Quality& quality, const transpor
   ++parts_.solutions;
   HeapLight light;
   light.kinds = matter_->kinds;
+  light.crossed = lights_crossed_;
   light.patches = ways_->matter->space->patches();
   light.answer.resize(first.size());
   for (std::size_t i = 0; i < first.size(); ++i) light.answer[i] = solved.sent[i] - lit.direct[i];

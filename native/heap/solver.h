@@ -70,6 +70,7 @@ class Solver {
   std::optional<Ways> ways_;
   std::vector<Source> sources_;
   Field sent_;
+  Field lights_crossed_;  ///< of the last solution
   Parts parts_;
 };
 

@@ -195,8 +195,8 @@ void bind_scene(py::module_& module) {
            py::arg("arrays") = std::vector<scene::InstanceArray>{},
            py::arg("exchange") = std::string(scene::exchange_names[static_cast<std::size_t>(scene::default_exchange)]),
            "arrays: InstanceArrays, drawn beside the instances. exchange: 'order_1', and light goes from grain to "
-           "grain; 'heaps', where there are arrays of them; 'off', and it does not. Raises Error for a transform that "
-           "cannot be inverted.")
+           "grain; 'heaps', where there are arrays of them; 'gathered', and each pixel's share of it is found by rays; "
+           "'off', and it does not. Raises Error for a transform that cannot be inverted.")
       .def_readonly("instances", &scene::Scene::instances)
       .def_readonly("arrays", &scene::Scene::arrays)
       .def_property_readonly(

@@ -254,6 +254,7 @@ const gl::Program& DeviceCache::shading(const DeviceMaterial& material, const Sh
   if (shading.shadows != Shadows::none) defines.emplace_back("SHADOWS");
   if (shading.shadows == Shadows::cast) defines.emplace_back("CAST_SHADOWS");
   if (shading.exchange) defines.emplace_back("EXCHANGE");
+  if (shading.gathered) defines.emplace_back("GATHERED");
   if (shading.world && std::find(defines.begin(), defines.end(), "CLEAR") != defines.end())
     defines.emplace_back("WORLD");
   if (shading.lights_at_place) defines.emplace_back("LIGHTS_AT_PLACE");

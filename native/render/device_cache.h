@@ -34,6 +34,7 @@ struct Shading {
   bool instanced = false;  ///< one of an array of instances
   Shadows shadows = Shadows::none;
   bool exchange = false;         ///< light goes from grain to grain
+  bool gathered = false;         ///< and was gathered for each pixel
   bool world = false;            ///< there is a world to be seen through it
   bool lights_at_place = false;  ///< the place that is shaded draws its own directions of lights that have a place
 };

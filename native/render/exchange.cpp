@@ -126,7 +126,7 @@ void append(std::vector<glm::vec4>& numbers, const heap::Coefficients& coefficie
 
 void Exchange::set(const Content& content, const scene::Scene& scene) {
   Gatherer gathered;
-  if (scene.exchange == scene::Exchange::order_1 ||
+  if (scene.exchange == scene::Exchange::order_1 || scene.exchange == scene::Exchange::gathered ||
       (scene.exchange == scene::Exchange::heaps && content.instances() != nullptr))
     gathered.add(content);
   const heap::Grains& grains = gathered.grains;
@@ -136,15 +136,21 @@ void Exchange::set(const Content& content, const scene::Scene& scene) {
     known_.reset();
     device_.reset();
     device_walls_.reset();
+    gather_.reset();
     return;
   }
+  gathers_ = scene.exchange == scene::Exchange::gathered;
   heap::Heap heap{std::move(gathered.grains), content.anchor(), scene.lights, scene.world};
   const bool regrouped = !solving_ || roles_ != gathered.roles;
-  if (!regrouped && solving_->heap() == heap) return;
+  if (!regrouped && solving_->heap() == heap) {
+    find_gather();
+    return;
+  }
   solving_ = heap::Solvers::instance().ask(std::move(heap), solving_);
   news_ = 0;
   roles_ = std::move(gathered.roles);
   balls_ = gathered.balls;
+  gather_.reset();
   if (regrouped) send();
 }
 
@@ -154,8 +160,16 @@ bool Exchange::take_news() {
   if (news.number == news_ || !news.light) return false;
   news_ = news.number;
   known_ = Known{solving_->heap().grains, std::move(news.light)};
+  gather_.reset();
+  find_gather();
   send();
   return true;
+}
+
+void Exchange::find_gather() {
+  if (!gathers_ || !known_) gather_.reset();
+  if (gathers_ && known_ && !gather_ && solving_->heap().grains == known_->grains)
+    gather_ = std::make_unique<const heap::Gather>(solving_->heap(), known_->light);
 }
 
 namespace {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "gl/buffer.h"
+#include "heap/gather.h"
 #include "heap/solving.h"
 #include "render/content.h"
 #include "render/device_layout.h"
@@ -67,6 +68,9 @@ class Exchange {
     device_walls_->bind_storage(layout::WALL_LIGHT_BINDING);
   }
 
+  /// What gathers light for each pixel; null where it is not to be.
+  const heap::Gather* gather() const { return gather_.get(); }
+
   /// What an object is to the light between grains.
   struct Role {
     std::optional<std::uint32_t> grain;  ///< which of its grains
@@ -74,6 +78,9 @@ class Exchange {
 
     bool operator==(const Role&) const = default;
   };
+
+  /// Of objects, by their numbers.
+  const std::vector<Role>& roles() const { return roles_; }
 
  private:
   /// What is drawn.
@@ -83,9 +90,12 @@ class Exchange {
   };
 
   void send();
+  void find_gather();
 
   bool balls_ = true;
-  std::vector<Role> roles_;  // of objects, by their numbers
+  std::vector<Role> roles_;
+  bool gathers_ = false;
+  std::unique_ptr<const heap::Gather> gather_;
   std::shared_ptr<const heap::Solving> solving_;
   int news_ = 0;  // taken in of it
   std::optional<Known> known_;

@@ -145,12 +145,12 @@ bool Frame::draw_seen(const Sample& sample) {
   for (std::size_t first = 0; first < units || first == 0; first += most_in_stencil) {
     if (!surfaces_.run(sample, arrays_, first)) return false;
     if (first == 0) {
-      if (!update_shadows(sample)) return false;
+      if (!update_shadows(sample) || !gather_.run(sample, surfaces_)) return false;
       // Rays are not the device's work.
       if (sample.cast) timers_.shade.start();
       shade_.clear(sample);
     }
-    shade_.shade_seen(sample, shadows_, first);
+    shade_.shade_seen(sample, shadows_, gather_, first);
   }
   return true;
 }
@@ -203,6 +203,7 @@ std::vector<PassTiming> Frame::timings() const {
     passes.push_back({"shadow_maps", shadows});
     shade -= shadows;
   }
+  if (gather_.ran()) passes.push_back({"gather", gather_.milliseconds()});
   passes.push_back({"shade", shade});
   passes.push_back({"accumulate", timers_.accumulate.milliseconds()});
   return passes;

@@ -118,6 +118,7 @@ class Frame {
   LightMapPass light_maps_;
   SurfacePass surfaces_;
   ShadowPass shadows_;
+  GatherPass gather_;
   ShadePass shade_;
   AccumulatePass accumulate_;
   PassTimers timers_;

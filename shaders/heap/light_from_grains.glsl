@@ -3,6 +3,7 @@
 //
 // What is chosen at compile time:
 //   EXCHANGE             light goes from grain to grain
+//   GATHERED             and was gathered for each pixel
 #include "render/bindings.glsl"
 
 #ifdef EXCHANGE
@@ -23,8 +24,16 @@ vec3 light_at_normal(int first, vec3 normal) {
   return max(vec3(dot(heap_light[first], basis), dot(heap_light[first + 1], basis), dot(heap_light[first + 2], basis)), vec3(0.0));
 }
 
+#ifdef GATHERED
+uniform sampler2D gathered;  // w: 1 where a grain was looked at
+#endif
+
 // Radiance towards a viewer at the cosine `mu`; of a wall at `place` in the heap.
 vec3 light_from_grains(int object, vec3 place, vec3 normal, float mu) {
+#ifdef GATHERED
+  vec4 found = texelFetch(gathered, ivec2(gl_FragCoord.xy), 0);
+  if (found.w > 0.0) return found.rgb;
+#endif
   int first = OBJECT_NUMBERS * object;
   int kind = int(heap_light[first + 6].x);
   int wall = int(heap_light[first + 6].y);

@@ -83,9 +83,14 @@ void write_shading(Writer& writer) {
   // As render::Shading.
   const std::vector<std::string> clear = {"CLEAR", "WORLD", "MANY_TERMS"};
   const std::vector<std::string> cast = {"SHADOWS", "CAST_SHADOWS"};
-  const std::vector<std::vector<std::string>> shadings = {
-      {"INSTANCED"}, {"SHADOWS"}, cast, {"EXCHANGE"}, {"LIGHTS_AT_PLACE"}, {"INSTANCED", "SHADOWS", "LIGHTS_AT_PLACE"},
-      clear};
+  const std::vector<std::vector<std::string>> shadings = {{"INSTANCED"},
+                                                          {"SHADOWS"},
+                                                          cast,
+                                                          {"EXCHANGE"},
+                                                          {"EXCHANGE", "GATHERED"},
+                                                          {"LIGHTS_AT_PLACE"},
+                                                          {"INSTANCED", "SHADOWS", "LIGHTS_AT_PLACE"},
+                                                          clear};
   std::set<std::string> written;
   for (const scene::Material& material : every_choice()) {
     const std::string model(scene::model_names[static_cast<std::size_t>(material.model)]);

@@ -72,7 +72,8 @@ void ShadePass::draw_background(const Sample& sample) {
   full_screen_.draw();
 }
 
-void ShadePass::shade_seen(const Sample& sample, const ShadowPass& shadows, std::size_t first) {
+void ShadePass::shade_seen(const Sample& sample, const ShadowPass& shadows, const GatherPass& gathered,
+                           std::size_t first) {
   sample.targets.shade.bind();
   glDisable(GL_BLEND);
   glEnable(GL_STENCIL_TEST);
@@ -85,7 +86,9 @@ void ShadePass::shade_seen(const Sample& sample, const ShadowPass& shadows, std:
   for (std::size_t i = first; i < std::min(first + most_in_stencil, groups + draws.size()); ++i) {
     const bool instanced = i < groups;
     const gl::Program& program =
-        prepare(sample, shadows, instanced ? *instances->groups()[i].material : *draws[i - groups].material, instanced);
+        prepare(sample, shadows, gathered.ran(),
+                instanced ? *instances->groups()[i].material : *draws[i - groups].material, instanced);
+    gathered.bind(program);
     if (instanced) {
       set_group(sample, program, instances->groups()[i]);
       glScissor(0, 0, sample.size.x, sample.size.y);
@@ -108,7 +111,7 @@ void ShadePass::shade_unwrapped(const Sample& sample, const ShadowPass& shadows)
   glDepthFunc(GL_LESS);
   for (const std::size_t baked : sample.unwrapping->draws) {
     const Draw& draw = sample.content.draws()[baked];
-    const gl::Program& program = prepare(sample, shadows, *draw.material, false);
+    const gl::Program& program = prepare(sample, shadows, false, *draw.material, false);
     set_draw(sample, program, draw);
     const glm::dmat4 object_to_grain = draw.object_to_grain();
     program.set("jitter", sample.jitter);
@@ -121,12 +124,12 @@ void ShadePass::shade_unwrapped(const Sample& sample, const ShadowPass& shadows)
   glDisable(GL_DEPTH_TEST);
 }
 
-const gl::Program& ShadePass::prepare(const Sample& sample, const ShadowPass& shadows, const DeviceMaterial& material,
-                                      bool instanced) {
+const gl::Program& ShadePass::prepare(const Sample& sample, const ShadowPass& shadows, bool gathered,
+                                      const DeviceMaterial& material, bool instanced) {
   const bool world = sample.lighting.world().shines();
-  const gl::Program& program =
-      sample.cache.shading(material, {sample.unwrapping != nullptr, instanced, shadows.kind(sample.content),
-                                      sample.exchange.any(), world, sample.lights_at_place(material, instanced)});
+  const gl::Program& program = sample.cache.shading(
+      material, {sample.unwrapping != nullptr, instanced, shadows.kind(sample.content), sample.exchange.any(), gathered,
+                 world, sample.lights_at_place(material, instanced)});
   material.bind(program);
   // Only what lets it through shows the world itself.
   if (world && program.declares("world_radiance")) set_world(program, sample.lighting);

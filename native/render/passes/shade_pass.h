@@ -8,6 +8,7 @@
 #include "gl/buffer.h"
 #include "gl/program.h"
 #include "gl/vertex_array.h"
+#include "render/passes/gather_pass.h"
 #include "render/passes/sample.h"
 #include "render/passes/shadow_pass.h"
 
@@ -24,7 +25,7 @@ class ShadePass {
   void clear(const Sample& sample);
 
   /// Those groups and draws that the stencil tells apart, after run() of SurfacePass for the same `first`.
-  void shade_seen(const Sample& sample, const ShadowPass& shadows, std::size_t first);
+  void shade_seen(const Sample& sample, const ShadowPass& shadows, const GatherPass& gathered, std::size_t first);
 
   /// The instances that are baked, where their UVs lie.
   void shade_unwrapped(const Sample& sample, const ShadowPass& shadows);
@@ -33,8 +34,8 @@ class ShadePass {
   void draw_background(const Sample& sample);
 
   /// The material's program, with everything that does not depend on what is shaded.
-  const gl::Program& prepare(const Sample& sample, const ShadowPass& shadows, const DeviceMaterial& material,
-                             bool instanced);
+  const gl::Program& prepare(const Sample& sample, const ShadowPass& shadows, bool gathered,
+                             const DeviceMaterial& material, bool instanced);
   void set_draw(const Sample& sample, const gl::Program& program, const Draw& draw);
   void set_group(const Sample& sample, const gl::Program& program, const InstanceGroup& group);
 

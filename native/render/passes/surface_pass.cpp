@@ -32,9 +32,10 @@ bool SurfacePass::run(const Sample& sample, const ArrayVisibility& arrays, std::
 
 SeenSurfaces SurfacePass::seen(const Sample& sample) {
   const glm::vec4 viewer = sample.viewer(sample.content.anchor());
-  if (sample.content.draws().empty()) return {cast_.positions(), cast_.normals(), sample.size, viewer};
-  read_positions_.resize(cast_.positions().size());
-  read_normals_.resize(cast_.normals().size());
+  if (sample.cast && sample.content.draws().empty()) return {cast_.positions(), cast_.normals(), sample.size, viewer};
+  const std::size_t pixels = static_cast<std::size_t>(sample.size.x) * static_cast<std::size_t>(sample.size.y);
+  read_positions_.resize(pixels);
+  read_normals_.resize(pixels);
   sample.targets.surfaces.read(&read_positions_.front().x, 0);
   sample.targets.surfaces.read(&read_normals_.front().x, 1);
   return {read_positions_, read_normals_, sample.size, viewer};

@@ -18,7 +18,7 @@ class SurfacePass {
   /// to the last it can hold. False if ended.
   bool run(const Sample& sample, const ArrayVisibility& arrays, std::size_t first);
 
-  /// What was found, on this side of the device; for a sample that is cast.
+  /// What was found, on this side of the device.
   SeenSurfaces seen(const Sample& sample);
 
   /// How many instances rays met.

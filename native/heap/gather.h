@@ -1,0 +1,36 @@
+// What a viewer sees of a grain because of what others send, each look by rays of its own: the answer of a grain that
+// is seen has more to it than four numbers.
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <memory>
+
+#include "heap/exchange.h"
+#include "heap/heap.h"
+#include "transport/random.h"
+
+namespace mesograin::heap {
+
+class Gather {
+ public:
+  /// `light`: the heap's.
+  Gather(Heap heap, std::shared_ptr<const HeapLight> light);
+  Gather(const Gather&) = delete;
+  Gather& operator=(const Gather&) = delete;
+
+  /// Radiance that leaves a grain at a normal `towards` a viewer, but for what comes straight from lights: the mean
+  /// over `rays` through the grain's table, and what is seen straight through it.
+  glm::vec3 look(std::uint32_t grain, const glm::vec3& normal, const glm::vec3& towards, int rays,
+                 transport::Random& random) const;
+
+ private:
+  glm::vec3 seen_through(std::uint32_t grain, const glm::vec3& normal, const glm::vec3& towards,
+                         transport::Random& random) const;
+
+  Heap heap_;
+  std::shared_ptr<const HeapLight> light_;
+  Space space_;
+};
+
+}  // namespace mesograin::heap

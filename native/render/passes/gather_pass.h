@@ -1,0 +1,36 @@
+// Gathers what grains send to each grain that a pixel shows, by rays on all cores, where the scene asks for it.
+#pragma once
+
+#include <glm/vec4.hpp>
+#include <optional>
+#include <vector>
+
+#include "gl/program.h"
+#include "gl/texture.h"
+#include "render/passes/sample.h"
+#include "render/passes/surface_pass.h"
+
+namespace mesograin::render {
+
+class GatherPass {
+ public:
+  /// After the surfaces are found. False if ended.
+  bool run(const Sample& sample, SurfacePass& surfaces);
+
+  /// Whether the last run had anything to gather.
+  bool ran() const { return ran_; }
+
+  /// That the last run took of this side.
+  double milliseconds() const { return milliseconds_; }
+
+  /// Makes it what shaders/heap/light_from_grains.glsl reads, if there is any.
+  void bind(const gl::Program& program) const;
+
+ private:
+  std::vector<glm::vec4> pixels_;  // w: 1 where a grain is seen
+  std::optional<gl::Texture> device_;
+  bool ran_ = false;
+  double milliseconds_ = 0.0;
+};
+
+}  // namespace mesograin::render

@@ -1,0 +1,91 @@
+// Light gathered for one look against the four numbers of all looks, and against what is seen through a clear grain.
+#include "heap/gather.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "heap/spread.h"
+
+namespace mesograin::heap {
+namespace {
+
+Optics lambert(double reflectance) {
+  Optics optics;
+  optics.reflectance = glm::dvec3(reflectance);
+  return optics;
+}
+
+Optics medium(double sigma_t, double albedo) {
+  Optics optics;
+  optics.surface = Surface::index_matched;
+  optics.sigma_t = glm::dvec3(sigma_t);
+  optics.albedo = glm::dvec3(albedo);
+  return optics;
+}
+
+Heap lattice(const Optics& optics) {
+  Heap heap;
+  heap.grains.kinds = {optics};
+  for (int x = 0; x < 5; ++x)
+    for (int y = 0; y < 5; ++y)
+      for (int z = 0; z < 5; ++z) heap.grains.grains.push_back({2.05F * glm::vec3(x, y, z), 1.0F, 0});
+  heap.lights.emplace_back(scene::DirectionalLight{{0.0, 0.6, 0.8}, glm::dvec3(3.0)});
+  heap.world.radiance = glm::dvec3(0.5);
+  return heap;
+}
+
+std::shared_ptr<const HeapLight> solved(const Heap& heap) {
+  Quality quality;
+  quality.rays = 1 << 14;
+  quality.seen_rays = 1 << 13;
+  return std::make_shared<const HeapLight>(solve_exchange(heap, quality, {}, {}));
+}
+
+// Exitance over pi of a grain: the mean over normals and, weighed by the cosine, over directions.
+TEST(Gather, IsInTheMeanWhatTheFourNumbersAre) {
+  for (const Optics& optics : {lambert(0.8), medium(1.0, 0.9)}) {
+    const Heap heap = lattice(optics);
+    const std::shared_ptr<const HeapLight> light = solved(heap);
+    const Gather gather(heap, light);
+    transport::Random random(1, 0);
+    for (const std::uint32_t grain : {0U, 12U, 62U, 124U}) {
+      const Spread spread(random);
+      double found = 0.0;
+      double expected = 0.0;
+      constexpr int looks = 1 << 14;
+      for (int i = 0; i < looks; ++i) {
+        const std::array<float, 5> point = spread.point(i);
+        const glm::vec3 normal = transport::isotropic(point[0], point[1]);
+        const float mu = std::sqrt(point[2]);
+        const glm::vec3 towards = TurnedFrame(normal, point[3]) * glm::vec3(std::sqrt(1.0F - point[2]), 0.0F, mu);
+        found += gather.look(grain, normal, towards, 4, random).r / looks;
+        const GrainTable& table = *light->kinds[0].from_light;
+        expected += (table.lobe_at(mu).r * light->answer[grain].at(normal).r +
+                     table.crossing(mu).r * light->behind[grain].at(normal).r) /
+                    looks;
+      }
+      EXPECT_NEAR(found, expected, 0.04 * expected) << grain;
+    }
+  }
+}
+
+TEST(Gather, ShowsThroughAClearGrainWhatIsBehindIt) {
+  Heap heap;
+  heap.grains.kinds = {medium(1e-6, 0.0), lambert(0.5)};
+  heap.grains.grains = {{glm::vec3(0.0F), 1.0F, 0}, {glm::vec3(0.0F, 0.0F, -4.0F), 1.0F, 1}};
+  heap.lights.emplace_back(scene::DirectionalLight{{1.0, 0.0, 0.0}, glm::dvec3(3.0)});
+  const std::shared_ptr<const HeapLight> light = solved(heap);
+  const Gather gather(heap, light);
+  transport::Random random(1, 0);
+  const glm::vec3 up(0.0F, 0.0F, 1.0F);
+  const float behind = light->sent[1].at(up).r;
+  ASSERT_GT(behind, 0.0F);
+  EXPECT_NEAR(gather.look(0, up, up, 4, random).r, behind, 1e-3F * behind);
+  EXPECT_NEAR(gather.look(0, glm::normalize(glm::vec3(0.99F, 0.0F, 0.2F)), glm::vec3(1.0F, 0.0F, 0.0F), 4, random).r,
+              0.0F, 1e-4F);
+}
+
+}  // namespace
+}  // namespace mesograin::heap
