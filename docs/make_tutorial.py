@@ -67,11 +67,11 @@ def pour_sand():
     lamp.data.type = "SUN"
     lamp.data.energy = 3.0
     lamp.data.angle = 0.1
-    scene.mesograin.exchange = False
+    scene.mesograin.exchange = "off"
 
 
 def send_light_between_grains():
-    bpy.context.scene.mesograin.exchange = True
+    bpy.context.scene.mesograin.exchange = "heaps"
 
 
 def render(path, width, samples):
