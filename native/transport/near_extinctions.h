@@ -53,7 +53,6 @@ class NearWeights {
   }
 
   /// `logarithms` as `known_logarithm` gives them.
-  /// `logarithms` as `known_logarithm` gives them.
   float decayed(const Logarithm* logarithms) const {
     if (logarithms[0] == 0) return 0.0F;
     float logarithm = -60.0F + 0.5e-3F;  // they were rounded down
