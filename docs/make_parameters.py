@@ -49,7 +49,8 @@ def page():
             lines += table(("value", "meaning"),
                            [(f"`{choice.name}`", text(choice.sentence)) for choice in parameter.choices])
     lines += ["## Of a scene", "",
-              "A key of a scene's JSON and of `native.Scene`, `--exchange` of the commands, a switch in the render panel.", ""]
+              "A key of a scene's JSON and of `native.Scene`, `--exchange` of the commands, a switch in the render "
+              "panel.", ""]
     for name, parameter in SCENE.items():
         lines += [f"`{name}`, by default `{shown(parameter)}`. {text(parameter.sentence, parameter.note)}", ""]
         lines += table(("value", "meaning"),

@@ -193,6 +193,7 @@ std::vector<Stuff> stuff_of(const heap::Grains& grains) {
     stuff.brightest = std::max(stuff.brightest, own.brightest);
   }
   std::vector<Stuff> all;
+  all.reserve(found.size());
   for (const auto& [surface, stuff] : found) all.push_back(stuff);
   return all;
 }

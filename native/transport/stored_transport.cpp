@@ -125,6 +125,7 @@ StoredTransport compute_transport(Walks& walks, const StoredMedium& medium, cons
   }
   walks.trace(extinctions, part_of(effort, 0.0, 0.8));
   std::vector<Exchange> exchanges;
+  exchanges.reserve(extinctions.size());
   for (const double sigma_t : extinctions) exchanges.push_back(walks.exchange(sigma_t));
 
   // One set of lobes for all channels.
