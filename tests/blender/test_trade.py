@@ -68,7 +68,9 @@ def test_every_point_is_measured_and_taken_over(tmp_path, native, monkeypatch):
     begun = []
     begin = ours.Ours.begin
     monkeypatch.setattr(
-        ours.Ours, "begin", lambda self, chosen, sun, taps: (begun.append(taps), begin(self, chosen, sun, taps))
+        ours.Ours,
+        "begin",
+        lambda self, chosen, sun, taps, *rest: (begun.append(taps), begin(self, chosen, sun, taps, *rest)),
     )
     again = trade(tmp_path)
     assert begun == [4], "only what was missing is measured"
