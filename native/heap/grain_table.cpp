@@ -110,6 +110,7 @@ void GrainTable::take_albedo(const GrainTable& grey, int channel) {
 void GrainTable::trace(const Optics& optics, Sense sense, const transport::Effort& effort) {
   std::vector<std::vector<Outcome>> kept(entries);
   std::vector<std::array<glm::dvec3, lobe_nodes>> leaving(entries);
+  std::vector<std::vector<Entries::Passage>> passages(entries);
   transport::run_pieces(effort, entries, [&](std::size_t entry) {
     transport::Random random(effort.seed, entry);
     std::vector<Outcome> walks;
@@ -122,6 +123,7 @@ void GrainTable::trace(const Optics& optics, Sense sense, const transport::Effor
       std::optional<Outcome> outcome = walk(optics, sense, mu, random);
       if (!outcome) continue;
       const glm::vec3 light = outcome->weight;
+      passages[entry].push_back({mu, *outcome});
       if (transparent_) outcome->weight /= glm::max(glm::vec3(met_at(sigma_t_, mu)), 1e-30F);
       sum += glm::dvec3(outcome->weight);
       // Flux in each interval of cosines outside.
@@ -145,6 +147,11 @@ void GrainTable::trace(const Optics& optics, Sense sense, const transport::Effor
     }
   }
   albedo_ = glm::vec3(all / static_cast<double>(walks_ * entries));
+  if (!optics.opaque()) {
+    std::vector<Entries::Passage> joined;
+    for (const std::vector<Entries::Passage>& of : passages) joined.insert(joined.end(), of.begin(), of.end());
+    came_in_ = Entries(joined);
+  }
   // Radiance is flux over 2 mu dmu; between the intervals' middles it is linear, and flat beyond the last ones.
   for (int channel = 0; channel < 3; ++channel)
     for (int node = 0; node < lobe_nodes; ++node) {

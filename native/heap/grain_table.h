@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "heap/entries.h"
 #include "heap/optics.h"
 #include "heap/sphere_walk.h"
 #include "transport/effort.h"
@@ -40,6 +41,9 @@ class GrainTable {
   const std::array<glm::vec3, lobe_nodes>& lobe() const { return lobe_; }
   glm::vec3 lobe_at(float mu) const;
 
+  /// Where light comes in; of what is not opaque.
+  const Entries& came_in() const { return came_in_; }
+
  private:
   void take_albedo(const GrainTable& grey, int channel);
   void trace(const Optics& optics, Sense sense, const transport::Effort& effort);
@@ -52,6 +56,7 @@ class GrainTable {
   std::array<glm::vec3, entries> albedos_{};  // of what light of each interval meets
   std::vector<Outcome> outcomes_;
   std::array<glm::vec3, lobe_nodes> lobe_{};
+  Entries came_in_;
 };
 
 /// Tables that were made before are kept, by what they were made of. Each has random numbers of its own, so that the

@@ -224,17 +224,25 @@ void Exchange::send() {
   std::vector<glm::vec4> numbers;
   numbers.reserve(roles_.size() * object_numbers);
   const std::size_t kinds_begin = roles_.size() * object_numbers;
-  constexpr std::size_t kind_numbers = heap::GrainTable::lobe_nodes + 1;
+  std::vector<std::size_t> places_of_kinds;
+  std::size_t next = kinds_begin;
+  for (std::size_t kind = 0; known_ && kind < known_->light->kinds.size(); ++kind) {
+    places_of_kinds.push_back(next);
+    next += heap::GrainTable::lobe_nodes + 1 + known_->light->kinds[kind].from_light->came_in().offsets().size() / 2;
+  }
   const std::size_t known_grains = known_ ? known_->grains.grains.size() : 0;
   const std::size_t known_walls = known_ ? known_->grains.walls.size() : 0;
-  const auto place_of_kind = [&](std::uint32_t kind) { return static_cast<float>(kinds_begin + kind_numbers * kind); };
+  const auto place_of_kind = [&](std::uint32_t kind) { return static_cast<float>(places_of_kinds[kind]); };
   for (const Role& role : roles_) {
     // A grain that has just come is dark for a moment.
     const bool lit = role.grain && *role.grain < known_grains;
     append(numbers, lit ? known_->light->answer[*role.grain] : heap::Coefficients{});
     append(numbers, lit ? known_->light->behind[*role.grain] : heap::Coefficients{});
     glm::vec4 which(-1.0F);
-    if (lit) which.x = place_of_kind(known_->grains.grains[*role.grain].kind);
+    if (lit) {
+      const heap::Grain& grain = known_->grains.grains[*role.grain];
+      which = {place_of_kind(grain.kind), -1.0F, grain.radius, 0.0F};
+    }
     if (role.wall && *role.wall < known_walls)
       which = {place_of_kind(known_->grains.walls[*role.wall].kind), *role.wall, 0.0F, 0.0F};
     numbers.push_back(which);
@@ -242,8 +250,11 @@ void Exchange::send() {
   for (std::size_t kind = 0; known_ && kind < known_->light->kinds.size(); ++kind) {
     const heap::Optics& optics = known_->grains.kinds[kind];
     // What is not transparent lets nothing through.
-    numbers.emplace_back(optics.transparent() ? glm::vec3(optics.sigma_t) : glm::vec3(1e30F), 0.0F);
-    for (const glm::vec3& node : known_->light->kinds[kind].from_light->lobe()) numbers.emplace_back(node, 0.0F);
+    const heap::GrainTable& table = *known_->light->kinds[kind].from_light;
+    const std::vector<glm::vec2>& offsets = table.came_in().offsets();
+    numbers.emplace_back(optics.transparent() ? glm::vec3(optics.sigma_t) : glm::vec3(1e30F), offsets.empty() ? 0 : 1);
+    for (const glm::vec3& node : table.lobe()) numbers.emplace_back(node, 0.0F);
+    for (std::size_t pair = 0; pair < offsets.size(); pair += 2) numbers.emplace_back(offsets[pair], offsets[pair + 1]);
   }
   const heap::Patches none;
   const heap::Patches& patches = known_ ? known_->light->patches : none;

@@ -8,8 +8,8 @@
 
 #ifdef EXCHANGE
 // Of each object: red, green and blue of what it answers, and of what is seen straight through it (xyz: the slope over the normal, w: the mean
-// over all normals); x: where its kind is, y: which wall it is, if any. Of each kind: mean free paths across its radius; the lobe of its answer at
-// the middles of intervals of the cosine.
+// over all normals); x: where its kind is, y: which wall it is, if any, z: its radius. Of each kind: mean free paths across its radius, and
+// whether it is known where light comes in (models/entries.glsl); the lobe of its answer at the middles of intervals of the cosine; those entries.
 layout(std430, binding = HEAP_LIGHT_BINDING) readonly buffer HeapLight { vec4 heap_light[]; };
 
 const int OBJECT_NUMBERS = 7;

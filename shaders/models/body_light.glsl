@@ -47,7 +47,8 @@ uniform sampler2D flow_table;
 struct BodyFit {
   float cosine;   // between normal and light; negative where something stands in the light
   float visible;  // 0 or 1, smooth at the edge of a shadow
-  float reached;  // what other objects leave of the light where it enters
+  float reached;  // what other objects leave of the light where it meets the surface above the point
+  float entered;  // and of what leaves the body at the point, where that came in
   float radius;   // of the sphere, over the grain's
   float above;    // depth below the surface that the light meets first, in scene units
   float mu_o;
@@ -74,6 +75,7 @@ BodyFit fit_body(SurfacePoint point, Outwards outwards, LightSample light, Light
   fit.above = entry.lit ? max(entry.position.z - place.z, 0.0) : 0.0;
   fit.visible = light_map_visibility(frame, entry, place, cosine, body.clear);
   fit.reached = light_reaches_entry(frame, entry.lit ? entry.position : place);
+  fit.entered = entered < 0.0 ? fit.reached : entered;
   float way_in = mix(fit.above, max(entry.position.z - entry.exit_depth, 0.0), known * fit.visible);
 
   // A sphere of radius r has chords 2 r |cosine|. Where both vanish, and where the map is too coarse to tell, the grain's own radius stands

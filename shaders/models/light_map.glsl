@@ -10,6 +10,7 @@
 #include "render/stored_light_frame.glsl"
 #include "models/interface.glsl"
 #include "scene/grain.glsl"
+#include "models/entries.glsl"
 #include "scene/shadows.glsl"
 #include "models/pixel_random.glsl"
 
@@ -112,7 +113,7 @@ float light_map_visibility(LightFrame frame, LightMapTexel first, vec3 position,
   return cosine > 0.0 ? 1.0 - smoothstep(own, 2.0 * own + clear, above) : 0.0;
 }
 
-// What other objects leave of the light at `position` (light space), where it enters.
+// What other objects leave of the light at `position` (light space), where it meets the grain.
 float light_reaches_entry(LightFrame frame, vec3 position) {
 #ifdef SHADOWS
   // Where it shades itself, it is of several materials: light enters one of them, on a surface that may be steep.

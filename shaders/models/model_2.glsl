@@ -25,8 +25,9 @@ vec3 evaluate_model(SurfacePoint point, Outwards outwards, LightSample light) {
   float phase = 4.0 * PI * henyey_greenstein(versine, material.absolute_g, material.one_minus_absolute_g);
   radiance += corrected(fit.visible * half_space.single, look_up_body(single_difference, fit).rgb, phase * diffused_lobe(fit) * light.irradiance);
 #endif
+  radiance *= fit.entered;
 #ifdef SPECULAR
-  radiance += fit.visible * specular_reflection(point, outwards, light);
+  radiance += fit.reached * fit.visible * specular_reflection(point, outwards, light);
 #endif
-  return fit.reached * radiance;
+  return radiance;
 }

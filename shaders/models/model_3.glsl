@@ -115,6 +115,9 @@ struct Gathered {
   Spectrum sphere;  // the same of the sphere that fits
 };
 
+// Where it is known where light came in, once for all taps, none asks for itself.
+float light_reaches_tap(LightFrame frame, vec3 position) { return entered >= 0.0 ? 1.0 : light_reaches_entry(frame, position); }
+
 Gathered gather(Seen seen, Draws draws) {
   LightFrame frame = seen.frame;
   vec3 position = seen.position;
@@ -176,7 +179,7 @@ Gathered gather(Seen seen, Draws draws) {
     }
     if (lit > 0.0) {
       float apart = max(distance(vec3(place, entry_height), position), nearest);
-      lit *= light_reaches_entry(frame, body.radius * vec3(place, entry_height));
+      lit *= light_reaches_tap(frame, body.radius * vec3(place, entry_height));
       sum.grain += lit * min(weight * SPECTRUM(kernel_at(apart, cosine)), Spectrum(MOST_A_SAMPLE_COUNTS));
     }
   } while (++i < draws.count);
@@ -286,7 +289,7 @@ vec3 single_scattering(Seen seen, vec3 inwards, Draws draws) {
     Entry entry = entry_above(light_map_at(frame, seen.map, point.xy * body.radius), frame, point, centre, fit.radius);
     if (entry.lit == 0.0) continue;
     float above = entry.above;
-    float lit = entry.lit * light_reaches_entry(frame, body.radius * (point + vec3(0.0, 0.0, above)));
+    float lit = entry.lit * light_reaches_tap(frame, body.radius * (point + vec3(0.0, 0.0, above)));
 
     // The place in the unit sphere that has this normal above it, at this depth.
     float tilt = length(entry.normal.xy);
@@ -351,6 +354,7 @@ vec3 evaluate_model(SurfacePoint point, Outwards outwards, LightSample light) {
   radiance += fit.transmittance / (body.eta * body.eta) * inside;
 #endif
   radiance *= light.irradiance;
+  if (entered >= 0.0) radiance *= entered;
 #ifdef SPECULAR
   radiance += fit.visible * fit.reached * specular_reflection(point, outwards, light);
 #endif

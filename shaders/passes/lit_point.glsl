@@ -15,6 +15,7 @@
 #include "models/interface.glsl"
 #include "scene/grain.glsl"
 #include "scene/shadows.glsl"
+#include "models/entries.glsl"
 #include "heap/light_from_grains.glsl"
 #include "models/pixel_random.glsl"
 #include "scene/texturing.glsl"
@@ -53,6 +54,7 @@ float light_reaches_surface(LightSample light, SurfacePoint point) {
 #ifdef CAST_SHADOWS
   return light_reaches_pixel(light.index);
 #elif defined(SHADOWS) && defined(WHOLE_GRAIN)
+  if (entered >= 0.0) return entered;
   // Light enters about the point, as far as half the grain reaches: where, is another place with every sample.
   vec3 random = 2.0 * vec3(pcg4d(uvec4(uvec2(gl_FragCoord.xy), uint(sample_index), uint(light.index))).xyz >> 8u) * (1.0 / 16777216.0) - 1.0;
   return light_reaches(light.index, point.on_triangle + 0.5 * grain_reach * random, -1.0);
@@ -69,6 +71,9 @@ float light_reaches_surface(LightSample light, SurfacePoint point) {
 #endif
 
 vec3 lit_by(SurfacePoint point, Outwards outwards, LightSample light) {
+#if defined(EXCHANGE) && defined(SHADOWS) && (defined(LIGHT_MAPS) || defined(WHOLE_GRAIN))
+  look_where_light_came_in(point, light);
+#endif
 #ifdef LIGHT_MAPS
 #ifdef INSTANCED
   turn_to_light_map(light);

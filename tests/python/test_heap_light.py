@@ -78,18 +78,19 @@ def blocks(image):
     return image.reshape(12, 8, 12, 8).mean(axis=(1, 3))
 
 
-# Measured, total and blocks: 1.021, 5.1 %; .989, 2.2; 1.013, 5.8; .977, 5.4; .968, 4.1; 1.045, 6.7; 1.066, 7.0; 1.013,
-# 14.6; 1.005, 4.9.
+# Measured, total and blocks: 1.021, 5.1 %; .989, 2.2; .973, 5.2; .976, 5.1; .967, 3.9; 1.005, 5.4; 1.026, 4.0; 1.021,
+# 3.8; .930, 12.2; .987, 4.0.
 @pytest.mark.parametrize("file, model, exchange, total, error", [
     ("L8_s45.exr", "lambert", "order_1", 0.03, 0.06),
     ("L8_s45.exr", "lambert", "gathered", 0.02, 0.025),
-    ("M9_3_s45.exr", "model_2", "order_1", 0.03, 0.07),
+    ("M9_3_s45.exr", "model_2", "order_1", 0.03, 0.06),
     ("M9_3_s45.exr", "model_3", "order_1", 0.03, 0.06),
-    ("M9_3_s45.exr", "model_3", "gathered", 0.04, 0.05),
-    ("M999_3_sky.exr", "model_2", "order_1", 0.05, 0.08),
-    ("M999_3_sky.exr", "model_2", "gathered", 0.08, 0.08),
-    ("M9_1_low.exr", "model_2", "order_1", 0.03, 0.16),
-    ("M9_1_low.exr", "model_3", "gathered", 0.03, 0.06)])
+    ("M9_3_s45.exr", "model_3", "gathered", 0.04, 0.045),
+    ("M999_3_sky.exr", "model_2", "order_1", 0.03, 0.06),
+    ("M999_3_sky.exr", "model_2", "gathered", 0.04, 0.045),
+    ("M999_3_sky.exr", "model_3", "gathered", 0.04, 0.045),
+    ("M9_1_low.exr", "model_2", "order_1", 0.08, 0.13),
+    ("M9_1_low.exr", "model_3", "gathered", 0.03, 0.05)])
 def test_a_heap_is_as_bright_as_it_is(file, model, exchange, total, error):
     truth = native.read_exr(DATA / file)[0][..., 1]
     found = picture(IMAGES[file], model, exchange)

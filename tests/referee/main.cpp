@@ -12,6 +12,7 @@
 
 #include "base/file.h"
 #include "half_space.h"
+#include "heap_file.h"
 #include "io/scene_json.h"
 #include "picture_file.h"
 #include "table_file.h"
@@ -110,6 +111,32 @@ void add_render(CLI::App& application) {
   });
 }
 
+void add_heap(CLI::App& application) {
+  CLI::App* command = application.add_subcommand("heap", "a picture of a heap of balls, in OpenEXR, with its shares");
+  auto heap_path = std::make_shared<std::string>();
+  auto output = std::make_shared<std::string>();
+  auto wanted = std::make_shared<HeapCase>();
+  command->add_option("heap", *heap_path, "heap in JSON")->required()->option_text("HEAP.json");
+  command->add_option("-o,--output", *output, "picture to write")->required()->option_text("OUT.exr");
+  command->add_option("-n,--samples", wanted->samples, "paths a pixel")
+      ->check(CLI::Range(1, 10'000'000))
+      ->capture_default_str();
+  command->add_option("--seed", wanted->seed, "the picture depends on it alone")->capture_default_str();
+  command->add_option("--threads", wanted->threads, "0: as many as the machine has")->capture_default_str();
+  command->callback([=] {
+    mesograin::base::require_writable(*output);
+    std::vector<HeapCase> cases = heap_cases(*heap_path);
+    std::vector<HeapPicture> pictures;
+    for (HeapCase& setup : cases) {
+      setup.samples = wanted->samples;
+      setup.seed = wanted->seed;
+      setup.threads = wanted->threads;
+      pictures.push_back(trace_heap(setup));
+    }
+    write_heap(*output, cases, pictures);
+  });
+}
+
 void add_tables(CLI::App& application) {
   CLI::App* command = application.add_subcommand("tables", "make or complete the tables the tests read");
   auto directory = std::make_shared<std::string>("tests/data/referee");
@@ -134,6 +161,7 @@ int command(int argument_count, char** arguments) {
   application.require_subcommand(1);
   add_half_space(application);
   add_render(application);
+  add_heap(application);
   add_tables(application);
   try {
     application.parse(argument_count, arguments);
