@@ -1,8 +1,9 @@
-"""Runs the parts of the test suite one after the other, sums what their JUnit files say, and prints the sum last.
+"""Runs the parts of the test suite, two at a time, sums what their JUnit files say, and prints the sum last.
 
 A part that crashes, hangs or runs no test counts as a failure.
 """
 import argparse
+import concurrent.futures
 import itertools
 import json
 import os
@@ -11,12 +12,17 @@ import shutil
 import signal
 import subprocess
 import sys
+import threading
 import time
 import xml.etree.ElementTree as ElementTree
 from dataclasses import asdict, dataclass, field
 
 SOURCE = pathlib.Path(__file__).resolve().parent.parent
 PARTS = ("lint", "physics", "native", "python", "blender", "window")
+# Most suites keep one core busy, so two run side by side: the longest first, last what shares its work out by itself.
+LANES = 2
+SIDE_BY_SIDE = ("blender", "python", "native", "physics", "lint")
+ALONE = ("window",)  # an artist's clock: drawing is timed
 FATAL = "Fatal Python error"
 MOST_CALLS = 8  # of a crash
 LIMIT = 40 * 60  # seconds for one suite; only a hang takes so long
@@ -105,35 +111,49 @@ class Runner:
         self.folder = pathlib.Path(options.results)
         shutil.rmtree(self.folder, ignore_errors=True)
         self.folder.mkdir(parents=True)
-        self.child = None
+        self.children = []
+        self.speaking = threading.Lock()
+        self.interrupted = False
 
     def execute(self, command, log_path, environment):
         """Runs one process in a session of its own, so that whatever it started ends with it."""
         variables = dict(os.environ, MESOGRAIN_BLENDER=self.options.blender, MESOGRAIN_BUILD=self.options.build,
                          **environment)
         with open(log_path, "wb") as log:
-            self.child = subprocess.Popen(command, cwd=SOURCE, env=variables, stdin=subprocess.DEVNULL, stdout=log,
-                                          stderr=subprocess.STDOUT, start_new_session=True)
+            child = subprocess.Popen(command, cwd=SOURCE, env=variables, stdin=subprocess.DEVNULL, stdout=log,
+                                     stderr=subprocess.STDOUT, start_new_session=True)
+            self.children.append(child)
             try:
-                return self.child.wait(timeout=LIMIT)
+                if self.interrupted:
+                    return None
+                return child.wait(timeout=LIMIT)
             except subprocess.TimeoutExpired:
                 return f"no end after {LIMIT // 60} minutes"
             finally:
-                self.end_child()
+                self.end(child)
+                self.children.remove(child)
 
-    def end_child(self):
+    @staticmethod
+    def end(child):
         try:
-            os.killpg(self.child.pid, signal.SIGKILL)
+            os.killpg(child.pid, signal.SIGKILL)
         except ProcessLookupError:
             pass
+
+    def interrupt(self):
+        """Ends every suite that runs, and each that would begin."""
+        self.interrupted = True
+        for child in list(self.children):
+            self.end(child)
 
     def run_suite(self, suite):
         stem = "".join(letter if letter.isalnum() or letter in "._" else "-" for letter in suite.name)
         junit, log = self.folder / f"{stem}.xml", self.folder / f"{stem}.log"
         result = Result(suite.name)
-        print(f"{suite.name:<44}", end="", flush=True)
         start = time.monotonic()
         code = self.execute([part.replace("{junit}", str(junit)) for part in suite.command], log, suite.environment)
+        if self.interrupted:
+            return
         result.seconds = time.monotonic() - start
         readable = read_junit(junit, result)
         if code != 0 and result.failed == 0:
@@ -145,40 +165,53 @@ class Runner:
             result.failures.append((suite.name, f"ran no test\n{tail(log)}"))
         self.report(result, log)
 
-    def run_part(self, part):
+    def run_parts(self, parts):
+        """Runs what may run side by side, then what may not."""
+        for lanes, group in ((LANES, SIDE_BY_SIDE), (1, ALONE)):
+            suites = [suite for part in group if part in parts for suite in self.suites_of(part)]
+            with concurrent.futures.ThreadPoolExecutor(lanes) as pool:
+                try:
+                    for done in [pool.submit(self.run_suite, suite) for suite in suites]:
+                        done.result()
+                except KeyboardInterrupt:
+                    self.interrupt()
+                    raise
+
+    def suites_of(self, part):
         suites = suites_of(part, self.options)
-        for suite in suites:
-            self.run_suite(suite)
         if not suites:
-            print(f"{part:<44}", end="")
             self.report(Result(part, failed=1, failures=[(part, "has no test to run")]), None)
+        return suites
 
     def add_run(self, title, path):
         """Adds the results of a run that has already ended, in the Debian of this title; returns the Blender it ran."""
         try:
             run = json.loads(pathlib.Path(path).read_text())
         except (OSError, ValueError) as error:
-            print(f"{title:<44}", end="")
             self.report(Result(title, failed=1, failures=[(title, f"left no summary: {error}")]), None)
             return None
         for fields in run["results"]:
             result = Result(**fields)
             result.name += f" in {title}" if run["blender"] not in result.name else ""
-            print(f"{result.name:<44}", end="")
             self.report(result, path)
         return run["blender"]
 
     def report(self, result, log):
+        with self.speaking:
+            self.say(result, log)
+            self.results.append(result)
+
+    @staticmethod
+    def say(result, log):
         counts = f"{result.passed} passed" + (f", {result.failed} failed" if result.failed else "") + (
             f", {result.skipped} skipped" if result.skipped else "")
-        print(f"{counts:<40}{result.seconds:6.1f} s", flush=True)
+        print(f"{result.name:<44}{counts:<40}{result.seconds:6.1f} s", flush=True)
         for test, text in result.failures:
             print(f"  FAILED {test}")
             for line in telling(text):
                 print(f"    {line}")
         if result.failures and log:
-            print(f"  the whole log: {log}")
-        self.results.append(result)
+            print(f"  the whole log: {log}", flush=True)
 
 
 def telling(text, count=12):
@@ -227,13 +260,10 @@ def main():
     # Started in a shell's background, Ctrl-C is ignored, and so it would be in every process that a test starts.
     signal.signal(signal.SIGINT, signal.default_int_handler)
     try:
-        for part in PARTS:
-            if part in options.parts:
-                runner.run_part(part)
+        runner.run_parts(options.parts)
         versions = [options.blender_version]
         versions += filter(None, [runner.add_run(*also.split("=", 1)) for also in options.also])
     except KeyboardInterrupt:
-        runner.end_child()
         print("\nmesograin: interrupted", file=sys.stderr)
         return 130
     return summarise(runner, options, versions)

@@ -70,7 +70,7 @@ class TestRunTests:
     """What the tests' runner makes of suites that end in every possible way."""
 
     @pytest.fixture
-    def run(self, tmp_path):
+    def run(self, tmp_path, monkeypatch):
         sys.path.insert(0, str(SOURCE / ".launcher"))
         import argparse
 
@@ -83,6 +83,14 @@ class TestRunTests:
             runner.run_suite(run_tests.Suite("suite", ["sh", "-c", script, "sh", "{junit}"]))
             return runner.results[0]
 
+        def run_parts(scripts):
+            monkeypatch.setattr(run_tests, "suites_of", lambda part, _options: [
+                run_tests.Suite(part, ["sh", "-c", scripts[part], "sh", "{junit}"])])
+            runner = run_tests.Runner(options)
+            runner.run_parts(list(scripts))
+            return {result.name: result for result in runner.results}
+
+        run_script.parts = run_parts
         yield run_script
         sys.path.remove(str(SOURCE / ".launcher"))
 
@@ -104,6 +112,17 @@ class TestRunTests:
     ], ids=["crash", "nothing", "no test", "no file", "all skipped", "failed after its tests"])
     def test_a_suite_that_proves_nothing_failed(self, run, script):
         assert run(script).failed == 1
+
+    def test_two_run_at_a_time_and_the_window_alone(self, run, tmp_path):
+        passes = """echo '<testsuites><testcase name="a"/></testsuites>' > "$1\""""
+        meets = ("touch {own}; n=0; until [ -e {other} ]; do sleep 0.1; n=$((n + 1)); [ $n -lt 300 ] || exit 1; done; "
+                 "sleep 0.5; touch {own}.ended; " + passes)
+        files = {part: tmp_path / part for part in ("blender", "python", "window")}
+        results = run.parts({
+            "window": f"[ -e {files['blender']}.ended ] && [ -e {files['python']}.ended ] && {passes}",
+            "blender": meets.format(own=files["blender"], other=files["python"]),
+            "python": meets.format(own=files["python"], other=files["blender"])})
+        assert {name: (each.passed, each.failed) for name, each in results.items()} == dict.fromkeys(files, (1, 0))
 
     @pytest.mark.parametrize("depth", [2, 40])
     def test_a_crash_says_in_which_test_and_call(self, run, capsys, tmp_path, depth):
