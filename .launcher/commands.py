@@ -30,6 +30,7 @@ BENCHMARKS = {
     "heap": "what heaps of a thousand to a million grains cost relative to one lambert sphere, and how much memory",
     "exchange": "what light between grains costs while a scene changes: milliseconds to the first and the final answer",
     "accuracy": "how far each model's sphere is from photon Monte Carlo; about twelve minutes",
+    "relightable": "how far a relightable bake is from bakes for each light, by its number of components",
     "shapes": "how far pictures of grains of any shape are from photon Monte Carlo, such as tests/data/shapes holds",
     "transport": "how long the model transport takes to answer for a new mesh, and after a slider",
     "false_alarms": "how often the significance test calls renders different that differ in their seed alone",

@@ -80,6 +80,21 @@ def set_linear(image):
             continue
 
 
+def add_group_socket(group, name, in_out, kind):
+    """A socket of a node group; in_out: INPUT or OUTPUT. From Blender 4 on groups have an interface."""
+    if hasattr(group, "interface"):
+        return group.interface.new_socket(name, in_out=in_out, socket_type=kind)
+    return (group.inputs if in_out == "INPUT" else group.outputs).new(kind, name)
+
+
+def eevee():
+    """The name of the engine that Blender calls EEVEE: from 4.2 to 4.5 it is another one."""
+    import bpy
+
+    names = bpy.types.RenderSettings.bl_rna.properties["engine"].enum_items.keys()
+    return "BLENDER_EEVEE_NEXT" if "BLENDER_EEVEE_NEXT" in names else "BLENDER_EEVEE"
+
+
 def has_choice_of_nodes(datablock):
     """Whether a material, light or world may be without nodes. From Blender 5 on all have them, and asking warns."""
     return not getattr(datablock.bl_rna.properties["use_nodes"], "is_deprecated", False)

@@ -9,7 +9,7 @@ from ...command_line import parser as shared
 from ...command_line.values import positive
 from ...schema.models import NAMES
 from ..comparison.arguments import REFERENCES
-from .choices import DEFAULT_MARGIN, LARGEST_MARGIN, LARGEST_SIDE, VIEW_FROM
+from .choices import DEFAULT_COMPONENTS, DEFAULT_MARGIN, LARGEST_COMPONENTS, LARGEST_MARGIN, LARGEST_SIDE, VIEW_FROM
 
 
 def build():
@@ -29,7 +29,8 @@ def build():
                         help=f"one of {', '.join(NAMES)} (default: the material's)")
     parser.add_argument("--size", type=_size, default=(1024, 1024), metavar="SIDE|WxH",
                         help="texels (default: 1024, square)")
-    parser.add_argument("--samples", type=positive, default=64, metavar="N", help="samples a texel (default: 64)")
+    parser.add_argument("--samples", type=positive, default=None, metavar="N",
+                        help="samples a texel (default: 64; with --relightable 4 for each direction)")
     parser.add_argument("--view-from", choices=VIEW_FROM, default=VIEW_FROM[0], metavar="WHERE",
                         help=f"what looks at the surface: {' or '.join(VIEW_FROM)} (default: the first)")
     parser.add_argument("--margin", type=_margin, default=DEFAULT_MARGIN, metavar="N",
@@ -37,6 +38,12 @@ def build():
     parser.add_argument("--half", action="store_true", help="16-bit instead of 32-bit floats")
     shared.add_settings(parser, "")
     shared.add_exchange(parser)
+    parser.add_argument("--relightable", action="store_true",
+                        help="for light from anywhere, not the scene's: components as layers of OUT.exr, the same as"
+                        " OUT.atlas.exr, OUT.lobes.exr, a node group in OUT.blend, a shader's recipe OUT.glsl, and the"
+                        " error over 64 directions in OUT.json")
+    parser.add_argument("--components", type=_components, default=None, metavar="N",
+                        help=f"with --relightable: textures, 2 to {LARGEST_COMPONENTS} (default: {DEFAULT_COMPONENTS})")
     parser.add_argument("--compare", action="store_true",
                         help="also bakes what can be compared with Cycles, without a margin: OUT.mesograin.exr,"
                         " OUT.cycles.exr, OUT.error.exr, PNGs, and numbers in OUT.json")
@@ -53,6 +60,12 @@ def parse(words):
     chosen = parser.choose(words)
     if not chosen.compare and (chosen.reference or chosen.reference_samples):
         parser.error("--reference and --reference-samples need --compare")
+    if chosen.components and not chosen.relightable:
+        parser.error("--components needs --relightable")
+    if chosen.relightable and (chosen.compare or chosen.view_from != VIEW_FROM[0]):
+        parser.error("--relightable is neither compared nor baked for a camera: leave out --compare and --view-from")
+    chosen.samples = chosen.samples or (4 if chosen.relightable else 64)
+    chosen.components = chosen.components or DEFAULT_COMPONENTS
     return chosen
 
 
@@ -69,6 +82,12 @@ def _size(text):
     if not all(1 <= side <= LARGEST_SIDE for side in size):
         raise argparse.ArgumentTypeError(f"SIDE or WIDTHxHEIGHT of 1 to {LARGEST_SIDE} texels is needed, '{text}' came")
     return size
+
+
+def _components(text):
+    if not text.isdigit() or not 2 <= int(text) <= LARGEST_COMPONENTS:
+        raise argparse.ArgumentTypeError(f"a whole number from 2 to {LARGEST_COMPONENTS} is needed, '{text}' came")
+    return int(text)
 
 
 def _margin(text):

@@ -11,3 +11,7 @@ LARGEST_MARGIN = 32767
 
 DEFAULT_MARGIN = 16
 """Texels, as of Blender's own bake."""
+
+DEFAULT_COMPONENTS = 8
+LARGEST_COMPONENTS = 25
+"""Textures of a relightable bake."""

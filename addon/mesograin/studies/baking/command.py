@@ -39,6 +39,9 @@ def _bake_shown(chosen, depsgraph, progress):
     overrides = export.overrides(chosen.settings, depsgraph.scene)
     name = surface.choose(depsgraph, chosen.object)
     own = {**overrides, "model": chosen.model} if chosen.model else overrides
+    if chosen.relightable:
+        _bake_relightable(chosen, depsgraph, name, own, progress)
+        return
     ours = surface.Surface(depsgraph, name, chosen.size, chosen.view_from, own,
                            exchange=chosen.exchange)
     if chosen.compare:
@@ -58,6 +61,24 @@ def _bake_shown(chosen, depsgraph, progress):
     models = ", ".join(sorted({values["model"] for values in ours.materials.values()}))
     print(f"{chosen.output}: {name}, {chosen.size[0]} x {chosen.size[1]} texels, {chosen.samples} samples by {models}",
           flush=True)
+
+
+def _bake_relightable(chosen, depsgraph, name, overrides, progress):
+    from mesograin.studies.baking import relightable_command, relightable_files
+
+    progress.plan([(f"baking {name} from all sides", "bake", 1.0)])
+    progress.begin()
+    made, sentences = relightable_command.bake(depsgraph, name, chosen.size, chosen.samples, overrides,
+                                               chosen.components, chosen.output, chosen.margin, chosen.half,
+                                               progress.update)
+    progress.end()
+    for sentence in sentences:
+        progress.say(f"bake: {sentence}")
+    progress.close()
+    files = ", ".join(path.name for path in relightable_files.paths(chosen.output).values())
+    print(f"{name}, {chosen.components} components of {chosen.size[0]} x {chosen.size[1]} texels: relative L1 "
+          f"{made.errors.mean():.2%} on average over {made.errors.size} directions, {made.errors.max():.2%} at worst")
+    print(f"{chosen.output.absolute().parent}: {files}", flush=True)
 
 
 def _compare(chosen, depsgraph, own, overrides, progress):

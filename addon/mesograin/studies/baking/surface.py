@@ -14,6 +14,7 @@ from ...cycles.shot import PROVENANCE
 from ...scene import export, meshes
 from ..comparison.results import OutputError
 from .choices import VIEW_FROM
+from .relightable import Lit
 
 CONVENTION = "u to the right, v up, (0, 0) at the lower left corner; row 0 is v = 1"
 
@@ -53,6 +54,7 @@ class Surface:
         self.name, self.size, self.view_from = name, tuple(size), view_from
         self.materials = {changed[index].material.name: dict(changed[index].material.values) for index in instances}
         self.triangles = sum(changed[index].mesh.triangle_count for index in instances)
+        self._instances = [changed[index] for index in instances]
         self._views = [native.View(*size, seed=seed) for seed in range(parts)]
         drawn = scene.to_native()
         for view in self._views:
@@ -81,6 +83,14 @@ class Surface:
             if time.monotonic() - started < PATIENCE_SECONDS:
                 share *= 2
         return not self._cancelled
+
+    def lit(self, size, samples):
+        """A relightable.Lit of the object alone, told directions in the object's space."""
+        native = native_module.get()
+        materials = {values: values.to_native(native) for values in {each.material for each in self._instances}}
+        instances = [each.to_native(native, materials[each.material]) for each in self._instances]
+        to_world = numpy.array(self._instances[0].object_to_world).reshape(4, 4)[:3, :3]
+        return Lit(native, instances, to_world, size, samples)
 
     @property
     def drawn_otherwise(self):
