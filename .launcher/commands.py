@@ -28,6 +28,7 @@ PARTS = {
 BENCHMARKS = {
     "frame": "what each model costs relative to lambert: shade pass alone, 400x400, sphere, two lights",
     "heap": "what heaps of a thousand to a million grains cost relative to one lambert sphere, and how much memory",
+    "drag": "how long a change takes to be seen in a real window, relative to Blender's own redraw in Solid shading",
     "exchange": "what light between grains costs while a scene changes: milliseconds to the first and the final answer",
     "accuracy": "how far each model's sphere is from photon Monte Carlo; about twelve minutes",
     "relightable": "how far a relightable bake is from bakes for each light, by its number of components",

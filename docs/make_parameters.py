@@ -7,14 +7,14 @@ import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "addon"))
 
-from mesograin.schema.models import MODELS  # noqa: E402
+from mesograin.schema.models import CHOICES  # noqa: E402
 from mesograin.schema.parameters import PARAMETERS, SCENE  # noqa: E402
 
 HEAD = """# Parameters and models
 
 What a grain's material says, by the names that GLSL, C++, Python, JSON, TOML, the command line and the panel share.
 `length` is the millimetre in Blender, on the command line and in sweeps, and the scene's unit elsewhere. These tables
-are made from `grain.json` and `scene.json` in `addon/mesograin/schema` by `docs/make_parameters.py`.
+are made from `grain.json`, `auto.json` and `scene.json` in `addon/mesograin/schema` by `docs/make_parameters.py`.
 """
 
 
@@ -57,7 +57,7 @@ def page():
                        [(f"`{choice.name}`", text(choice.sentence)) for choice in parameter.choices])
     lines += ["## Models", ""]
     lines += table(("model", "meaning", "parameters that it reads"),
-                   [(f"`{model.name}`", text(model.sentence), _parameters(model)) for model in MODELS.values()])
+                   [(f"`{model.name}`", text(model.sentence), _parameters(model)) for model in CHOICES.values()])
     return "\n".join(lines).rstrip("\n") + "\n"
 
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <map>
 #include <memory>
@@ -18,6 +19,8 @@
 #include "io/light_json.h"
 #include "io/material_json.h"
 #include "io/mesh_file.h"
+#include "scene/advice.h"
+#include "scene/auto.h"
 #include "scene/sphere.h"
 
 namespace mesograin::io {
@@ -124,6 +127,24 @@ void read_objects(const Node& root, const std::filesystem::path& folder, const S
   at(objects, [&] { validate(scene); });
 }
 
+/// Gives each translucent object the model that scene::advise has for it; an array's by the size of its middle
+/// instance.
+void choose_models(Scene& scene) {
+  const auto choose = [](Material& material, const MeshPointer& mesh, const glm::dmat4& to_world) {
+    if (traits_of(material.model).translucent)
+      material.model = advise(material, shape_of(*mesh, glm::dmat3(to_world))).model;
+  };
+  for (Instance& instance : scene.instances) choose(instance.material, instance.mesh, instance.object_to_world);
+  for (InstanceArray& array : scene.arrays) {
+    std::vector<glm::dmat4> matrices = array.object_to_world();
+    if (matrices.empty()) continue;
+    const auto middle = matrices.begin() + static_cast<std::ptrdiff_t>(matrices.size() / 2);
+    const auto size = [](const glm::dmat4& matrix) { return std::abs(glm::determinant(glm::dmat3(matrix))); };
+    std::ranges::nth_element(matrices, middle, {}, size);
+    choose(array.material, array.mesh, *middle);
+  }
+}
+
 /// A word about the camera or a material that must say what Mesograin does anyway.
 void require_text(const Node& node, const char* key, std::string_view beginning) {
   if (node.has(key) && !node[key].text().starts_with(beginning)) node[key].fail("must begin with \"{}\"", beginning);
@@ -178,6 +199,7 @@ SceneFile read(const Json& json, const std::filesystem::path& folder, const Scen
   else if (root.has("exchange"))
     file.scene.exchange = at(root["exchange"], [&] { return parse_choice<Exchange>(root["exchange"].text()); });
   read_objects(root, folder, choices, file.scene);
+  if (choices.automatic) choose_models(file.scene);
   file.camera = read_camera(root["camera"], static_cast<double>(file.width) / file.height);
   file.source = json.dump(-1, ' ', true, Json::error_handler_t::replace);
   return file;
@@ -194,6 +216,17 @@ std::string syntax_error(const Json::exception& error) {
 }
 
 }  // namespace
+
+void choose_model(SceneChoices& choices, std::string_view name) {
+  choices.automatic = name == automatic::name;
+  if (!choices.automatic) choices.model = parse_model(name);
+}
+
+std::vector<std::string> models_to_choose() {
+  std::vector<std::string> names(model_names.begin(), model_names.end());
+  names.emplace_back(automatic::name);
+  return names;
+}
 
 void require_size(const SceneChoices& choices) {
   if (choices.width == 0 && choices.height == 0) return;

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "scene/camera.h"
 #include "scene/scene.h"
@@ -26,7 +27,14 @@ struct SceneChoices {
   int width = 0;                      ///< 0: as in the scene
   int height = 0;
   std::optional<scene::Exchange> exchange{};  ///< else as in the scene
+  bool automatic = false;                     ///< instead of `model`: each translucent object's by scene::advise
 };
+
+/// Takes a model's name, or "auto". Throws Error for another.
+void choose_model(SceneChoices& choices, std::string_view name);
+
+/// What choose_model takes.
+std::vector<std::string> models_to_choose();
 
 /// Throws Error unless the chosen size is one that can be rendered, or is left to the scene.
 void require_size(const SceneChoices& choices);

@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "python/bindings.h"
 #include "python/vectors.h"
+#include "scene/advice.h"
 #include "scene/camera.h"
 #include "scene/scene.h"
 
@@ -69,6 +70,27 @@ void bind_mesh_and_instance(py::module_& module) {
            "transform: (4, 4) float64, object to world; None is the identity.")
       .def_readonly("material", &scene::Instance::material)
       .def_property_readonly("transform", [](const scene::Instance& i) { return to_array(i.object_to_world); });
+}
+
+void bind_advice(py::module_& module) {
+  module.def(
+      "shape_of",
+      [](const scene::Mesh& mesh, const std::optional<Array<double>>& transform) {
+        const glm::dmat4 matrix = transform ? to_matrix(*transform, "transform") : glm::dmat4(1.0);
+        const scene::Shape shape = scene::shape_of(mesh, glm::dmat3(matrix));
+        return py::make_tuple(shape.volume, shape.area, shape.closed);
+      },
+      py::arg("mesh"), py::arg("transform") = py::none(),
+      "(volume, area, whether it is closed) of a mesh as a transform, (4, 4) float64, has it.");
+  module.def(
+      "advise",
+      [](const scene::Material& material, double volume, double area, bool closed) {
+        scene::Advice advice = scene::advise(material, {volume, area, closed});
+        return py::make_tuple(scene::name_of(advice.model), advice.error, std::move(advice.sentence));
+      },
+      py::arg("material"), py::arg("volume"), py::arg("area"), py::arg("closed"),
+      "(model, its measured error in %, why in a sentence) for a grain of this medium: the cheapest that was measured "
+      "to be near enough for its size and shape. Lengths are those that sigma_a and sigma_s are per.");
 }
 
 std::vector<glm::dmat4> to_matrices(const Array<double>& array) {
@@ -178,6 +200,7 @@ void bind_camera(py::module_& module) {
 
 void bind_scene(py::module_& module) {
   bind_mesh_and_instance(module);
+  bind_advice(module);
   bind_instance_array(module);
   bind_camera(module);
   bind_lights(module);

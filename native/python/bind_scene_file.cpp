@@ -42,7 +42,7 @@ io::SceneFile read(const py::object& source, const io::SceneChoices& choices) {
 py::tuple load_scene(const py::object& source, const std::optional<std::string>& model,
                      const std::optional<std::pair<int, int>>& size) {
   io::SceneChoices choices;
-  if (model) choices.model = scene::parse_model(*model);
+  if (model) io::choose_model(choices, *model);
   if (size) {
     choices.width = size->first;
     choices.height = size->second;
@@ -69,8 +69,9 @@ void bind_scene_file(py::module_& module) {
   module.def("load_scene", &load_scene, py::arg("source"), py::arg("model") = py::none(), py::arg("size") = py::none(),
              "(Scene, Camera, (width, height)) from a scene in JSON: a path, the text itself, or a dict of the same "
              "form (docs/scene-json.md); of text and dicts, files are looked for in the current folder. `model` "
-             "answers the material instead of the best one for its kind; `size` is (width, height) instead of the "
-             "scene's resolution. Raises Error naming the key, what is needed and what came.");
+             "answers the material instead of the best one for its kind, and \"auto\" is what `advise` says of each "
+             "translucent object; `size` is (width, height) instead of the scene's resolution. Raises Error naming the "
+             "key, what is needed and what came.");
 }
 
 }  // namespace mesograin::python

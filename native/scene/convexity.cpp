@@ -2,14 +2,13 @@
 // itself (a star polygon's prism does), which no mesh of a grain is known to do.
 #include "scene/convexity.h"
 
-#include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <glm/geometric.hpp>
 #include <map>
-#include <tuple>
 #include <utility>
 #include <vector>
+
+#include "scene/welding.h"
 
 namespace mesograin::scene {
 namespace {
@@ -17,27 +16,10 @@ namespace {
 // Of the mesh's reach: how far a neighbour's corner may stand above a triangle's plane.
 constexpr double tolerance = 1e-5;
 
-// The same number for positions that coincide but for rounding, as on the seam of a sphere.
-std::vector<std::uint32_t> welded(const Mesh& mesh) {
-  const double cell = 0.1 * tolerance * std::max(mesh.reach(), 1e-300);
-  std::map<std::tuple<std::int64_t, std::int64_t, std::int64_t>, std::uint32_t> known;
-  std::vector<std::uint32_t> numbers;
-  numbers.reserve(mesh.positions().size());
-  const glm::dvec3 middle = 0.5 * (glm::dvec3(mesh.lower()) + glm::dvec3(mesh.upper()));
-  for (const glm::vec3& position : mesh.positions()) {
-    const glm::dvec3 place = (glm::dvec3(position) - middle) / cell;
-    numbers.push_back(known
-                          .try_emplace({std::llround(place.x), std::llround(place.y), std::llround(place.z)},
-                                       static_cast<std::uint32_t>(known.size()))
-                          .first->second);
-  }
-  return numbers;
-}
-
 }  // namespace
 
 bool is_convex(const Mesh& mesh) {
-  const std::vector<std::uint32_t> numbers = welded(mesh);
+  const std::vector<std::uint32_t> numbers = welded(mesh, 0.1 * tolerance);
   const double allowed = tolerance * mesh.reach();
   struct Side {
     glm::dvec3 opposite;

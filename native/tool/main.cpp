@@ -58,7 +58,7 @@ struct Options {
 /// The two numbers of "400x300", or twice that of "512".
 io::SceneChoices parse_choices(const Options& options) {
   io::SceneChoices choices;
-  if (!options.model.empty()) choices.model = scene::parse_model(options.model);
+  if (!options.model.empty()) io::choose_model(choices, options.model);
   if (!options.exchange.empty()) choices.exchange = scene::parse_choice<scene::Exchange>(options.exchange);
   if (options.size.empty()) return choices;
   const char* const end = options.size.data() + options.size.size();
@@ -133,8 +133,8 @@ int command(int argument_count, char** arguments) {
   app.add_option("scene", options.scene, "Scene in JSON")->required()->option_text("SCENE.json");
   app.add_option("-o,--output", options.output, "Picture to write")->required()->option_text("OUT.exr");
   app.add_option("-m,--model", options.model,
-                 fmt::format("{}; default: the best for the material's kind", fmt::join(scene::model_names, ", ")))
-      ->check(CLI::IsMember(std::vector<std::string>(scene::model_names.begin(), scene::model_names.end())))
+                 fmt::format("{}; default: the best for the material's kind", fmt::join(io::models_to_choose(), ", ")))
+      ->check(CLI::IsMember(io::models_to_choose()))
       ->option_text("MODEL");
   app.add_option("-n,--samples", options.samples, "Samples for each pixel; default 64")
       ->check(CLI::Range(1, 1000000))

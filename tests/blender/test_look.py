@@ -2,6 +2,7 @@
 import bpy
 import numpy as np
 import pytest
+from mesograin.scene import automatic, export, heaps, meshes, properties
 from mesograin.schema import presets as known
 from mesograin.ui import look, presets
 
@@ -103,12 +104,51 @@ def test_an_open_cube_is_told_from_a_closed_one(material, native):
     assert not look._shape(thing)[2] and look.advise(material, thing, 1.0).model == "model_3"
 
 
+def drawn_models():
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    values = export.read_scene(depsgraph, meshes.MeshCache())
+    scene = values.to_native()
+    asked = {dict(drawn.material.values)["model"] for drawn in (*values.instances, *values.heaps)}
+    assert asked == {"auto"}, "what is asked for is what changes are told by"
+    return [drawn.material.model for drawn in (*scene.instances, *scene.arrays)]
+
+
+def test_auto_is_another_model_for_another_size_and_shape(material, native):
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
+    material = bpy.data.materials.new("Grain")
+    material.mesograin.model = "auto"
+    path = sorted(material.mesograin_look.mean_free_path)[1]
+    for number, (paths, is_cube) in enumerate(((8.0, False), (150.0, False), (6.0, True))):
+        grain_object(material, paths * path, is_cube).location.x = 1000.0 * number
+    bpy.context.view_layer.update()
+    assert sorted(drawn_models()) == ["model_1", "model_2", "transport"]
+    bpy.context.scene.mesograin.millimetres_per_unit = 0.01  # each a hundredth as thick
+    assert sorted(drawn_models()) == ["model_2", "model_2", "transport"]
+
+
+@pytest.mark.parametrize("large, model", [(60, "model_1"), (40, "model_2")])
+def test_auto_of_a_heap_goes_by_its_middle_grain(material, native, large, model):
+    paths = sorted(material.mesograin_look.mean_free_path)
+    placings = np.tile(np.eye(4, dtype=np.float32), (100, 1, 1))
+    placings[:large, :3, :3] *= 60.0 * paths[1]
+    placings[large:, :3, :3] *= paths[1]
+    heap = heaps.HeapValues("Heap", heaps.sphere(), export.material_values(material, 1.0), placings.tobytes())
+    drawn = automatic.with_model(heap)
+    assert dict(drawn.material.values)["model"] == model and drawn.placings == heap.placings
+
+
+def test_auto_keeps_its_number_in_files(material):
+    item = material.mesograin.bl_rna.properties["model"].enum_items["auto"]
+    assert item.value == properties.AUTO_NUMBER
+
+
 def test_every_preset_can_be_applied(native):
     bpy.ops.mesh.primitive_uv_sphere_add()
     bpy.context.object.data.materials.append(bpy.data.materials.new("Grain"))
     for identifier, preset in known.BY_IDENTIFIER.items():
         assert bpy.ops.mesograin.apply_preset(preset=identifier) == {"FINISHED"}
         grain = bpy.context.object.active_material.mesograin
+        assert grain.model == "auto"
         assert tuple(grain.sigma_s) == pytest.approx(preset.sigma_s)
         assert (grain.g, grain.eta, grain.roughness) == pytest.approx((preset.g, preset.eta, preset.roughness))
         assert grain.boundary == preset.boundary

@@ -14,27 +14,28 @@ from mesograin.ui.bake_panel import panel as bake_panel
 from mesograin.ui.compare_panel import panel as compare_panel
 from mesograin.ui.side_task import results
 
-# Pixels at a UI scale of 1, in a Properties editor of Blender's default layout on a screen 1920 wide, 333 across: what
-# a label left of its value gets, and one of two columns in a box.
-LABEL, HALF = 100, 115
-# What a choice as wide as the panel has for the name of what was chosen.
-WHOLE = 180
+# Pixels at a UI scale of 1, in a Properties editor of Blender's default layout on a screen 1500 wide, 260 across: what
+# a label left of its value gets, and one right of a box there.
+LABEL, BESIDE_BOX = 71, 85
+# On a screen 1920 wide, 333 across: one of two columns in a box; what a choice as wide as the panel has for the name of
+# what was chosen.
+HALF, WHOLE = 115, 180
 
 
 class Layout:
-    """Takes whatever a panel draws. labels: what stands left of values. menus: their names. whole: properties as wide
-    as the panel."""
+    """Takes whatever a panel draws. labels: what stands left of values. boxes: what stands right of boxes. menus: their
+    names. whole: properties as wide as the panel."""
 
     def __init__(self):
-        self.labels, self.menus, self.whole = [], [], []
+        self.labels, self.boxes, self.menus, self.whole = [], [], [], []
 
     def __getattr__(self, name):
         return lambda *_, **named: self if "heading" not in named else (self.labels.append(named["heading"]), self)[1]
 
     def prop(self, owner, name, text=None, **_):
         declared = owner.bl_rna.properties[name]
-        if text != "" and declared.type != "BOOLEAN":  # whose names stand right of their boxes
-            self.labels.append(declared.name if text is None else text)
+        if text != "":
+            (self.boxes if declared.type == "BOOLEAN" else self.labels).append(declared.name if text is None else text)
         if text == "":
             self.whole.append(name)
 
@@ -71,21 +72,27 @@ def material():
     return bpy.data.materials.new("Sand")
 
 
-@pytest.mark.parametrize("model", models.NAMES)
+@pytest.mark.parametrize("model", models.CHOICES)
 def test_no_label_of_a_grain_is_cut_off(material, model):
     material.mesograin.model = model
     drawn = draw(panels.MESOGRAIN_PT_material, material=material)
     assert drawn.whole == ["model"] and len(drawn.whole + drawn.labels) >= 2
-    assert {label: width(label) for label in drawn.labels if width(label) > LABEL} == {}
-    assert width(models.MODELS[model].label) < WHOLE
+    assert cut_off(drawn) == {}
+    assert width(models.CHOICES[model].label) < WHOLE
 
 
-@pytest.mark.parametrize("panel", [panels.MESOGRAIN_PT_sampling, bake_panel.MESOGRAIN_PT_bake])
+def cut_off(drawn):
+    return {label: width(label) for labels, most in ((drawn.labels, LABEL), (drawn.boxes, BESIDE_BOX))
+            for label in labels if width(label) > most}
+
+
+@pytest.mark.parametrize("panel", [panels.MESOGRAIN_PT_sampling, panels.MESOGRAIN_PT_passes,
+                                   bake_panel.MESOGRAIN_PT_bake])
 def test_no_label_of_the_render_settings_is_cut_off(panel):
     bpy.context.scene.mesograin_bake.compare = True
-    labels = draw(panel).labels
-    assert len(labels) >= 3
-    assert {label: width(label) for label in labels if width(label) > LABEL} == {}
+    drawn = draw(panel)
+    assert len(drawn.labels) >= 3
+    assert cut_off(drawn) == {}
 
 
 def test_no_title_of_a_result_is_cut_off():

@@ -1,9 +1,11 @@
 # Depth, Position and Normal beside the picture: in a multi-layer file, against geometry and against Cycles.
+import json
+
 import bpy
 import numpy as np
 import pytest
 from mesograin import compat
-from mesograin.engine import passes
+from mesograin.engine import identities, passes
 from test_export import add_camera, add_sun
 
 SIDE = 33
@@ -23,7 +25,7 @@ def layers(native, tmp_path):
         found = {}
         for at, channel in enumerate(channels):
             *_, name, part = channel.split(".")
-            found.setdefault(name, {})[part] = pixels[..., at]
+            found.setdefault(name, {})[part.upper()] = pixels[..., at]
         order = "XYZRGBA"
         return {name: np.stack([parts[part] for part in sorted(parts, key=order.find)], axis=-1)
                 for name, parts in found.items()}
@@ -41,7 +43,7 @@ def scene_of_a_sphere(engine="MESOGRAIN", ortho=False):
     bpy.ops.object.shade_smooth()
     add_camera((1000.0, 0.0, 4.0), **({"type": "ORTHO", "ortho_scale": 2.5} if ortho else {}))
     add_sun((0.3, 0.2, 1.0), 3.0)
-    for one in passes.PASSES:
+    for one in passes.SURFACES:
         setattr(layer, one.asked_for, True)
     return scene
 
@@ -78,7 +80,7 @@ def test_passes_are_those_of_cycles(layers):
     both = (ours["Depth"][..., 0] < 1e9) & (theirs["Depth"][..., 0] < 1e9)
     assert both.mean() > 0.9 * (ours["Depth"][..., 0] < 1e9).mean()
     # Cycles takes them at its first sample's place, which is within the pixel.
-    for one in passes.PASSES:
+    for one in passes.SURFACES:
         apart = np.abs(ours[one.name][both] - theirs[one.name][both])
         assert np.median(apart, axis=0).max() < 0.05, one.name
 
@@ -104,3 +106,88 @@ def test_instances_of_an_array_have_passes_too(layers, native):
     assert found["Depth"][seen].min() == pytest.approx(1.9, abs=5e-3)
     assert np.abs(np.linalg.norm(found["Normal"][seen], axis=-1) - 1.0).max() < 1e-3
     assert np.abs(found["Position"][seen][:, 2] - 2.0).max() < 0.11
+
+
+def scene_of_two(tmp_path, engine="MESOGRAIN"):
+    """A sphere in front of a cube, each with a material and numbers of its own; one stands at the picture's edge."""
+    scene = scene_of_a_sphere(engine)
+    sphere = next(thing for thing in scene.objects if thing.type == "MESH")
+    bpy.ops.mesh.primitive_cube_add(size=1.5, location=(1000.9, 0.4, -1.0))
+    cube = bpy.context.object
+    for number, (thing, name) in enumerate(((sphere, "Sand"), (cube, "Körner, gröber")), 3):
+        thing.name = f"{name} thing"
+        thing.pass_index = number
+        thing.data.materials.append(bpy.data.materials.new(name))
+        thing.active_material.pass_index = 10 * number
+    layer = bpy.context.view_layer
+    for name in ("object_index", "material_index", "cryptomatte_object", "cryptomatte_material"):
+        setattr(layer, f"use_pass_{name}", True)
+    layer.pass_cryptomatte_depth = 4
+    return scene
+
+
+def mattes(found, kind):
+    """{id: (h, w) coverage} of CryptoObject or CryptoMaterial."""
+    shares = {}
+    for number in range(2):
+        layer = found[f"{kind}{number:02d}"]
+        for at in (0, 2):
+            for one in np.unique(layer[..., at].view(np.uint32)):
+                here = layer[..., at].view(np.uint32) == one
+                shares[one] = shares.get(one, 0.0) + np.where(here, layer[..., at + 1], 0.0)
+    shares.pop(0, None)
+    return shares
+
+
+def test_indices_and_mattes_are_those_of_cycles(layers, tmp_path):
+    scene = scene_of_two(tmp_path)
+    ours = layers()
+    scene.render.engine = "CYCLES"
+    scene.cycles.samples, scene.cycles.use_denoising, scene.cycles.use_adaptive_sampling = 64, False, False
+    scene.cycles.pixel_filter_type = "BOX"
+    theirs = layers()
+    for name, numbers in (("IndexOB", {0, 3, 4}), ("IndexMA", {0, 30, 40})):
+        assert set(np.unique(ours[name])) == numbers
+        assert (ours[name] == theirs[name]).mean() > 0.93, name  # Cycles' are those of a sample somewhere in the pixel
+    for kind in ("CryptoObject", "CryptoMaterial"):
+        mine, yours = mattes(ours, kind), mattes(theirs, kind)
+        assert set(mine) == set(yours) and len(mine) == 2
+        for one, share in mine.items():
+            assert 0.02 < ((share > 0.0) & (share < 1.0)).mean() < 0.3, "an edge is partly covered"
+            assert np.abs(share - yours[one]).max() < 0.3 and np.abs(share - yours[one]).mean() < 0.01
+
+
+def test_mattes_say_their_names_in_the_file(layers, native, tmp_path):
+    scene_of_two(tmp_path)
+    layers()
+    _, _, attributes = native.read_exr(str(tmp_path / "layers.exr"))
+    found = {key: value for key, value in attributes.items() if key.startswith("cryptomatte/")}
+    assert sorted(key.split("/")[2] for key in found) == sorted(["name", "hash", "conversion", "manifest"] * 2)
+    manifests = [json.loads(value) for key, value in found.items() if key.endswith("manifest")]
+    assert {name for each in manifests for name in each} == {
+        "Sand", "Körner, gröber", "Sand thing", "Körner, gröber thing"}
+    assert sorted(value.split(".")[1] for key, value in found.items() if key.endswith("name")) == [
+        "CryptoMaterial", "CryptoObject"]
+
+
+@pytest.mark.parametrize("name, bits", [("", 0), ("hello", 0x248BFA47), ("hello, world", 0x149BBB7F),
+                                        ("The quick brown fox jumps over the lazy dog", 0x2E4FF723)])
+def test_a_name_s_hash_is_murmur_s(name, bits):
+    assert identities.hash_of(name) == bits
+
+
+def test_the_sample_count_is_told(layers):
+    scene_of_a_sphere()
+    cycles = getattr(bpy.context.view_layer, "cycles", None)
+    if cycles is None:
+        pytest.skip("Cycles, which keeps the setting, is not there")
+    cycles.pass_debug_sample_count = True
+    assert set(np.unique(layers()["Debug Sample Count"])) == {4.0}
+
+
+def test_ranks_are_by_share():
+    numbers = np.array([1, 2, 2, 0, 3, 2, 1, 0]).reshape(8, 1, 1)
+    ids, shares = identities.ranked(numbers, np.array([0, 1, 2, 3]), 4)
+    assert ids.ravel().tolist() == [2, 1, 3, 0] and shares.ravel().tolist() == [0.375, 0.25, 0.125, 0.0]
+    ids, shares = identities.ranked(numbers, np.array([0, 1, 1, 2]), 2)
+    assert ids.ravel().tolist() == [1, 2] and shares.ravel().tolist() == [0.625, 0.125]

@@ -1,9 +1,11 @@
 """Colours of thick layers to coefficients and back, presets, and the choice of a model by what was measured."""
 
 import itertools
+import math
 import re
 
 import mesograin_native as native
+import numpy as np
 import pytest
 
 from addon_rooms import ADDON, room
@@ -90,18 +92,80 @@ def test_the_measured_errors_are_those_of_the_docs():
         assert len(errors) == 18 and sum(errors) / len(errors) == pytest.approx(error, abs=0.06)
 
 
+MEDIUM = native.Material(model="model_2", sigma_s=(0.9, 0.9, 0.9), sigma_a=(0.1, 0.1, 0.1))
+
+
+def advised_for(radius, is_round=True, closed=True, medium=MEDIUM):
+    """For a sphere of a radius, or a cube as large."""
+    volume = 4.0 / 3.0 * math.pi * radius**3
+    area = 4.0 * math.pi * radius**2 if is_round else 6.0 * volume ** (2.0 / 3.0)
+    return advice.advise(native, medium, volume, area, closed)
+
+
 @pytest.mark.parametrize("radius, is_round, closed, model", [
     (0.5, True, True, "model_2"), (5.0, True, True, "model_2"), (60.0, True, True, "model_1"),
     (3.0, False, True, "transport"), (3.0, False, False, "model_3"), (100.0, False, True, "model_1")])
 def test_the_cheapest_model_that_is_near_enough(radius, is_round, closed, model):
-    advised = advice.advise(radius, is_round, closed)
+    advised = advised_for(radius, is_round, closed)
     assert advised.model == model and model in models.NAMES
     assert advised.sentence.endswith(".") and f"{advised.error:.2g}" in advised.sentence
 
 
+def test_a_radius_is_in_mean_free_paths_of_the_middle_channel():
+    # Reduced extinctions of 0.2, 2 and 20: the middle one counts.
+    medium = native.Material(sigma_s=(0.1, 1.0, 10.0), sigma_a=(0.05, 0.5, 5.0), g=0.5, scale=2.0)
+    assert advised_for(2.0, medium=medium) == advised_for(4.0)
+    assert advised_for(2.0).error != advised_for(4.0).error
+
+
 def test_an_error_lies_between_those_measured():
     table = advice.ROUND["model_1"]
-    for lower, upper in itertools.pairwise(sorted(table)):
-        assert table[upper] < advice.error_at(table, (lower * upper) ** 0.5) < table[lower]
-        assert advice.error_at(table, upper) == pytest.approx(table[upper])
-    assert advice.error_at(table, 1e6) == table[48.0]
+    for lower, upper in itertools.pairwise(sorted(radius for radius, error in table.items() if error < 30.0)):
+        middle = (lower * upper) ** 0.5
+        if (error := 0.5 * (table[lower] + table[upper])) <= advice.TOLERANCE:
+            assert advised_for(middle).error == pytest.approx(error)
+    assert advised_for(48.0).error == pytest.approx(table[48.0])
+    assert advised_for(1e6).error == table[48.0]
+    assert advised_for(math.sqrt(3.0)).error == pytest.approx(0.5 * sum(advice.ROUND["model_2"][r] for r in (1.0, 3.0)))
+
+
+@pytest.mark.parametrize("nothing", [{"radius": 0.0}, {"radius": 1.0, "medium": native.Material(
+    sigma_s=(0.0, 0.0, 0.0), sigma_a=(0.0, 0.0, 0.0))}])
+def test_of_what_is_empty_nothing_was_measured(nothing):
+    advised = advised_for(**nothing)
+    assert advised.model == models.PREFERRED and "nothing was measured" in advised.sentence
+
+
+CUBE = [[x, y, z] for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)]
+SIDES = [[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1], [2, 3, 7], [2, 7, 6], [0, 2, 6], [0, 6, 4],
+         [1, 5, 7], [1, 7, 3]]
+
+
+def test_a_mesh_knows_its_shape():
+    cube = native.Mesh(CUBE, None, SIDES)
+    assert native.shape_of(cube) == pytest.approx((8.0, 24.0, True))
+    stretched = np.diag([2.0, 1.0, 0.5, 1.0])
+    stretched[:3, 3] = 1e4, 0.0, 0.0
+    assert native.shape_of(cube, stretched) == pytest.approx((8.0, 2.0 * (8.0 + 4.0 + 2.0), True))
+    assert not native.shape_of(native.Mesh(CUBE, None, SIDES[1:]))[2]
+    # Flat faces share no corners.
+    apart = np.array(CUBE)[np.array(SIDES).ravel()]
+    assert native.shape_of(native.Mesh(apart, None, np.arange(36).reshape(-1, 3)))[2]
+
+
+@pytest.mark.parametrize("geometry, model", [
+    ({"shape": "sphere", "radius": 5.0}, "model_2"), ({"shape": "sphere", "radius": 60.0}, "model_1"),
+    ({"shape": "sphere", "radius": 60.0, "size": 0.1}, "model_2")])
+def test_a_scene_in_json_may_leave_the_model_to_be_chosen(geometry, model):
+    size = geometry.pop("size", None)
+    objects = [{"geometry": geometry, "material": {"kind": "subsurface", "sigma_s": 0.9, "sigma_a": 0.1}},
+               {"geometry": geometry, "material": {"kind": "diffuse", "reflectance": 0.5}}]
+    if size:
+        objects[0]["instances"] = {"positions": [[200.0 * number, 0, 0] for number in range(9)], "scales": size}
+    text = {"objects": objects, "camera": {"position": [0, 0, 500], "look_at": [0, 0, 0], "fov_degrees": 45},
+            "resolution": [8, 8],
+            "lights": [{"type": "distant", "direction_to_light": [0, 0, 1], "irradiance_linear_rgb": 1}]}
+    scene, _, _ = native.load_scene(text, model="auto")
+    drawn = scene.arrays if size else scene.instances
+    assert drawn[0].material.model == model and scene.instances[-1].material.model == "lambert"
+    assert (native.load_scene(text)[0].arrays or native.load_scene(text)[0].instances)[0].material.model == "model_2"

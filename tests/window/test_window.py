@@ -15,10 +15,12 @@ HERE = pathlib.Path(__file__).resolve().parent
 EMPTY_FOLDER = tempfile.mkdtemp(prefix="mesograin-no-native-")
 SMALL, TALL, TALLER = (900, 640), (1100, 1000), (1100, 1400)
 SIMULATED = ["--enable-event-simulate"]
+LIMIT = 900 + 3 * int(os.environ.get("MESOGRAIN_MONKEY", "0"))  # s, of one launch
 LAUNCHES = {  # what is checked, in which environment, on a screen of which size, with which of Blender's options
     "viewport": ("checks_viewport", {}, SMALL, SIMULATED),
     "upheaval": ("checks_upheaval", {}, TALL, SIMULATED),
     "cancel": ("checks_cancel", {}, SMALL, []),
+    "monkey": ("checks_monkey", {}, SMALL, []),
     "heap": ("checks_heap", {}, SMALL, SIMULATED),
     "pile": ("checks_pile", {}, SMALL, SIMULATED),
     "compare": ("checks_compare", {}, TALL, SIMULATED),
@@ -57,7 +59,7 @@ def launched(tmp_path_factory):
         (addons / "mesograin").symlink_to(HERE.parents[1] / "addon" / "mesograin")
         environment = {**os.environ, "BLENDER_USER_SCRIPTS": str(addons.parent), **environment}
         run = subprocess.run(command, env=environment, stdout=subprocess.PIPE,
-                             stderr=subprocess.STDOUT, text=True, timeout=900)
+                             stderr=subprocess.STDOUT, text=True, timeout=LIMIT)
         results = folder / "results.json"
         return (json.loads(results.read_text()) if results.exists() else {}), run.stdout
 

@@ -70,10 +70,14 @@ class Window:
 
     # Files and areas
 
+    @staticmethod
+    def blend_file(name):
+        return ROOT / "blend_files" / f"{name}.blend"
+
     def open(self, name, samples=4):
         """Opens a file of blend_files with its materials Lambertian, its suns no brighter than the display, and the
         main 3D viewport Rendered; gives the viewport's area."""
-        bpy.ops.wm.open_mainfile(filepath=str(ROOT / "blend_files" / f"{name}.blend"), load_ui=False)
+        bpy.ops.wm.open_mainfile(filepath=str(self.blend_file(name)), load_ui=False)
         scene = bpy.context.scene
         scene.view_settings.view_transform, scene.view_settings.exposure = "Standard", 0.0
         scene.render.film_transparent = False

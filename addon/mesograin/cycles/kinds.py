@@ -4,7 +4,7 @@
 import math
 from dataclasses import dataclass, replace
 
-from ..schema.models import TRANSLUCENT, WITH_LOBES
+from ..schema.models import AUTO, TRANSLUCENT, WITH_LOBES
 
 
 @dataclass(frozen=True)
@@ -78,6 +78,9 @@ class Kind:
 PARTS = ("specular", "subsurface")
 """What a grain shows: light that its surface reflects, and light that was inside."""
 
+CHOSEN = (*TRANSLUCENT, AUTO.name)
+"""Not of the kinds with cosine lobes, which not all models know that may be chosen."""
+
 # The opaque kinds see direct light alone, as the models that they answer do; inside a medium everything counts.
 # New kinds are added at the end: Blender files remember a choice of kinds by their numbers.
 KINDS = {
@@ -85,7 +88,7 @@ KINDS = {
     for kind in (
         Kind("diffuse", "Cycles Diffuse BSDF", ("lambert",), 0, 64, False, 0.6, parts=()),
         Kind("glossy", "Cycles Glossy BSDF, GGX", ("conductor",), 0, 64, False, 0.6, parts=("specular",)),
-        Kind("volume_index_matched", "Cycles volume, index-matched", TRANSLUCENT, 1024, 128, True, 5.0),
+        Kind("volume_index_matched", "Cycles volume, index-matched", CHOSEN, 1024, 128, True, 5.0),
         Kind("subsurface", "Cycles Subsurface Scattering, random walk", WITH_LOBES, 1024, 128, False, 5.0),
         Kind(
             "subsurface_burley",
@@ -100,7 +103,7 @@ KINDS = {
         Kind(
             "volume_dielectric",
             "Cycles glass with a volume",
-            TRANSLUCENT,
+            CHOSEN,
             1024,
             1024,
             True,
@@ -113,7 +116,7 @@ KINDS = {
         Kind(
             "photon",
             "Photon Monte Carlo, smooth dielectric sphere",
-            TRANSLUCENT,
+            CHOSEN,
             0,
             256,
             False,

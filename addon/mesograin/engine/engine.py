@@ -6,7 +6,7 @@ import bpy
 import numpy as np
 
 from .. import compat, native_module
-from ..scene import export
+from ..scene import export, meshes
 from . import passes, status, viewport, viewport_text
 
 # How long a final render may go without looking whether it was cancelled, and without showing how far it is.
@@ -50,9 +50,10 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
         width, height = self.resolution_x, self.resolution_y
         region = export.render_region(depsgraph.scene, width, height)
         self.update_stats("", "Mesograin: reading the scene")
-        scene, warnings = export.scene_from_depsgraph(depsgraph)
+        values = export.read_scene(depsgraph, meshes.MeshCache())
+        warnings = values.warnings
         view = native.View(region.width, region.height)
-        view.set_scene(scene)
+        view.set_scene(values.to_native())
         for warning in warnings:
             self.report({"WARNING"}, warning)
 
@@ -70,13 +71,14 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
                     self.update_progress((number + samples / target) / len(eyes))
                 if view.samples:  # a cancelled render keeps what it has
                     self._show(result, view, opaque)
-                    beside = passes.pixels(view, depsgraph.view_layer, camera.world_to_camera)
+                    beside = passes.pixels(view, depsgraph.view_layer, camera, values)
                     for name_, pixels in beside.items():
                         _set_pass(result, name_, pixels)
             except Exception:  # whatever it is: Blender must not be left with a result that never ends
                 self.end_result(result, cancel=True)
                 raise
             self.end_result(result)
+        self._sign(passes.metadata(depsgraph.view_layer, values))
         for warning in view.warnings:
             self.report({"WARNING"}, warning)
         timings = tuple((timing["pass"], timing["milliseconds"]) for timing in view.timings())
@@ -113,6 +115,12 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
                 self.update_stats("", f"Sample {view.samples}/{target}, {left:.1f} s left")
                 yield view.samples
                 shown = time.perf_counter()
+
+    def _sign(self, metadata):
+        """metadata: {field: text} that goes into the picture's file."""
+        whole = self.get_result() if metadata else None  # begin_result's is a part that was handed in
+        for field, text in metadata.items():
+            whole.stamp_data_add_field(field, text)
 
     @staticmethod
     def _show(result, view, opaque):

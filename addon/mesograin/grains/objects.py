@@ -3,6 +3,7 @@ import bpy
 import numpy as np
 
 from .. import compat
+from ..schema import models
 from . import kinds, pile
 
 # What a new grain is made of, in 1/mm: where to start from, not measured.
@@ -31,7 +32,7 @@ def mesh(kind, name=None, size=1.0, **habit):
 def material(kind):
     """A new bpy.types.Material with the looks of a kind."""
     made = bpy.data.materials.new(kind.replace("_", " ").capitalize())
-    made.mesograin.model = "model_2"
+    made.mesograin.model = models.AUTO.name
     for parameter, value in LOOKS[kind].items():
         setattr(made.mesograin, parameter, value)
     return made

@@ -9,8 +9,8 @@ import numpy as np
 
 from .. import native_module
 from ..schema import models, parameters
-from . import (colours, heaps, lights, mesh_lights, meshes, node_colours, plain_materials, properties, scattered,
-               surroundings, textures)
+from . import (automatic, colours, heaps, lights, mesh_lights, meshes, node_colours, plain_materials, properties,
+               scattered, surroundings, textures)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -35,6 +35,8 @@ class MaterialValues:
     def to_native(self, native):
         """Raises native.Error naming the material if a value is out of range, or one that its model does not know."""
         values = dict(self.values)
+        if automatic.asked(self):  # it is for the object to say which; any may be told whether the rest is right
+            values["model"] = models.PREFERRED
         model, profile = values["model"], values["profile"]
         known = parameters.profiles_of(model)
         if profile not in known:
@@ -55,6 +57,10 @@ class InstanceValues:
     material: MaterialValues
     object_to_world: tuple  # 16 numbers, row-major
     broken_uvs: bool = False  # as a meshes.MeshPart's
+
+    def typical(self):
+        """Its place, 16 numbers row by row."""
+        return self.object_to_world
 
     def to_native(self, native, material):
         transform = np.array(self.object_to_world).reshape(4, 4)
@@ -84,12 +90,21 @@ class SceneValues:
             field: tuple(dataclasses.replace(drawn, material=change(drawn.material)) for drawn in getattr(self, field))
             for field in ("instances", "heaps")})
 
+    def with_models_chosen(self):
+        """The scene with a model in place of each AUTO: what is drawn. Raises as `to_native`."""
+        if not any(automatic.asked(material) for material in self.materials):
+            return self
+        return dataclasses.replace(self, **{
+            field: tuple(automatic.with_model(drawn) for drawn in getattr(self, field))
+            for field in ("instances", "heaps")})
+
     def to_native(self):
         """The native Scene. Raises native.Error with a sentence that names the datablock at fault."""
         native = native_module.get()
-        materials = {values: values.to_native(native) for values in self.materials}
+        chosen = self.with_models_chosen()
+        materials = {values: values.to_native(native) for values in chosen.materials}
         instances, arrays = ([drawn.to_native(native, materials[drawn.material]) for drawn in group]
-                             for group in (self.instances, self.heaps))
+                             for group in (chosen.instances, chosen.heaps))
         return native.Scene(
             instances=instances, arrays=arrays,
             lights=[light.to_native(native) for light in self.lights], world=self.world.to_native(native),
@@ -456,7 +471,7 @@ class _Reader:
         if key in self._by_instance:
             return colours.NodeVariation("reflectance", self._by_instance[key], tuple(evaluated_object.color))
         model = dict(self._material(evaluated_object, slot, many=True).values)["model"]
-        variation = colours.read(material, models.MODELS[model].parameters, tuple(evaluated_object.color))
+        variation = colours.read(material, models.CHOICES[model].parameters, tuple(evaluated_object.color))
         if variation is not None and not self._varied:
             self._warn(f"The grains of material '{material.name}' vary in colour, unknown to the reference: "
                        "they are compared in the material's own.")

@@ -33,6 +33,13 @@ class HeapValues:
         """Tuples of 16 numbers, row by row."""
         return map(tuple, np.frombuffer(self.placings, dtype=np.float32).reshape(-1, 16).tolist())
 
+    def typical(self):
+        """The placing of the middle size, 16 numbers row by row."""
+        placings = np.frombuffer(self.placings, dtype=np.float32).reshape(-1, 4, 4)
+        sizes = np.abs(np.linalg.det(placings[:, :3, :3].astype(np.float64)))
+        middle = np.argpartition(sizes, len(sizes) // 2)[len(sizes) // 2]
+        return tuple(placings[middle].ravel().tolist())
+
     def materials(self):
         """The material of each placing."""
         factors = [(name, np.frombuffer(numbers, dtype=np.float32).reshape(-1, 3)) for name, numbers in self.factors]

@@ -2,15 +2,21 @@
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, FloatVectorProperty, IntProperty, PointerProperty
 
-from ..schema import parameters
+from ..schema import models, parameters
 
 MATERIAL_PARAMETERS = tuple(parameters.PARAMETERS)
 
 
+AUTO_NUMBER = 1000
+"""Of the model in a file: beyond those of all models that may come."""
+
+
 def choices(name):
     """The items of a choice. Numbered as the schema has them, so that files keep their meaning when one is added."""
-    return tuple((choice.name, choice.label, choice.sentence, number)
-                 for number, choice in enumerate((parameters.PARAMETERS | parameters.SCENE)[name].choices))
+    known = (parameters.PARAMETERS | parameters.SCENE)[name].choices
+    return tuple((choice.name, choice.label, choice.sentence,
+                  AUTO_NUMBER if (name, choice.name) == ("model", models.AUTO.name) else number)
+                 for number, choice in enumerate(known))
 
 
 # Blender tags nothing when a script sets a value of ours; an update function does, and redraws follow.

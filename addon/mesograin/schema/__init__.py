@@ -9,3 +9,6 @@ GRAIN = json.loads(Path(__file__).with_name("grain.json").read_text(encoding="ut
 
 SCENE = json.loads(Path(__file__).with_name("scene.json").read_text(encoding="utf-8"))
 """What is said of a whole scene; native/scene/scene.h says the same."""
+
+AUTO = json.loads(Path(__file__).with_name("auto.json").read_text(encoding="utf-8"))
+"""What stands for a model where it is to be chosen, and what the choice goes by."""

@@ -1,8 +1,9 @@
 # The models: what each is called, what it answers, and what it takes.
-"""See `Model`; MODELS has them by name, in the order in which Blender files number them."""
+"""See `Model`; MODELS has them by name, in the order in which Blender files number them. CHOICES has AUTO besides."""
 
 from dataclasses import dataclass
 
+from . import AUTO as _AUTO
 from . import GRAIN
 
 
@@ -43,3 +44,14 @@ TRANSLUCENT = tuple(name for name, model in MODELS.items() if model.translucent)
 WITH_LOBES = tuple(name for name in TRANSLUCENT if not MODELS[name].mesh)
 # What stands for a translucent grain where no model was chosen.
 PREFERRED = next(name for name, model in MODELS.items() if model.translucent and model.preferred)
+
+_CHOSEN = [model for model in MODELS.values() if model.translucent]
+AUTO = Model(
+    _AUTO["name"], _AUTO["label"], _AUTO["sentence"], translucent=True, kinds=MODELS[PREFERRED].kinds,
+    parameters=MODELS[PREFERRED].parameters,
+    profiles=tuple(name for name in MODELS[PREFERRED].profiles
+                   if all(name in model.profiles for model in _CHOSEN if model.profiles)))
+"""No model, but the choice of one for each object: it takes what all of those take that may be chosen."""
+
+CHOICES = {**MODELS, AUTO.name: AUTO}
+"""What a material's model may be."""

@@ -84,7 +84,7 @@ def _parameter(entry):
     entry = {key: tuple(value) if isinstance(value, list) else value for key, value in entry.items()}
     choices = [Choice(**choice) for choice in entry.pop("choices", ())]
     if entry["name"] == "model":
-        choices = [Choice(model.name, model.label, model.sentence) for model in models.MODELS.values()]
+        choices = [Choice(model.name, model.label, model.sentence) for model in models.CHOICES.values()]
     return Parameter(**entry, choices=tuple(choices))
 
 
@@ -97,4 +97,4 @@ SETTABLE = tuple(name for name, parameter in PARAMETERS.items() if not parameter
 
 def profiles_of(model):
     """The names of the profiles that a model can be given."""
-    return models.MODELS[model].profiles or tuple(choice.name for choice in PARAMETERS["profile"].choices)
+    return models.CHOICES[model].profiles or tuple(choice.name for choice in PARAMETERS["profile"].choices)

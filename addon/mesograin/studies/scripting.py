@@ -101,7 +101,7 @@ def compare(models=arguments.DEFAULT_MODELS, references=None, out="//comparison"
             cache_limit=None, report=True, on_progress=None, command=None):
     """Renders the current scene with every model and with the Cycles materials that mean the same, and measures.
 
-    models: of schema.models.NAMES; every material is rendered with each.
+    models: of schema.models.CHOICES; every material is rendered with each.
     references: of 'diffuse', 'glossy', 'volume_index_matched', 'subsurface', 'subsurface_burley', 'volume_dielectric',
     'photon'; None for each model's usual one.
     out: folder for all files, made if needed; '//' is the folder of the .blend file.

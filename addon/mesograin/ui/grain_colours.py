@@ -23,7 +23,7 @@ class MESOGRAIN_PT_colours(MesograinPanel, bpy.types.Panel):
         layout, settings = self.layout, context.material.mesograin_colours
         layout.use_property_split = True
         layout.active = settings.vary
-        takes = models.MODELS[context.material.mesograin.model].parameters
+        takes = models.CHOICES[context.material.mesograin.model].parameters
         colour = "Absorption" if "sigma_a" in takes else "Reflectance"
         layout.prop(settings, "source")
         if settings.source == "NODES":

@@ -5,12 +5,10 @@ from bpy.props import EnumProperty, FloatProperty, FloatVectorProperty, PointerP
 
 from .. import native_module
 from ..schema import advice, models
-from ..scene import thick_layer
+from ..scene import export, thick_layer
 from .active_material import OnActiveMaterial, active_material
 
 INDICES = {"air": 1.0, "water": 1.333, "oil": 1.47}
-# How round a grain must be to count as a sphere: 36 pi V^2 / S^3, 0.52 of a cube.
-ROUND = 0.8
 UNKNOWN = (0.0, 0.0, 0.0)
 
 
@@ -152,9 +150,11 @@ def advise(material, thing, millimetres_per_unit, shape_of=_shape):
     shape = shape_of(thing)
     if shape is None:
         return None
-    volume, area, closed = shape
-    radius = (0.75 * volume / np.pi) ** (1.0 / 3.0) * millimetres_per_unit / sorted(_paths(material.mesograin_look))[1]
-    return advice.advise(max(radius, 1e-6), 36.0 * np.pi * volume**2 / area**3 > ROUND, closed)
+    try:
+        native = native_module.get()
+        return advice.advise(native, export.material_values(material, millimetres_per_unit).to_native(native), *shape)
+    except _sentences():
+        return None
 
 
 def advise_as_seen(material, thing, millimetres_per_unit):

@@ -79,7 +79,7 @@ class MESOGRAIN_PT_material(MesograinPanel, bpy.types.Panel):
         if plain_materials.is_plain(context.material):
             draw_sentence(layout, context, "No grain yet: it is drawn as its nodes say. Choose a model to make it one.",
                           icon="INFO")
-        takes = models.MODELS[grain.model].parameters
+        takes = models.CHOICES[grain.model].parameters
         if "sigma_s" in takes:
             self._draw_choice(context)
             self._draw_medium(context, grain)
@@ -198,9 +198,9 @@ class MESOGRAIN_PT_sampling(MesograinPanel, bpy.types.Panel):
         column = layout.column(align=True)
         column.prop(settings, "samples", text="Render")
         column.prop(settings, "viewport_samples", text="Viewport")
-        layout.prop(settings, "millimetres_per_unit", text="mm per Unit")
-        layout.prop(settings, "exchange", text="Grain to Grain")
-        layout.prop(context.scene.render, "film_transparent", text="Transparent Film")
+        layout.prop(settings, "millimetres_per_unit", text="Unit, mm")
+        layout.prop(settings, "exchange", text="Exchange")
+        layout.column(heading="Film").prop(context.scene.render, "film_transparent", text="Transparent")
 
 
 class MESOGRAIN_PT_passes(MesograinPanel, bpy.types.Panel):
@@ -211,8 +211,15 @@ class MESOGRAIN_PT_passes(MesograinPanel, bpy.types.Panel):
         layout = self.layout
         layout.use_property_split = True
         column = layout.column(heading="Data")
-        for one in passes.PASSES:
-            column.prop(context.view_layer, one.asked_for, text=one.name)
+        for one in (*passes.SURFACES, *passes.INDICES):
+            column.prop(context.view_layer, one.asked_for, text=one.shown)
+        cycles = getattr(context.view_layer, "cycles", None)
+        if cycles is not None:  # which Cycles keeps, where it is enabled
+            column.prop(cycles, passes.SAMPLE_COUNT.asked_for.split(".")[1], text=passes.SAMPLE_COUNT.shown)
+        column = layout.column(heading="Cryptomatte")
+        for matte in passes.MATTES:
+            column.prop(context.view_layer, matte.asked_for, text=matte.label)
+        layout.prop(context.view_layer, "pass_cryptomatte_depth", text="Levels")
 
 
 class MESOGRAIN_PT_statistics(MesograinPanel, bpy.types.Panel):

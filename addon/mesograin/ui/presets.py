@@ -55,7 +55,7 @@ def apply(preset, grain):
     grain.boundary = preset.boundary
     grain.scale = 1.0
     if grain.model in models.OPAQUE:
-        grain.model = models.PREFERRED
+        grain.model = models.AUTO.name
     look = getattr(grain.id_data, "mesograin_look", None)
     if look is not None:
         look.forget_surroundings()

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from ...command_line import parser as shared
 from ...command_line.values import positive
-from ...schema.models import NAMES
+from ...schema.models import CHOICES
 from ..comparison.arguments import REFERENCES
 from .choices import DEFAULT_COMPONENTS, DEFAULT_MARGIN, LARGEST_COMPONENTS, LARGEST_MARGIN, LARGEST_SIDE, VIEW_FROM
 
@@ -25,8 +25,8 @@ def build():
     parser.add_argument("-o", "--output", type=_exr, required=True, metavar="OUT.exr", help="texture to write")
     parser.add_argument("--object", default=None, metavar="NAME",
                         help="what to bake (default: the active object, or the only one)")
-    parser.add_argument("--model", choices=NAMES, default=None, metavar="MODEL",
-                        help=f"one of {', '.join(NAMES)} (default: the material's)")
+    parser.add_argument("--model", choices=tuple(CHOICES), default=None, metavar="MODEL",
+                        help=f"one of {', '.join(CHOICES)} (default: the material's)")
     parser.add_argument("--size", type=_size, default=(1024, 1024), metavar="SIDE|WxH",
                         help="texels (default: 1024, square)")
     parser.add_argument("--samples", type=positive, default=None, metavar="N",

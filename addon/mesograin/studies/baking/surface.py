@@ -50,6 +50,7 @@ class Surface:
         scene = scene.with_materials(lambda material: _with(material, overrides or {}))
         if exchange:
             scene = dataclasses.replace(scene, exchange=exchange)
+        scene = scene.with_models_chosen()
         changed = scene.instances
         self.name, self.size, self.view_from = name, tuple(size), view_from
         self.materials = {changed[index].material.name: dict(changed[index].material.values) for index in instances}

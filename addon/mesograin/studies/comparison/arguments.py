@@ -10,10 +10,10 @@ from ...cycles import kinds
 from ...schema import models
 from . import mask_names
 
-MODELS = tuple(name for name in models.NAMES if kinds.default_kind(name))
+MODELS = tuple(name for name in models.CHOICES if kinds.default_kind(name))
 REFERENCES = tuple(kinds.KINDS)
 # Transport takes seconds for each case before its first picture.
-DEFAULT_MODELS = tuple(name for name in MODELS if not models.MODELS[name].mesh)
+DEFAULT_MODELS = tuple(name for name in models.NAMES if name in MODELS and not models.MODELS[name].mesh)
 MOST_SEEDS = 64
 """How many seeds of a reference --until may lead to, if nothing else is said."""
 

@@ -35,8 +35,16 @@ class Ours:
         self.warnings = scene.warnings
 
     def parameters(self, chosen):
-        """{material name: {parameter: value}} as a case renders them. chosen: {parameter: value} of the case."""
-        return {material.name: dict(self._material(material, chosen).values) for material in self._scene.materials}
+        """{material name: {parameter: value}} as a case renders them; where objects of a material are given several
+        models, it has all their names. chosen: {parameter: value} of the case."""
+        found = {}
+        scene = self._scene.with_materials(lambda material: self._material(material, chosen))
+        for material in scene.with_models_chosen().materials:
+            values = dict(material.values)
+            known = found.setdefault(material.name, values)
+            if values["model"] not in known["model"].split(", "):
+                known["model"] += f", {values['model']}"
+        return found
 
     def _material(self, material, chosen):
         values = {**dict(material.values), **self._overrides, **chosen}

@@ -16,7 +16,7 @@ from ...cycles import kinds, nodes, reference
 from ...cycles.cache import Cache
 from ...report.reading import TRADE_FORMAT
 from ...scene import as_rendered, export
-from ...schema.models import MODELS
+from ...schema.models import CHOICES
 from ..comparison import definitions, masks, origin
 from ..comparison.ours import Ours
 from ..comparison.results import Output
@@ -143,7 +143,7 @@ def _measure(request, depsgraph, progress):
     }
     book.picture("reference", truth.mean, provenance)
     for model in request.models:
-        for taps in request.taps if MODELS[model].taps else (None,):
+        for taps in request.taps if CHOICES[model].taps else (None,):
             _measure_model(request, ours, {"model": model, **chosen}, taps, book, progress, provenance)
     # Cycles starts with its first render in a process: no point's time holds that.
     started = kind.referee or not truth.cached
@@ -276,7 +276,7 @@ def _steps(request):
     million = request.size[0] * request.size[1] * 1e-6 / (os.cpu_count() or 1)
     yield "converged render", "traced", 2 * kind.cost * request.reference_samples * million
     for model in request.models:
-        for taps in request.taps if MODELS[model].taps else (None,):
+        for taps in request.taps if CHOICES[model].taps else (None,):
             frames = request.samples[-1] + request.frames
             what = f"{model}, {taps} taps" if taps else model
             yield what, f"{model} {taps}", (0.3 + 0.3 * (taps or 0)) * frames * million

@@ -21,10 +21,11 @@ def draw_settings(layout, context):
     layout.prop(asked, "margin")
     layout.prop(asked, "half")
     layout.prop(asked, "out")
-    layout.prop(asked, "compare")
+    layout.column(heading="Cycles").prop(asked, "compare", text="Compare")
     if asked.compare:
-        layout.prop(asked, "reference")
-        layout.prop(asked, "reference_samples")
+        column = layout.column(align=True)
+        column.prop(asked, "reference")
+        column.prop(asked, "reference_samples", text="Samples")
         reference_cache.draw(layout)
 
 

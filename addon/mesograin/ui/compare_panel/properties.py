@@ -26,6 +26,10 @@ QUALITIES = {
 }
 
 
+AUTO_FLAG = 1 << 20
+"""In a file: beyond those of all models that may come."""
+
+
 def _flags(items):
     """Items of an enum of which several can be chosen: their numbers are bits."""
     return tuple((name, label, description, 1 << number) for number, (name, label, description) in enumerate(items))
@@ -41,7 +45,8 @@ class CompareProperties(bpy.types.PropertyGroup):
 
     models: EnumProperty(
         name="Models", options={"ENUM_FLAG"}, default=set(models.WITH_LOBES),
-        items=_flags([(model.name, model.label, model.sentence) for model in models.MODELS.values()]),
+        items=(*_flags([(model.name, model.label, model.sentence) for model in models.MODELS.values()]),
+               (models.AUTO.name, models.AUTO.label, models.AUTO.sentence, AUTO_FLAG)),
         description="Models to compare; every material of the scene is rendered with each (Shift adds to the choice)")
     references: EnumProperty(
         name="References", options={"ENUM_FLAG"}, default=set(),
@@ -72,7 +77,7 @@ def arguments(scene):
     quality = QUALITIES[settings.quality]
     # In the order of the table, which a set does not keep.
     return {
-        "models": [name for name in models.NAMES if name in settings.models],
+        "models": [name for name in models.CHOICES if name in settings.models],
         "references": [kind for kind in kinds.KINDS if kind in settings.references] or None,
         "size": list(size(scene)),
         "samples": quality.samples,

@@ -1,5 +1,5 @@
 # How a comparison's result is shown in a panel: its numbers, the verdict, a button for each picture.
-from ...schema.models import MODELS
+from ...schema.models import CHOICES
 from ...studies.comparison.progress import duration
 from ...studies.comparison.significance import NO_DIFFERENCE
 from ...studies.comparison.verdict import verdict
@@ -9,7 +9,7 @@ from . import pictures
 
 def draw_title(box, entry):
     """What was compared."""
-    box.label(text=f"{MODELS[entry['model']].label} against {entry['reference_title']}")
+    box.label(text=f"{CHOICES[entry['model']].label} against {entry['reference_title']}")
 
 
 def draw(box, context, entry, ours, button, **properties):

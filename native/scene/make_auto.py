@@ -1,0 +1,56 @@
+"""Writes scene/auto.h, by which a model is chosen, from addon/mesograin/schema/auto.json.
+
+    make_auto.py AUTO.json auto.h
+"""
+import json
+import pathlib
+import sys
+
+
+def points(table):
+    return "".join(f"{{.radius = {float(radius)!r}, .error = {float(error)!r}}}, " for radius, error in table)[:-2]
+
+
+def header(text):
+    auto = json.loads(text)
+    tables = "".join(f"inline constexpr std::array<Measured, {len(table)}> {name}{{{{{points(table)}}}}};\n"
+                     for name, table in auto["round"].items())
+    entries = "".join(f"    {{Model::{name}, {name}}},\n" for name in auto["round"])
+    return f"""// What the choice of a model goes by. Made from addon/mesograin/schema/auto.json, the place for changes.
+#pragma once
+
+#include <array>
+#include <span>
+#include <string_view>
+
+#include "scene/material.h"
+
+namespace mesograin::scene::automatic {{
+
+/// radius: of a round grain, in mean free paths. error: measured, in %.
+struct Measured {{
+  double radius;
+  double error;
+}};
+struct OfRound {{
+  Model model;
+  std::span<const Measured> measured;
+}};
+
+inline constexpr std::string_view name = {json.dumps(auto["name"])};
+inline constexpr double tolerance = {float(auto["tolerance"])!r};
+inline constexpr double roundest_other = {float(auto["roundest_other"])!r};
+inline constexpr double most_transported = {float(auto["most_transported"])!r};
+inline constexpr double transport_error = {float(auto["angular"]["transport"])!r};
+inline constexpr double model_3_error = {float(auto["angular"]["model_3"])!r};
+{tables}/// The cheapest first.
+inline constexpr std::array<OfRound, {len(auto["round"])}> of_round{{{{
+{entries}}}}};
+
+}}  // namespace mesograin::scene::automatic
+"""
+
+
+if __name__ == "__main__":
+    source, target = map(pathlib.Path, sys.argv[1:])
+    target.write_text(header(source.read_text(encoding="utf-8")), encoding="utf-8")

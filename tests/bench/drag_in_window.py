@@ -1,0 +1,125 @@
+"""Runs inside Blender's window: makes one change after the other and notes how long each takes to be seen: drag.py.
+
+    blender --factory-startup --python drag_in_window.py -- OUT.json CHANGES MODEL ...
+"""
+import json
+import math
+import pathlib
+import sys
+import time
+
+import addon_utils
+import bpy
+
+PAUSE = 0.01  # s between looks
+SETTLE = 1.0  # s before a setting is measured
+MOST = 30.0  # s for one change
+
+
+class Clock:
+    """Notes when a region's drawing is over, and what the render engine took of the main thread meanwhile."""
+
+    def __init__(self, engine):
+        self.drawn = 0  # redraws
+        self.when = 0.0
+        self.spent = {"view_update": [], "view_draw": []}
+        self.session = None
+        for name in self.spent:
+            self._time(engine, name)
+        bpy.types.SpaceView3D.draw_handler_add(self._note, (), "WINDOW", "POST_PIXEL")
+
+    def _time(self, engine, name):
+        inner, times = getattr(engine, name), self.spent[name]
+
+        def timed(this, *arguments):
+            start = time.perf_counter()
+            inner(this, *arguments)
+            times.append(1000.0 * (time.perf_counter() - start))
+            self.session = this._session
+
+        setattr(engine, name, timed)
+
+    def _note(self):
+        self.drawn += 1
+        self.when = time.perf_counter()
+
+    def shows_news(self):
+        """Whether the picture last drawn is of all that was asked for."""
+        session = self.session
+        return (session is not None and session._seen and session.samples > 0 and session._next_scene is None
+                and session._next_camera is None and session._kept is None)
+
+
+def measured(clock, area, change, rendered, changes):
+    """A generator for a timer; its value is {"wait": [ms], ...}."""
+    for times in clock.spent.values():
+        times.clear()
+    waits = []
+    for number in range(changes):
+        drawn = clock.drawn
+        start = time.perf_counter()
+        change(number)
+        area.tag_redraw()
+        while not (clock.drawn > drawn and clock.when > start and (not rendered or clock.shows_news())):
+            if time.perf_counter() - start > MOST:
+                raise RuntimeError("a change was never seen")
+            yield PAUSE
+        waits.append(1000.0 * (clock.when - start))
+    return {"wait": waits, **{name: list(times) for name, times in clock.spent.items()}}
+
+
+def work(out, changes, models):
+    from mesograin.engine import engine
+
+    path = pathlib.Path(__file__).resolve().parents[2] / "blend_files/sphere.blend"
+    bpy.ops.wm.open_mainfile(filepath=str(path), load_ui=False)
+    clock = Clock(engine.MesograinRenderEngine)
+    screen = bpy.context.window_manager.windows[0].screen
+    area = max((area for area in screen.areas if area.type == "VIEW_3D"), key=lambda area: area.width * area.height)
+    region = next(region for region in area.regions if region.type == "WINDOW")
+    space = area.spaces.active
+    space.overlay.show_overlays = space.show_gizmo = False
+    scene, grain = bpy.context.scene, bpy.data.materials["Translucent"].mesograin
+    scene.mesograin.viewport_samples = 1 << 14
+    view = space.region_3d
+    view.view_perspective, view.view_distance = "PERSP", 7.0
+
+    def drag_parameter(number):
+        grain.reflectance = grain.sigma_a = [0.1 + 0.05 * math.sin(0.3 * number + channel) for channel in range(3)]
+
+    def drag_view(number):
+        view.view_rotation = (math.cos(0.01 * number), 0.0, math.sin(0.01 * number), 0.0)
+
+    found = {"size": (region.width, region.height)}
+    for name, change in (("parameter", drag_parameter), ("view", drag_view)):
+        space.shading.type = "SOLID"
+        yield SETTLE
+        found[f"{name} solid"] = yield from measured(clock, area, change, False, changes)
+        space.shading.type = "RENDERED"
+        for model in models:
+            grain.model = model
+            yield SETTLE
+            deadline = time.perf_counter() + MOST
+            while clock.session is None or clock.session.preparing is not None and time.perf_counter() < deadline:
+                yield PAUSE
+            found[f"{name} {model}"] = yield from measured(clock, area, change, True, changes)
+            out.write_text(json.dumps(found))
+    out.write_text(json.dumps(found))
+
+
+def main():
+    addon_utils.enable("mesograin", default_set=True)
+    out, changes, *models = sys.argv[sys.argv.index("--") + 1:]
+    steps = work(pathlib.Path(out), int(changes), models)
+
+    def step():
+        try:
+            return next(steps)
+        except StopIteration:
+            bpy.ops.wm.quit_blender()
+            return None
+
+    bpy.app.timers.register(step, first_interval=1.0, persistent=True)
+
+
+main()

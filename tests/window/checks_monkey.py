@@ -1,0 +1,26 @@
+# A monkey works in Blender's window: nothing breaks, the picture after it is right, and over a long day memory rests.
+# MESOGRAIN_MONKEY=2000 has it do so many operations, MESOGRAIN_MONKEY_SEED=7 others.
+import os
+
+import bpy
+import monkey
+from mesograin.engine import status
+
+OPERATIONS = int(os.environ.get("MESOGRAIN_MONKEY", "150"))
+SEED = int(os.environ.get("MESOGRAIN_MONKEY_SEED", "1"))
+HOME_EVERY = 50
+LONG = 1000  # operations from which memory is held to rest
+MOST_GROWTH = 0.05
+
+
+def check_whatever_a_monkey_does_nothing_breaks(window):
+    one = monkey.Monkey(window, SEED)
+    memory = yield from one.live(OPERATIONS, HOME_EVERY)
+    if OPERATIONS >= LONG:
+        grown = monkey.growth(memory)
+        assert grown < MOST_GROWTH, f"memory grew by {grown:.1%} over the last half: {memory}"
+    area = yield from window.open("sphere")
+    assert bpy.context.scene.render.engine == "MESOGRAIN"
+    picture = yield from window.converged_picture(area)
+    assert status.complaints() == []
+    window.assert_same(picture, window.expected_picture(area))

@@ -1,0 +1,200 @@
+# A monkey at Blender's window: does one operation after the other, drawn by a seed, and keeps book of memory and time.
+import ctypes
+import gc
+import inspect
+import random
+import statistics
+import subprocess
+import time
+
+import bpy
+import monkey_work
+from mesograin.engine import status
+
+SCREEN = (900, 640)
+BETWEEN = (0.02, 0.05, 0.15, 0.4)  # s that may pass between two operations
+TOO_LONG = 20.0  # s without an answer that are worth a word
+STEPS_OF_A_DRAG = 6
+
+
+class Monkey:
+    """What monkey_work's operations are given."""
+
+    def __init__(self, window, seed):
+        self.window = window
+        self.folder = window.folder
+        self.random = random.Random(seed)
+        self.longest = (0.0, "")  # s in which Blender did not answer, and the operation
+
+    # Choices
+
+    def one_of(self, things):
+        """One of a collection, or None; by name, lest the choice hangs on the order in memory."""
+        things = list(things)
+        return self.random.choice(things) if things else None
+
+    def mesh_object(self):
+        return self.one_of(thing for thing in bpy.context.scene.objects if thing.type == "MESH")
+
+    def areas(self, kind=None):
+        return [area for area in self.window._window().screen.areas if kind in (None, area.type)]
+
+    def viewport(self):
+        return max(self.areas("VIEW_3D"), key=lambda area: area.width * area.height, default=None)
+
+    def blend_file(self, name):
+        return self.window.blend_file(name)
+
+    def pause(self):
+        yield from self.window.seconds(self.random.choice(BETWEEN))
+
+    # Deeds
+
+    def operator(self, group, name, *arguments, **settings):
+        """Calls an operator as its button would, if it can be; tells whether it was. Its refusals are no news."""
+        area = self.viewport() or self.areas()[0]
+        with self.window.override(area):
+            call = getattr(getattr(bpy.ops, group), name)
+            if not call.poll():
+                return False
+            try:
+                call(*arguments, **settings)
+            except RuntimeError as refusal:
+                if "Traceback" in str(refusal):
+                    raise
+                return False
+        return True
+
+    def open(self, path, load_ui=False):
+        bpy.ops.wm.open_mainfile(filepath=str(path), load_ui=load_ui)
+        scene = bpy.context.scene
+        scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = 96, 64, 100
+        scene.mesograin.viewport_samples = 16
+        scene.cycles.samples = scene.cycles.preview_samples = 1
+        bpy.context.preferences.view.render_display_type = "NONE"
+        area = self.viewport()
+        if area is not None:
+            area.spaces.active.shading.type = "RENDERED"
+
+    def start_render(self, animation=False):
+        scene = bpy.context.scene
+        scene.mesograin.samples = self.random.choice((1, 16, 512))
+        if scene.camera is None or bpy.app.is_job_running("RENDER"):
+            return
+        scene.frame_start, scene.frame_end = 1, 3
+        scene.render.filepath = str(self.folder / "frame")
+        self.operator("render", "render", "INVOKE_DEFAULT", animation=animation)
+        yield from self.window.seconds(0.1)
+
+    def split_or_join(self):
+        views = self.areas("VIEW_3D")
+        if len(views) == 1:
+            self.operator("screen", "area_split", direction="VERTICAL", factor=0.5)
+        elif len(views) > 1:
+            # See Window.restore: Blender 3.4 must have come to rest before an area is closed.
+            yield from self.window.seconds(1.5)
+            views = self.areas("VIEW_3D")
+            if len(views) > 1:
+                with self.window.override(min(views, key=lambda area: area.width * area.height)):
+                    bpy.ops.screen.area_close()
+        yield from self.window.seconds(0.2)
+
+    def resize_window(self):
+        width, height = (self.random.randint(side // 2, side) for side in SCREEN)
+        _send("windowsize", str(width), str(height))
+        yield from self.window.seconds(0.3)
+        if self.random.random() < 0.7:
+            _send("windowsize", *map(str, SCREEN))
+
+    def drag_in_viewport(self):
+        area = self.viewport()
+        if area is None:
+            return
+        region = self.window.region(area)
+        x, y = region.x + region.width // 2, SCREEN[1] - region.y - region.height // 2
+        _send_to_screen("mousemove", x, y, "mousedown", 2)
+        for step in range(STEPS_OF_A_DRAG):
+            _send_to_screen("mousemove", x + 10 * step, y + 4 * step)
+            yield 0.03
+        _send_to_screen("mouseup", 2)
+
+    def press_escape(self):
+        """Without a window manager nobody but us gives Blender's window the focus."""
+        _send("windowfocus", "key", "Escape")
+
+    # The day
+
+    def home(self):
+        """The sphere, alone in a file of its own, and nothing under way: where memory is compared."""
+        if self.window._window().screen.show_fullscreen:
+            self.operator("screen", "back_to_previous")
+        _send("windowsize", *map(str, SCREEN))
+        while bpy.app.is_job_running("RENDER"):
+            self.press_escape()
+            yield from self.window.seconds(0.2)
+        for job in ("bake", "compare"):
+            self.operator("mesograin", f"cancel_{job}")
+        self.open(self.window.blend_file("sphere"))
+        yield from self.window.seconds(1.0)
+        bpy.ops.outliner.orphans_purge(do_recursive=True)
+        gc.collect()
+        ctypes.CDLL("libc.so.6").malloc_trim(0)
+        yield from self.window.seconds(0.5)
+
+    def live(self, operations, home_every):
+        """Does so many operations; gives the resident bytes at home, each time it was there."""
+        memory = []
+        weights, functions = zip(*monkey_work.WORK)
+        for number in range(operations):
+            if number % home_every == 0:
+                yield from self.home()
+                memory.append(resident())
+                print(f"monkey at home: {memory[-1] / 1e6:.0f} MB", flush=True)
+            function = self.random.choices(functions, weights)[0]
+            print(f"monkey {number}: {function.__name__}", flush=True)
+            yield from self._do(function)
+            yield from self.pause()
+            assert self.window._take_gl_errors() == [], function.__name__
+        yield from self.home()
+        memory.append(resident())
+        print(f"monkey at home: {memory[-1] / 1e6:.0f} MB; the longest without an answer: {self.longest[0]:.1f} s,"
+              f" {self.longest[1]}", flush=True)
+        return memory
+
+    def _do(self, function):
+        started = time.monotonic()
+        worth_a_step = function(self)
+        if inspect.isgenerator(worth_a_step):
+            worth_a_step = yield from worth_a_step
+        if worth_a_step is not False:
+            self.operator("ed", "undo_push", message=function.__name__)
+        yield 0.0  # Blender's own loop: redraws are what an edit costs
+        took = time.monotonic() - started
+        if took > self.longest[0]:
+            self.longest = took, function.__name__
+        if took > TOO_LONG:
+            print(f"monkey: {function.__name__} took {took:.1f} s; {status.complaints()}", flush=True)
+
+
+def resident():
+    """Bytes of this process in memory."""
+    for line in open("/proc/self/status", encoding="ascii"):
+        if line.startswith("VmRSS"):
+            return 1024 * int(line.split()[1])
+    raise AssertionError("Linux does not say VmRSS")
+
+
+def growth(memory):
+    """By which share memory is more at the end than in the middle: medians of the third and of the last quarter."""
+    quarter = len(memory) // 4
+    return statistics.median(memory[-quarter:]) / statistics.median(memory[2 * quarter:3 * quarter]) - 1.0
+
+
+def _send(*words):
+    """To Blender's window, as the X server delivers it."""
+    subprocess.run(["xdotool", "search", "--onlyvisible", "--class", "Blender", *words], check=False, timeout=20,
+                   capture_output=True)
+
+
+def _send_to_screen(*words):
+    subprocess.run(["xdotool", *map(str, words)], check=True, timeout=20)
