@@ -72,7 +72,7 @@ def test_the_operator_adds_a_grain_that_undo_removes(native):
     assert bpy.ops.mesograin.add_grain(kind="salt", seed=2, size=0.5) == {"FINISHED"}
     grain = bpy.context.object
     assert grain.location == Vector((1.0, 2.0, 3.0)) and grain.data.uv_layers
-    assert grain.data.materials[0].mesograin.model == "model_2"
+    assert grain.data.materials[0].mesograin.model == "auto"
     assert not grain.data.validate()
     (values,) = read_scene().instances
     assert values.mesh.has_uvs

@@ -32,7 +32,7 @@ def test_a_cube_becomes_sugar(steps, picture):
     plain = picture()
     steps.make_it_sugar()
     grain = bpy.data.objects["Cube"].active_material.mesograin
-    assert grain.model == "model_2" and grain.boundary == "dielectric"
+    assert grain.model == "auto" and grain.boundary == "dielectric"
     sugar = picture()
     assert not np.allclose(sugar, plain, rtol=0.05)
     assert steps.choose_the_model() == "transport"

@@ -29,10 +29,10 @@ def mesh(kind, name=None, size=1.0, **habit):
     return made
 
 
-def material(kind):
+def material(kind, model=models.AUTO.name):
     """A new bpy.types.Material with the looks of a kind."""
     made = bpy.data.materials.new(kind.replace("_", " ").capitalize())
-    made.mesograin.model = models.AUTO.name
+    made.mesograin.model = model
     for parameter, value in LOOKS[kind].items():
         setattr(made.mesograin, parameter, value)
     return made
@@ -94,7 +94,8 @@ def pile_of(kinds_of_shapes, count, size, name="Pile", seed=0, segments=12, angu
     """The object of add_pile of `count` grains. kinds_of_shapes: the kind of each shape that it has, such as three
     times "sand". size: radius of a ball as large as the mean grain. settling: as pile.settle takes it."""
     placings = pile.settle(count, size, shapes=len(kinds_of_shapes), seed=seed, **settling)
-    shared = {kind: material(kind) for kind in dict.fromkeys(kinds_of_shapes)}
+    # Not AUTO, which goes by what was measured of grains alone.
+    shared = {kind: material(kind, models.PREFERRED) for kind in dict.fromkeys(kinds_of_shapes)}
     shapes = []
     for number, kind in enumerate(kinds_of_shapes):
         data = mesh(kind, seed=seed + number, segments=segments, angularity=angularity, roundness=roundness)
