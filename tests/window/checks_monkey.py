@@ -6,7 +6,7 @@ import bpy
 import monkey
 from mesograin.engine import status
 
-OPERATIONS = int(os.environ.get("MESOGRAIN_MONKEY", "150"))
+OPERATIONS = int(os.environ.get("MESOGRAIN_MONKEY", "60"))
 SEED = int(os.environ.get("MESOGRAIN_MONKEY_SEED", "1"))
 HOME_EVERY = 50
 LONG = 1000  # operations from which memory is held to rest

@@ -144,21 +144,24 @@ class Monkey:
     def live(self, operations, home_every):
         """Does so many operations; gives the resident bytes at home, each time it was there."""
         memory = []
+
+        def visit_home():
+            yield from self.home()
+            memory.append(resident())
+            print(f"monkey at home: {memory[-1] / 1e6:.0f} MB, {self.window.native.sent()['programs']} programs",
+                  flush=True)
+
         weights, functions = zip(*monkey_work.WORK)
         for number in range(operations):
             if number % home_every == 0:
-                yield from self.home()
-                memory.append(resident())
-                print(f"monkey at home: {memory[-1] / 1e6:.0f} MB", flush=True)
+                yield from visit_home()
             function = self.random.choices(functions, weights)[0]
             print(f"monkey {number}: {function.__name__}", flush=True)
             yield from self._do(function)
             yield from self.pause()
             assert self.window._take_gl_errors() == [], function.__name__
-        yield from self.home()
-        memory.append(resident())
-        print(f"monkey at home: {memory[-1] / 1e6:.0f} MB; the longest without an answer: {self.longest[0]:.1f} s,"
-              f" {self.longest[1]}", flush=True)
+        yield from visit_home()
+        print(f"monkey: {self.longest[0]:.1f} s at most, for {self.longest[1]}", flush=True)
         return memory
 
     def _do(self, function):

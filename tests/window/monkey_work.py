@@ -10,6 +10,7 @@ from mesograin.ui.compare_panel import session as comparing
 WORK = []  # (weight, function)
 COLOURS = [name for name, each in parameters.PARAMETERS.items() if each.kind == "rgb"]
 MOST_OBJECTS = 14
+MANY_VERTICES = 2000  # of a mesh that is not multiplied
 ENGINES = ("MESOGRAIN", "MESOGRAIN", "MESOGRAIN", "BLENDER_WORKBENCH", "CYCLES")
 FILES = ("sphere", "grain", "heap", "studio")
 
@@ -226,10 +227,10 @@ def add_or_remove_modifier(m):
         return
     if thing.modifiers:
         thing.modifiers.clear()
-    else:
+    elif len(thing.data.vertices) < MANY_VERTICES:
         modifier = thing.modifiers.new("Modifier", m.random.choice(("ARRAY", "SUBSURF", "DECIMATE", "WIREFRAME")))
         if modifier.type == "ARRAY":
-            modifier.count = m.random.choice((2, 40))
+            modifier.count = m.random.choice((2, 10))
 
 
 @work(3)
