@@ -5,19 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <glm/geometric.hpp>
 #include <numbers>
 
+#include "heap/draws.h"
 #include "heap/spread.h"
-#include "lights/device_light.h"
-#include "lights/world_light.h"
 
 namespace mesograin::heap {
 namespace {
-
-/// A direction of light at a place of the world.
-using Draw = std::function<lights::LightDraw(const glm::dvec3& place, const glm::dvec2& random)>;
 
 void light_grain(const Space& space, std::uint32_t number, const glm::dvec3& anchor, const Draw& draw, int rays,
                  transport::Random& random, Coefficients& direct, Coefficients& crossed) {
@@ -41,7 +36,8 @@ void light_grain(const Space& space, std::uint32_t number, const glm::dvec3& anc
     const Outcome outcome = table.draw(mu, point[2]);
     const TurnedFrame frame(normal, -to_light);
     const float share = 1.0F / (4.0F * std::numbers::pi_v<float> * static_cast<float>(rays));
-    (ray.crossed ? crossed : direct).add(share * irradiance * left * outcome.weight, frame * outcome.normal);
+    const glm::vec3 leaves_at = table.seen_place(frame * outcome.normal, frame * outcome.direction);
+    (ray.crossed ? crossed : direct).add(share * irradiance * left * outcome.weight, leaves_at);
   }
 }
 
@@ -68,15 +64,7 @@ void light_wall(const Space& space, const Patches::Node& node, const glm::dvec3&
 
 void add_direct_light(const Space& space, const Heap& heap, int rays, Field& direct, Field& crossed,
                       const transport::Effort& effort) {
-  std::vector<Draw> draws;
-  for (const scene::Light& light : heap.lights)
-    draws.emplace_back(
-        [&light](const glm::dvec3& place, const glm::dvec2& random) { return lights::sample(light, place, random); });
-  std::optional<lights::WorldLight> world;
-  if (heap.world.image && heap.world.shines()) {
-    world.emplace(heap.world);
-    draws.emplace_back([&world](const glm::dvec3& /*place*/, const glm::dvec2& random) { return world->draw(random); });
-  }
+  const std::vector<Draw> draws = draws_of(heap);
   if (draws.empty()) return;
   constexpr std::size_t grains_a_piece = 64;
   const std::size_t grains = space.grains().size();

@@ -2,36 +2,132 @@
 #include "heap/gather.h"
 
 #include <algorithm>
+#include <cmath>
 #include <glm/common.hpp>
+#include <glm/exponential.hpp>
 #include <glm/geometric.hpp>
+#include <numbers>
 #include <utility>
 
 #include "heap/spread.h"
 
 namespace mesograin::heap {
+namespace {
+
+/// What one direction of a light makes a walk send back: of all places that ask for it one is looked at, the likelier
+/// the more it found.
+class Asking {
+ public:
+  explicit Asking(const lights::LightDraw& light)
+      : to_light_(light.to_light),
+        irradiance_(light.irradiance),
+        reach_(static_cast<float>(std::min(light.reach, 1e30))) {}
+
+  /// Where light is scattered in the unit sphere, `direction` before the scattering.
+  void ask(const Optics& optics, const glm::vec3& place, const glm::vec3& direction, const glm::vec3& weight,
+           transport::Random& random) {
+    const float along = glm::dot(place, to_light_);
+    const float chord = -along + std::sqrt(std::max(along * along + 1.0F - glm::dot(place, place), 0.0F));
+    const auto g = static_cast<float>(optics.g);
+    // Henyey and Greenstein 1941, eq. 2.
+    const float square = 1.0F + g * g - 2.0F * g * glm::dot(direction, to_light_);
+    const float phase = (1.0F - g * g) / (4.0F * std::numbers::pi_v<float> * square * std::sqrt(square));
+    const glm::vec3 light = phase * weight * irradiance_ * glm::exp(-glm::vec3(optics.sigma_t) * chord);
+    const float mean = (light.r + light.g + light.b) / 3.0F;
+    if (!(mean > 0.0F)) return;
+    all_ += mean;
+    if (random.uniform() * all_ >= mean) return;
+    looked_at_ = glm::normalize(place + chord * to_light_);
+    colour_ = light / mean;
+  }
+
+  /// Where light leaves evenly at a normal.
+  void ask_surface(const glm::vec3& normal, const glm::vec3& weight) {
+    const float cosine = std::max(glm::dot(normal, to_light_), 0.0F) / std::numbers::pi_v<float>;
+    colour_ = cosine * weight * irradiance_;
+    all_ = cosine > 0.0F ? 1.0F : 0.0F;
+    looked_at_ = normal;
+  }
+
+  glm::vec3 found(const Space& space, std::uint32_t grain) const {
+    if (!(all_ > 0.0F)) return glm::vec3(0.0F);
+    Ray ray{space.place(space.grains()[grain], looked_at_), to_light_, glm::vec3(1.0F)};
+    return all_ * colour_ * space.passed(ray, reach_);
+  }
+
+ private:
+  glm::vec3 to_light_;
+  glm::vec3 irradiance_;
+  float reach_;
+  float all_ = 0.0F;
+  glm::vec3 looked_at_{0.0F};
+  glm::vec3 colour_{0.0F};
+};
+
+}  // namespace
 
 Gather::Gather(Heap heap, std::shared_ptr<const HeapLight> light)
-    : heap_(std::move(heap)), light_(std::move(light)), space_(heap_.grains, light_->kinds) {}
+    : heap_(std::move(heap)), light_(std::move(light)), space_(heap_.grains, light_->kinds), draws_(draws_of(heap_)) {}
+
+glm::vec3 Gather::sent_to(Ray ray, transport::Random& random, bool open) const {
+  if (const std::optional<Source> source = space_.follow(ray, random))
+    return ray.weight / source->met * light_->sent[source->number].at(source->normal);
+  if (heap_.world.image || !(open || ray.crossed)) return glm::vec3(0.0F);
+  return ray.weight * glm::vec3(heap_.world.radiance);
+}
 
 glm::vec3 Gather::look(std::uint32_t grain, const glm::vec3& normal, const glm::vec3& towards, int rays,
                        transport::Random& random) const {
   const Kind& kind = space_.kind(grain);
   const float mu = std::clamp(glm::dot(normal, towards), 0.0F, 1.0F);
   const TurnedFrame frame(normal, -towards);
-  const glm::vec3 world(heap_.world.image ? glm::dvec3(0.0) : heap_.world.radiance);
   glm::vec3 sum(0.0F);
   for (int i = 0; i < rays; ++i) {
     const Outcome outcome = kind.from_viewer->draw(mu, random.uniform());
-    Ray ray{space_.place(space_.grains()[grain], frame * outcome.normal), frame * outcome.direction, outcome.weight};
-    if (const std::optional<Source> source = space_.follow(ray, random))
-      sum += ray.weight / source->met * light_->sent[source->number].at(source->normal);
-    else if (ray.crossed)
-      sum += ray.weight * world;
+    sum += sent_to(
+        {space_.place(space_.grains()[grain], frame * outcome.normal), frame * outcome.direction, outcome.weight},
+        random, false);
   }
   sum /= static_cast<float>(rays);
-  sum += kind.from_light->lobe_at(mu) * light_->crossed[grain].at(normal);
+  sum += kind.from_light->lobe_at(mu) * light_->crossed[grain].at(kind.from_light->seen_place(normal, towards));
   sum += seen_through(grain, normal, towards, random);
   return glm::max(sum, 0.0F);
+}
+
+bool Gather::sees_all(std::uint32_t grain, const glm::vec3& place, const glm::vec3& normal) const {
+  constexpr float close = 0.1F;
+  const Grain& ball = space_.grains()[grain];
+  const Surface surface = heap_.grains.kinds[ball.kind].surface;
+  if (surface != Surface::index_matched && surface != Surface::lambert_lambert) return false;
+  return glm::distance(place / ball.radius, normal) < close;
+}
+
+glm::vec3 Gather::look_at_all(std::uint32_t grain, const glm::vec3& normal, const glm::vec3& towards, int rays,
+                              transport::Random& random) const {
+  const Optics& optics = heap_.grains.kinds[space_.grains()[grain].kind];
+  const float mu = std::clamp(glm::dot(normal, towards), 0.0F, 1.0F);
+  const TurnedFrame frame(normal, -towards);
+  glm::vec3 sum(0.0F);
+  for (int i = 0; i < rays; ++i) {
+    std::vector<Asking> asking;
+    asking.reserve(draws_.size());
+    const glm::dvec3 middle = heap_.anchor + glm::dvec3(space_.grains()[grain].middle);
+    for (const Draw& draw : draws_) asking.emplace_back(draw(middle, {random.uniform(), random.uniform()}));
+    const auto ask = [&](const glm::vec3& place, const glm::vec3& direction, const glm::vec3& weight) {
+      for (Asking& of : asking) of.ask(optics, frame * place, frame * direction, weight, random);
+    };
+    const std::optional<Outcome> outcome =
+        walk(optics, Sense::from_viewer, mu, random, optics.transparent() ? Scattered(ask) : Scattered());
+    for (Asking& of : asking) {
+      if (outcome && !optics.transparent()) of.ask_surface(frame * outcome->normal, outcome->weight);
+      sum += of.found(space_, grain);
+    }
+    if (!outcome) continue;
+    sum += sent_to(
+        {space_.place(space_.grains()[grain], frame * outcome->normal), frame * outcome->direction, outcome->weight},
+        random, true);
+  }
+  return glm::max(sum / static_cast<float>(rays) + seen_through(grain, normal, towards, random), 0.0F);
 }
 
 glm::vec3 Gather::seen_through(std::uint32_t grain, const glm::vec3& normal, const glm::vec3& towards,

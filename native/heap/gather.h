@@ -5,7 +5,9 @@
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <memory>
+#include <vector>
 
+#include "heap/draws.h"
 #include "heap/exchange.h"
 #include "heap/heap.h"
 #include "transport/random.h"
@@ -24,13 +26,23 @@ class Gather {
   glm::vec3 look(std::uint32_t grain, const glm::vec3& normal, const glm::vec3& towards, int rays,
                  transport::Random& random) const;
 
+  /// Whether look_at_all() knows this grain: its surface there is the sphere's, and what lights do in it is found by
+  /// asking for them on the way, which no surface that refracts allows. `place`: from the grain's middle.
+  bool sees_all(std::uint32_t grain, const glm::vec3& place, const glm::vec3& normal) const;
+
+  /// The same with what comes straight from lights.
+  glm::vec3 look_at_all(std::uint32_t grain, const glm::vec3& normal, const glm::vec3& towards, int rays,
+                        transport::Random& random) const;
+
  private:
+  glm::vec3 sent_to(Ray ray, transport::Random& random, bool open) const;
   glm::vec3 seen_through(std::uint32_t grain, const glm::vec3& normal, const glm::vec3& towards,
                          transport::Random& random) const;
 
   Heap heap_;
   std::shared_ptr<const HeapLight> light_;
   Space space_;
+  std::vector<Draw> draws_;
 };
 
 }  // namespace mesograin::heap

@@ -31,6 +31,13 @@ double met_from_everywhere(double sigma_t) {
   return 1.0 + 2.0 * (std::exp(-depth) * (depth + 1.0) - 1.0) / (depth * depth);
 }
 
+/// How far along a view ray the light was scattered last that is seen, mean of what is sent out evenly inside.
+double seen_depth(const glm::vec3& sigma_t, double mu) {
+  const double depth = 2.0 * mu * static_cast<double>(mean(sigma_t));
+  if (depth < 0.05) return mu * (1.0 - depth / 6.0);
+  return 2.0 * mu * (1.0 / depth - 1.0 / std::expm1(depth));
+}
+
 /// A subset in which every walk is as likely as it was heavy (systematic resampling: Kitagawa 1996, "Monte Carlo filter
 /// and smoother for non-Gaussian nonlinear state space models", appendix), all of the same mean weight.
 /// `tried`: how many there were, those that ended inside included.
@@ -167,6 +174,23 @@ void GrainTable::trace(const Optics& optics, Sense sense, const transport::Effor
     exitance += lobe_at(mu) * (2.0F * mu / steps);
   }
   for (glm::vec3& node : lobe_) node /= exitance;
+  if (!transparent_) return;
+  double square = 0.0;
+  double all_seen = 0.0;
+  for (int step = 0; step < steps; ++step) {
+    const float mu = (static_cast<float>(step) + 0.5F) / steps;
+    const double depth = seen_depth(sigma_t_, mu);
+    const double share = mean(lobe_at(mu)) * mu;
+    square += share * (1.0 - 2.0 * depth * mu + depth * depth);
+    all_seen += share;
+  }
+  seen_place_scale_ = static_cast<float>(std::sqrt(all_seen / square));
+}
+
+glm::vec3 GrainTable::seen_place(const glm::vec3& normal, const glm::vec3& towards) const {
+  if (!transparent_) return normal;
+  const float mu = std::clamp(glm::dot(normal, towards), 0.0F, 1.0F);
+  return seen_place_scale_ * (normal - static_cast<float>(seen_depth(sigma_t_, mu)) * towards);
 }
 
 Outcome GrainTable::draw(float mu, float choice) const {

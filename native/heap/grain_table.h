@@ -41,6 +41,12 @@ class GrainTable {
   const std::array<glm::vec3, lobe_nodes>& lobe() const { return lobe_; }
   glm::vec3 lobe_at(float mu) const;
 
+  /// By what four numbers know a place of the surface that is seen from a direction: the mean place of what is seen
+  /// there if it is sent out evenly, in a transparent grain some way below the surface; scaled so that its mean square
+  /// is that of normals.
+  glm::vec3 seen_place(const glm::vec3& normal, const glm::vec3& towards) const;
+  float seen_place_scale() const { return seen_place_scale_; }
+
   /// Where light comes in; of what is not opaque.
   const Entries& came_in() const { return came_in_; }
 
@@ -57,6 +63,7 @@ class GrainTable {
   std::vector<Outcome> outcomes_;
   std::array<glm::vec3, lobe_nodes> lobe_{};
   Entries came_in_;
+  float seen_place_scale_ = 1.0F;
 };
 
 /// Tables that were made before are kept, by what they were made of. Each has random numbers of its own, so that the

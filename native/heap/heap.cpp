@@ -72,7 +72,10 @@ void Space::cross(Ray& ray, const Meeting& meeting, float cosine) const {
 }
 
 std::optional<Source> Space::source(const Meeting& meeting, Ray& ray, transport::Random& random) const {
-  if (!meeting.wall) return Source{meeting.number, meeting.normal, kind(meeting.number).from_light->met()};
+  if (!meeting.wall) {
+    const GrainTable& table = *kind(meeting.number).from_light;
+    return Source{meeting.number, table.seen_place(meeting.normal, -ray.direction), table.met()};
+  }
   const std::optional<std::uint32_t> node = patches_.draw(meeting.number, meeting.place, meeting.normal, random);
   if (!node) {
     ray.weight = glm::vec3(0.0F);

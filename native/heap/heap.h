@@ -44,7 +44,7 @@ struct Ray {
 /// What sends out the light that a ray looks for: a grain at a normal, or a node of the walls' patches.
 struct Source {
   std::uint32_t number;  ///< of all that sends out light: grains, then nodes
-  glm::vec3 normal;      ///< 0 of a node
+  glm::vec3 normal;      ///< GrainTable::seen_place(); 0 of a node
   glm::vec3 met;         ///< GrainTable::met() of its kind
 };
 

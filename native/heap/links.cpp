@@ -16,10 +16,12 @@ namespace mesograin::heap {
 namespace {
 
 constexpr std::size_t grains_a_piece = 64;
-constexpr float whole = 32767.0F;
+// Of what is seen places may be a half longer than normals.
+constexpr float whole = 16383.0F;
 
 void pack(const glm::vec3& normal, std::int16_t (&packed)[3]) {
-  for (int axis = 0; axis < 3; ++axis) packed[axis] = static_cast<std::int16_t>(std::lround(whole * normal[axis]));
+  for (int axis = 0; axis < 3; ++axis)
+    packed[axis] = static_cast<std::int16_t>(std::lround(whole * std::clamp(normal[axis], -2.0F, 2.0F)));
 }
 
 glm::vec3 unpacked(const std::int16_t (&packed)[3]) {
@@ -91,6 +93,7 @@ Found look_from(const Space& space, std::uint32_t number, int rays, const glm::v
     const Outcome outcome = table.draw(mu, point[3]);
     departing[i] = {outcome.weight, normal};
     const TurnedFrame frame(normal, point[4]);
+    departing[i].normal = table.seen_place(normal, frame * glm::vec3(-std::sqrt(1.0F - point[2]), 0.0F, mu));
     Ray ray{space.place(grain, frame * outcome.normal), frame * outcome.direction, outcome.weight};
     endings[i].source = space.follow(ray, random);
     endings[i].crossed = ray.crossed;

@@ -10,8 +10,8 @@
 
 namespace mesograin::heap {
 
-/// A ray that leaves a grain at a normal because of light that another one sent out at one of its own; of a node of
-/// walls, which sends out the same at every normal, it is 0.
+/// A ray that leaves a grain at a normal (GrainTable::seen_place) because of light that another one sent out at one of
+/// its own; of a node of walls, which sends out the same at every normal, it is 0.
 struct Link {
   std::uint32_t from;
   std::int16_t sent_at[3];

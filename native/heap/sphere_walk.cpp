@@ -46,8 +46,8 @@ Outcome mirrored(const Optics& optics, const glm::vec3& travelling, Random& rand
 /// A walk inside the unit sphere.
 class Inside {
  public:
-  Inside(const Optics& optics, Sense sense, Random& random)
-      : optics_(optics), sense_(sense), random_(random), sigma_t_(optics.sigma_t), albedo_(optics.albedo) {
+  Inside(const Optics& optics, Sense sense, Random& random, const Scattered& told)
+      : optics_(optics), sense_(sense), random_(random), told_(told), sigma_t_(optics.sigma_t), albedo_(optics.albedo) {
     channel_ = std::min(static_cast<int>(3.0F * random.uniform()), 2);
   }
 
@@ -60,6 +60,7 @@ class Inside {
       if (flight < chord) {
         scattered = true;
         place += flight * direction;
+        if (told_) told_(place, direction, weight_);
         direction =
             transport::scattered(direction, static_cast<float>(optics_.g), random_.uniform(), random_.uniform());
         if (!survives()) return std::nullopt;
@@ -159,6 +160,7 @@ class Inside {
   const Optics& optics_;
   Sense sense_;
   Random& random_;
+  const Scattered& told_;
   glm::vec3 sigma_t_;
   glm::vec3 albedo_;
   glm::vec3 weight_{1.0F};   // of each channel, over the mean density
@@ -170,7 +172,7 @@ class Inside {
 
 }  // namespace
 
-std::optional<Outcome> walk(const Optics& optics, Sense sense, float mu, Random& random) {
+std::optional<Outcome> walk(const Optics& optics, Sense sense, float mu, Random& random, const Scattered& scattered) {
   const glm::vec3 normal(0.0F, 0.0F, 1.0F);
   const glm::vec3 travelling(std::sqrt(std::max(0.0F, (1.0F - mu) * (1.0F + mu))), 0.0F, -mu);
   const bool lambert_entry = optics.surface == Surface::lambert_lambert ||
@@ -187,7 +189,7 @@ std::optional<Outcome> walk(const Optics& optics, Sense sense, float mu, Random&
     default:
       break;
   }
-  Inside inside(optics, sense, random);
+  Inside inside(optics, sense, random, scattered);
   if (lambert_entry) return inside.follow(normal, -cosine_lobe(normal, random));
   if (optics.eta != 1.0)
     return inside.follow(normal, transport::refracted(travelling, normal, static_cast<float>(optics.eta)));

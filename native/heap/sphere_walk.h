@@ -1,6 +1,7 @@
 // One walk of light through a spherical grain, from where it comes in to where it leaves.
 #pragma once
 
+#include <functional>
 #include <glm/vec3.hpp>
 #include <optional>
 
@@ -22,6 +23,9 @@ enum class Sense { from_light, from_viewer };
 /// Follows what comes in at (0, 0, 1), travelling along (sine, 0, -mu). Light that a transparent grain did not scatter
 /// is left out: what is followed are walks that were scattered, each weighed by how likely that was. Nothing, where all
 /// was absorbed.
-std::optional<Outcome> walk(const Optics& optics, Sense sense, float mu, transport::Random& random);
+/// `scattered` is told of every scattering: where, the direction before, and the weight after it.
+using Scattered = std::function<void(const glm::vec3& place, const glm::vec3& direction, const glm::vec3& weight)>;
+std::optional<Outcome> walk(const Optics& optics, Sense sense, float mu, transport::Random& random,
+                            const Scattered& scattered = {});
 
 }  // namespace mesograin::heap

@@ -25,11 +25,20 @@ vec3 light_at_normal(int first, vec3 normal) {
 }
 
 #ifdef GATHERED
-uniform sampler2D gathered;  // w: 1 where a grain was looked at
+uniform sampler2D gathered;  // w: 1 where a grain was looked at, 2 if what lights do is in it
 #endif
 
-// Radiance towards a viewer at the cosine `mu`; of a wall at `place` in the heap.
-vec3 light_from_grains(int object, vec3 place, vec3 normal, float mu) {
+// The mean place of what is seen, as heap::GrainTable::seen_place has it; w of a kind its scale.
+vec3 seen_place(int kind, vec3 normal, vec3 to_viewer, float mu) {
+  vec3 sigma_t = heap_light[kind].rgb;
+  float depth = min(2.0 * mu * (sigma_t.r + sigma_t.g + sigma_t.b) / 3.0, 60.0);
+  if (heap_light[kind].w == 0.0 || sigma_t.r > 1e29) return normal;
+  float along = depth < 0.05 ? mu * (1.0 - depth / 6.0) : 2.0 * mu * (1.0 / depth - 1.0 / (exp(depth) - 1.0));
+  return heap_light[kind].w * (normal - along * to_viewer);
+}
+
+// Radiance towards a viewer; of a wall at `place` in the heap.
+vec3 light_from_grains(int object, vec3 place, vec3 normal, vec3 to_viewer) {
 #ifdef GATHERED
   vec4 found = texelFetch(gathered, ivec2(gl_FragCoord.xy), 0);
   if (found.w > 0.0) return found.rgb;
@@ -38,11 +47,12 @@ vec3 light_from_grains(int object, vec3 place, vec3 normal, float mu) {
   int kind = int(heap_light[first + 6].x);
   int wall = int(heap_light[first + 6].y);
   if (kind < 0) return vec3(0.0);
+  float mu = dot(normal, to_viewer);
   float node = clamp(mu * float(LOBE_NODES) - 0.5, 0.0, float(LOBE_NODES - 1));
   int below = min(int(node), LOBE_NODES - 2);
   vec3 lobe = mix(heap_light[kind + 1 + below].rgb, heap_light[kind + 2 + below].rgb, node - float(below));
   if (wall >= 0) return lobe * light_of_wall(wall, place, normal);
   vec3 crossing = exp(-2.0 * mu * heap_light[kind].rgb);
-  return lobe * light_at_normal(first, normal) + crossing * light_at_normal(first + 3, normal);
+  return lobe * light_at_normal(first, seen_place(kind, normal, to_viewer, mu)) + crossing * light_at_normal(first + 3, normal);
 }
 #endif

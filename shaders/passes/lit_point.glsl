@@ -117,9 +117,13 @@ vec3 emitted();
 #endif
 
 vec3 lit_point(SurfacePoint point) {
+#ifdef GATHERED
+  vec4 all = texelFetch(gathered, ivec2(gl_FragCoord.xy), 0);
+  if (all.w > 1.5) return all.rgb;
+#endif
   Outwards outwards = look_outwards(point);
 #ifdef EXCHANGE
-  vec3 sum = light_from_grains(grain_instance, grain_place + grain_unit * point.on_triangle, point.normal, dot(point.normal, point.to_viewer));
+  vec3 sum = light_from_grains(grain_instance, grain_place + grain_unit * point.on_triangle, point.normal, point.to_viewer);
 #else
   vec3 sum = vec3(0.0);
 #endif

@@ -87,5 +87,40 @@ TEST(Gather, ShowsThroughAClearGrainWhatIsBehindIt) {
               0.0F, 1e-4F);
 }
 
+// White grains in even light look like the light, by the mean of each grain's looks to one percent.
+TEST(Gather, OfAllLightLosesNone) {
+  Heap heap = lattice(medium(20.0, 1.0));
+  heap.lights.clear();
+  heap.world.radiance = glm::dvec3(1.0);
+  const Gather gather(heap, solved(heap));
+  transport::Random random(2, 0);
+  const Spread spread(random);
+  for (const std::uint32_t grain : {0U, 62U, 124U}) {
+    double sum = 0.0;
+    constexpr int looks = 1 << 12;
+    for (int i = 0; i < looks; ++i) {
+      const std::array<float, 5> point = spread.point(i);
+      const glm::vec3 normal = transport::isotropic(point[0], point[1]);
+      // Not so near the rim that much is seen straight through.
+      const float mu = std::sqrt(0.1F + 0.9F * point[2]);
+      const glm::vec3 towards = TurnedFrame(normal, point[3]) * glm::vec3(std::sqrt(1.0F - mu * mu), 0.0F, mu);
+      ASSERT_TRUE(gather.sees_all(grain, normal, normal));
+      sum += gather.look_at_all(grain, normal, towards, 1, random).g / looks;
+    }
+    EXPECT_NEAR(sum, 1.0, 0.01) << grain;
+  }
+}
+
+TEST(Gather, LeavesToTheModelWhatIsNoBallOrRefracts) {
+  Heap heap = lattice(medium(1.0, 0.9));
+  const glm::vec3 normal(0.0F, 0.0F, 1.0F);
+  for (const bool refracts : {false, true}) {
+    if (refracts) heap.grains.kinds[0].surface = Surface::dielectric;
+    const Gather gather(heap, std::make_shared<const HeapLight>(solve_exchange(heap, coarse, {}, {})));
+    EXPECT_EQ(gather.sees_all(0, normal, normal), !refracts);
+    EXPECT_FALSE(gather.sees_all(0, glm::vec3(0.0F, 0.3F, 0.8F), normal));
+  }
+}
+
 }  // namespace
 }  // namespace mesograin::heap
