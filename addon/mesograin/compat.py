@@ -127,6 +127,12 @@ def draw_progress(layout, owner, name, text):
         layout.prop(owner, name, text=text, slider=True)
 
 
+def refuses_writing(error):
+    """Whether an AttributeError or RuntimeError says that Blender lets timers write nothing at present: so it is while
+    an engine written in Python renders, and, where that began amid the drawing of a panel, until one is drawn anew."""
+    return any(part in str(error) for part in ("Writing to ID classes in this context", "can't modify blend data"))
+
+
 def has_even_lights():
     """Whether Cycles takes an area light's watts for those of a Lambertian emitter, and a spot for a point light in a
     cone. Before Blender 4.0 an area light had pi / 4 of that, and a spot weakened with the cosine from its axis."""

@@ -12,6 +12,7 @@ from mesograin.studies import scripting
 from mesograin.ui.compare_panel import properties
 from mesograin.ui.compare_panel.session import folder, session
 from mesograin.ui.side_task import pictures
+from mesograin.ui.side_task.session import Session
 
 
 @pytest.fixture
@@ -124,3 +125,24 @@ def test_a_picture_beside_the_file_moves_with_it(entry, native, tmp_path):
 
 def test_only_pictures_that_a_case_has_are_offered(entry):
     assert pictures.pictures_of(entry) == ["model"]
+
+
+def test_an_end_that_blender_lets_nobody_write_down_is_told_later():
+    class Ended:
+        running = False
+
+        def look(self):
+            return True
+
+    class Refused(Session):
+        tries = 0
+
+        def finish(self):
+            self.tries += 1
+            if self.tries == 1:
+                raise AttributeError("bpy_prop Writing to ID classes in this context is not allowed: model.exr, ...")
+
+    refused = Refused("mesograin_refused", set())
+    refused.task = refused._under_way = Ended()
+    assert refused.poll() is not None and refused.tries == 1
+    assert refused.poll() is None and refused.tries == 2

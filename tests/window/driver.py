@@ -29,6 +29,21 @@ def run_all(window, checks, folder):
         yield from window.restore()
 
 
+def quit_blender():
+    """Now, or the seconds after which to try again, where Blender is not yet ready to."""
+    from mesograin import compat
+
+    try:
+        bpy.ops.wm.quit_blender()
+    except RuntimeError as refusal:
+        if not compat.refuses_writing(refusal):
+            raise
+        for area in bpy.context.window_manager.windows[0].screen.areas:
+            area.tag_redraw()
+        return 0.2
+    return None
+
+
 def main():
     import addon_utils
 
@@ -45,8 +60,7 @@ def main():
         try:
             return next(steps)
         except StopIteration:
-            bpy.ops.wm.quit_blender()
-            return None
+            return quit_blender()
 
     bpy.app.timers.register(step, first_interval=1.0, persistent=True)
 

@@ -9,6 +9,7 @@ import time
 
 import bpy
 import monkey_work
+from mesograin import compat
 from mesograin.engine import status
 
 SCREEN = (900, 640)
@@ -132,6 +133,9 @@ class Monkey:
         while bpy.app.is_job_running("RENDER"):
             self.press_escape()
             yield from self.window.seconds(0.2)
+        for area in self.areas():  # see compat.refuses_writing
+            area.tag_redraw()
+        yield from self.window.seconds(0.3)
         for job in ("bake", "compare"):
             self.operator("mesograin", f"cancel_{job}")
         self.open(self.window.blend_file("sphere"))
@@ -166,9 +170,14 @@ class Monkey:
 
     def _do(self, function):
         started = time.monotonic()
-        worth_a_step = function(self)
-        if inspect.isgenerator(worth_a_step):
-            worth_a_step = yield from worth_a_step
+        try:
+            worth_a_step = function(self)
+            if inspect.isgenerator(worth_a_step):
+                worth_a_step = yield from worth_a_step
+        except AttributeError as refusal:
+            if not compat.refuses_writing(refusal):
+                raise
+            worth_a_step = False
         if worth_a_step is not False:
             self.operator("ed", "undo_push", message=function.__name__)
         yield 0.0  # Blender's own loop: redraws are what an edit costs

@@ -35,7 +35,7 @@ def change_parameter(m):
     grain = _grain(m)
     if grain is None:
         return
-    name = m.random.choice([name for name in models.MODELS[grain.model].parameters if name != "profile"])
+    name = m.random.choice([name for name in models.CHOICES[grain.model].parameters if name != "profile"])
     parameter = parameters.PARAMETERS[name]
     if parameter.kind == "switch":
         setattr(grain, name, m.random.random() < 0.5)
@@ -61,7 +61,7 @@ def change_parameter_to_an_extreme(m):
 def choose_model(m):
     grain = _grain(m)
     if grain is not None:
-        grain.model = m.random.choice(models.NAMES)
+        grain.model = m.random.choice(list(models.CHOICES))
 
 
 @work(3)
@@ -110,7 +110,7 @@ def new_material(m):
     thing = m.mesh_object()
     if thing is not None and len(bpy.data.materials) < 20:
         material = bpy.data.materials.new("New")
-        material.mesograin.model = m.random.choice(models.NAMES)
+        material.mesograin.model = m.random.choice(list(models.CHOICES))
         thing.data.materials.append(material)
 
 

@@ -6,6 +6,7 @@ from pathlib import Path
 from ...command_line import parser as shared
 from ...command_line.values import picture_size, positive
 from ...cycles.kinds import KINDS
+from ...schema.models import MODELS
 REFERENCES = tuple(KINDS)
 LEAST_CONVERGED = 512
 """Samples a pixel of the converged render, unless its kind needs more."""
@@ -92,7 +93,7 @@ def parse(words):
     parser = build()
     chosen = parser.choose(words)
     answered = KINDS[chosen.reference].models
-    chosen.models = tuple(dict.fromkeys(chosen.models or answered))
+    chosen.models = tuple(dict.fromkeys(chosen.models or [model for model in answered if model in MODELS]))
     for model in chosen.models:
         if model not in answered:
             parser.error(f"'{model}' is not answered by {chosen.reference}; allowed are {', '.join(answered)}")

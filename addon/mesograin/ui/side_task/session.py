@@ -4,6 +4,8 @@
 import bpy
 from bpy.props import FloatProperty
 
+from ... import compat
+
 POLL_SECONDS = 0.2
 
 
@@ -113,10 +115,16 @@ class Session:
             self.redraw()
         if self.running:
             return
+        try:
+            self.finish()
+        except AttributeError as refusal:
+            if not compat.refuses_writing(refusal):
+                raise
+            self.redraw()  # it is told once Blender lets it
+            return
         self._under_way = None
         if not over:
             self._leaving.append(self.task)
-        self.finish()
         self.redraw()
 
 
