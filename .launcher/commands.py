@@ -30,6 +30,7 @@ BENCHMARKS = {
     "heap": "what heaps of a thousand to a million grains cost relative to one lambert sphere, and how much memory",
     "drag": "how long a change takes to be seen in a real window, relative to Blender's own redraw in Solid shading",
     "exchange": "what light between grains costs while a scene changes: milliseconds to the first and the final answer",
+    "heap_light": "how far light between grains is from path tracing, for kinds and lights; about half an hour",
     "accuracy": "how far each model's sphere is from photon Monte Carlo; about twelve minutes",
     "relightable": "how far a relightable bake is from bakes for each light, by its number of components",
     "shapes": "how far pictures of grains of any shape are from photon Monte Carlo, such as tests/data/shapes holds",
@@ -238,8 +239,8 @@ class Bench(Command):
         return bool(words) and words[0] in ("--help", "-h")
 
     def check(self, words):
-        self._chosen(words)
-        return ["blender", "lists report", "product product"]
+        name, _ = self._chosen(words)
+        return ["blender", "lists report", "product product", *(["referee"] if name == "heap_light" else [])]
 
     def run(self, words, place):
         name, options = self._chosen(words)

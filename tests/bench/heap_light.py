@@ -1,0 +1,166 @@
+"""How far light between grains is from path tracing: totals and blocks of a heap of 696 balls, for kinds of grains and
+lights.
+
+    heap_light.py BUILD_FOLDER [--kinds K ...] [--lights L ...] [--models M ...] [--exchanges E ...] [--samples N]
+        [--paths N] [--json FILE] [--markdown FILE]
+
+The truth is traced beside it (mesograin-referee heap): so many paths a pixel, and its own noise in blocks is told.
+Errors are relative L1 in blocks of 8 x 8 pixels of a picture of 96 x 96, over all channels. A sun that balls with a
+refracting surface are lit by is 20 degrees wide: a point's light no path finds.
+"""
+import argparse
+import json
+import math
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+import numpy
+
+from frame import sphere
+
+DATA = pathlib.Path(__file__).resolve().parents[1] / "data/heaps"
+MANIFEST = json.loads((DATA / "manifest.json").read_text())
+SIZE = MANIFEST["resolution"]
+SUNS = {"sun": 45.0, "low": 15.0}
+LIGHTS = [*SUNS, "sky"]
+WIDE = math.radians(20.0)
+
+
+def medium(albedo, radius, eta=None):
+    """A material as tests/data/heaps/manifest.json has it; albedo and radius (mean free paths): one, or by channel."""
+    albedo, radius = numpy.broadcast_arrays(numpy.asarray(albedo, float), numpy.asarray(radius, float))
+    return {"kind": "subsurface", "sigma_s": (albedo * radius).tolist(), "sigma_a": ((1.0 - albedo) * radius).tolist(),
+            "g": 0, **({"boundary": "index_matched"} if eta is None else {"boundary": "dielectric", "eta": eta})}
+
+
+KINDS = {"lambert .3": {"kind": "diffuse", "reflectance": 0.3}, "lambert .8": {"kind": "diffuse", "reflectance": 0.8},
+         **{f"{albedo:.3g} radius {radius}".lstrip("0"): medium(albedo, radius)
+            for albedo in (0.9, 0.999) for radius in (1, 3, 10)},
+         "coloured": medium((0.999, 0.97, 0.8), (1.0, 3.0, 5.0)),
+         "eta 1.3": medium(0.999, 3, 1.3), "eta 1.5": medium(0.999, 3, 1.5)}
+
+
+def light_of(name, material):
+    if name == "sky":
+        return {"type": "hemisphere"}
+    above = math.radians(SUNS[name])
+    aside = (math.cos(above), 0.0) if name == "sun" else (0.0, math.cos(above))
+    return {"type": "distant", "direction_to_light": [*aside, math.sin(above)],
+            "angle": WIDE if "eta" in material else 0.0}
+
+
+def truth(native, referee, material, light, paths, folder):
+    """(picture, its noise in blocks over the mean)."""
+    case, picture = folder / "heap.json", folder / "truth.exr"
+    case.write_text(json.dumps({"spheres": str(DATA / "spheres.csv"), "camera": MANIFEST["camera"], "resolution": SIZE,
+                                "material": material, "light": light}))
+    subprocess.run([referee, "heap", case, "-o", picture, "-n", str(paths)], check=True)
+    pixels, names, _ = native.read_exr(picture)
+    channel = dict(zip(names, numpy.moveaxis(pixels, -1, 0)))
+    noise = numpy.sqrt(blocks((channel["noise.G"] ** 2)[..., None])) / 8.0
+    colours = numpy.stack([channel[name] for name in "RGB"], -1)
+    return colours, float(noise.mean() / channel["G"].mean())
+
+
+def blocks(picture):
+    return picture.reshape(SIZE[1] // 8, 8, SIZE[0] // 8, 8, -1).mean(axis=(1, 3))
+
+
+def scene(native, material, model, light, exchange):
+    if material["kind"] == "diffuse":
+        look = native.Material(model=model, reflectance=(material["reflectance"],) * 3)
+    else:
+        sigmas = {name: tuple(numpy.broadcast_to(material[name], 3)) for name in ("sigma_a", "sigma_s")}
+        look = native.Material(model=model, boundary=material["boundary"], eta=material.get("eta", 1.3), **sigmas)
+    positions, normals, triangles = sphere()
+    places = numpy.loadtxt(DATA / "spheres.csv", delimiter=",", skiprows=1)
+    transforms = numpy.zeros((len(places), 4, 4))
+    transforms[:, :3, :3] = places[:, 3, None, None] * numpy.eye(3)
+    transforms[:, :3, 3] = places[:, :3]
+    transforms[:, 3, 3] = 1.0
+    heap = native.InstanceArray(native.Mesh(normals, normals, triangles), look, transforms)
+    if light["type"] == "distant":
+        sun = native.DirectionalLight(light["direction_to_light"], (math.pi,) * 3, angle=light["angle"])
+        shines = {"lights": [sun]}
+    else:
+        sky = numpy.zeros((64, 128, 3), numpy.float32)
+        sky[:32] = 1.0
+        shines = {"world": native.World(image=native.Surroundings(sky))}
+    return native.Scene(arrays=[heap], exchange=exchange, **shines)
+
+
+def camera(native):
+    seen = MANIFEST["camera"]
+    axes = numpy.array([seen["right"], seen["up"], [-x for x in seen["direction"]]])
+    world_to_camera = numpy.eye(4)
+    world_to_camera[:3, :3] = axes
+    world_to_camera[:3, 3] = -axes @ (numpy.array(seen["centre"]) - 60.0 * numpy.array(seen["direction"]))
+    clip = numpy.diag([1.0 / seen["half_width"], 1.0 / seen["half_height"], -2.0 / 199.0, 1.0])
+    clip[2, 3] = -201.0 / 199.0
+    return native.Camera(world_to_camera, clip)
+
+
+def measure(native, of, model, exchange, samples):
+    """One way to draw a heap against its truth, as a dictionary."""
+    material, light, (right, noise) = of
+    view = native.View(*SIZE)
+    view.set_scene(scene(native, material, model, light, exchange))
+    view.set_camera(camera(native))
+    view.render(samples)
+    found = view.read()[..., :3]
+    return {"model": model, "exchange": exchange, "total": float(found.sum() / right.sum()), "truth_noise": noise,
+            "blocks": float(numpy.abs(blocks(found) - blocks(right)).sum() / blocks(right).sum()),
+            "finite": bool(numpy.isfinite(found).all())}
+
+
+def markdown(cases):
+    lines = ["| grains | light | model | exchange | total | blocks | truth's noise |", "|---|---|---|---|---|---|---|"]
+    lines += [f"| {case['kind']} | {case['light']} | {case['model']} | `{case['exchange']}` | {case['total']:.3f} |"
+              f" {case['blocks']:.1%} | {case['truth_noise']:.1%} |" for case in cases]
+    return "\n".join(lines) + "\n"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("build", help="the folder of the native module and of the referee")
+    parser.add_argument("--kinds", nargs="+", default=list(KINDS), choices=list(KINDS), metavar="K",
+                        help=f"of grains: {', '.join(KINDS)} (default: all)")
+    parser.add_argument("--lights", nargs="+", default=LIGHTS, choices=LIGHTS)
+    parser.add_argument("--models", nargs="+", default=["model_2"],
+                        help="of grains that are no lambert (default: model_2)")
+    parser.add_argument("--exchanges", nargs="+", default=["order_1", "gathered"],
+                        choices=["off", "order_1", "gathered"])
+    parser.add_argument("--samples", type=int, default=16, help="of each picture (default: 16)")
+    parser.add_argument("--paths", type=int, default=128, help="of the truth, a pixel (default: 128)")
+    parser.add_argument("--json", type=pathlib.Path, metavar="FILE", help="also writes the result there")
+    parser.add_argument("--markdown", type=pathlib.Path, metavar="FILE", help="and as a table there")
+    options = parser.parse_args()
+    sys.path.insert(0, options.build)
+    import mesograin_native as native
+
+    referee = pathlib.Path(options.build) / "tests/referee/mesograin-referee"
+    cases = []
+    with tempfile.TemporaryDirectory() as folder:
+        for kind in options.kinds:
+            material = KINDS[kind]
+            for name in options.lights:
+                light = light_of(name, material)
+                # Few paths find the wide sun, or lights that a path must leave the heap towards.
+                paths = options.paths * (16 if "eta" in material and name != "sky" else 1)
+                of = (material, light, truth(native, referee, material, light, paths, pathlib.Path(folder)))
+                for model in ["lambert"] if material["kind"] == "diffuse" else options.models:
+                    for exchange in options.exchanges:
+                        case = {"kind": kind, "light": name, **measure(native, of, model, exchange, options.samples)}
+                        cases.append(case)
+                        print(f"{kind:<16}{name:<5}{model:<9}{exchange:<9}{case['total']:>7.3f}{case['blocks']:>7.1%}"
+                              f"  truth's noise {case['truth_noise']:.1%}", flush=True)
+    if options.json:
+        options.json.write_text(json.dumps(cases, indent=1) + "\n")
+    if options.markdown:
+        options.markdown.write_text(markdown(cases))
+
+
+if __name__ == "__main__":
+    main()
