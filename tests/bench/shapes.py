@@ -1,10 +1,12 @@
 """How far models' pictures of grains are from photon Monte Carlo, by shape, size, light and medium.
 
-    shapes.py BUILD_FOLDER FOLDER [--models M ...] [--taps N] [--samples N] [--json FILE] [--pictures FOLDER]
+    shapes.py BUILD_FOLDER FOLDER [--models M ...] [--taps N] [--samples N] [--only TEXT ...] [--albedos A ...]
+              [--json FILE] [--pictures FOLDER]
 
 FOLDER holds a manifest.json: a camera, and for each image its EXR file, its mesh (an OBJ file, or "sphere" and its
 radius), medium and light. Figures are of blocks of 8x8 pixels: relative_l1 is sum|picture - truth| / sum truth, total
-is sum picture / sum truth. The truth holds light that was scattered at least once, no specular reflection.
+is sum picture / sum truth; noise is what the truth's own noise adds to relative_l1, where its file tells. The truth
+holds light that was scattered at least once, no specular reflection.
 """
 import argparse
 import importlib
@@ -39,8 +41,16 @@ class Shapes:
         self.images = self._manifest["images"]
 
     def truth(self, image):
+        return self._channel(image, "")
+
+    def noise(self, image):
+        """Standard error of each pixel of the truth, or None."""
+        return self._channel(image, "noise.")
+
+    def _channel(self, image, prefix):
         pixels, channels, _ = self._native.read_exr(str(self._folder / image["file"]))
-        return pixels[..., list(channels).index(image.get("channel", "R"))]
+        name = prefix + image.get("channel", "R")
+        return pixels[..., list(channels).index(name)] if name in channels else None
 
     def draw(self, image, model, taps=64, samples=32, **changed):
         """Radiance and coverage, (h, w, 4). `changed`: keys of the material that are other than the image's."""
@@ -67,18 +77,30 @@ class Shapes:
         self._native.write_exr(str(path), numpy.repeat(drawn[..., None], 3, axis=2), ["R", "G", "B"])
 
 
-def measure(shapes, models, taps, samples, pictures=None):
+def share_of_noise(noise, truth):
+    """The mean of |noise| of blocks, which are about normal, as a part of what they hold."""
+    return float(numpy.sqrt(2.0 / numpy.pi) * numpy.sqrt(blocks(noise ** 2)).sum() / blocks(truth).sum())
+
+
+def albedo(image):
+    """Of the channel that an image's truth is of."""
+    channel = "RGB".index(image.get("channel", "R"))
+    sigma_s, sigma_a = (numpy.broadcast_to(image[name], 3)[channel] for name in ("sigma_s", "sigma_a"))
+    return float(sigma_s / (sigma_s + sigma_a))
+
+
+def measure(shapes, images, models, taps, samples, pictures=None):
     """Rows: one for each image and model."""
-    for image in shapes.images:
-        truth = shapes.truth(image)
+    for image in images:
+        truth, noise = shapes.truth(image), shapes.noise(image)
         for model in models:
             drawn = shapes.draw(image, model, taps, samples)[..., "RGB".index(image.get("channel", "R"))]
             if pictures:
                 shapes.keep(pictures / f"{pathlib.Path(image['file']).stem}_{model}.exr", drawn)
             yield {"file": image["file"], "shape": pathlib.Path(image["mesh"]).stem, "eta": image["eta"],
                    "radius": image["radius_in_mean_free_paths"], "light": light_of(image),
-                   "albedo": image["sigma_s"] / (image["sigma_s"] + image["sigma_a"]), "g": image["g"],
-                   "model": model, **compare(drawn, truth)}
+                   "albedo": albedo(image), "g": image["g"], "model": model, **compare(drawn, truth),
+                   **({} if noise is None else {"noise": share_of_noise(noise, truth)})}
 
 
 def light_of(image):
@@ -92,15 +114,16 @@ def table(rows):
     models = sorted({row["model"] for row in rows})
     lights = [light for light in ("front", "side", "back") if any(row["light"] == light for row in rows)]
     columns = [(model, light) for model in models for light in lights]
-    yield "| shape | eta | albedo | radius | " + " | ".join(f"{model} {light}" for model, light in columns) + " |"
-    yield "|---" * (4 + len(columns)) + "|"
-    cases = {(row["shape"], row["eta"], round(row["albedo"], 6), row["radius"]): {} for row in rows}
+    yield "| shape | eta | g | albedo | radius | " + " | ".join(f"{model} {light}" for model, light in columns) + " |"
+    yield "|---" * (5 + len(columns)) + "|"
+    cases = {(row["shape"], row["eta"], row["g"], round(row["albedo"], 6), row["radius"]): {} for row in rows}
     for row in rows:
-        case = cases[row["shape"], row["eta"], round(row["albedo"], 6), row["radius"]]
-        case[row["model"], row["light"]] = f"{100.0 * row['relative_l1']:.1f} / {row['total']:.2f}"
-    for (shape, eta, albedo, radius), case in sorted(cases.items()):
+        case = cases[row["shape"], row["eta"], row["g"], round(row["albedo"], 6), row["radius"]]
+        noise = f" (noise {100.0 * row['noise']:.1f})" if "noise" in row else ""
+        case[row["model"], row["light"]] = f"{100.0 * row['relative_l1']:.1f} / {row['total']:.2f}{noise}"
+    for (shape, eta, g, of_channel, radius), case in sorted(cases.items()):
         figures = " | ".join(case.get(column, "") for column in columns)
-        yield f"| {shape} | {eta:g} | {albedo:g} | {radius:g} | {figures} |"
+        yield f"| {shape} | {eta:g} | {g:g} | {of_channel:g} | {radius:g} | {figures} |"
 
 
 def main():
@@ -110,13 +133,18 @@ def main():
     parser.add_argument("--models", nargs="+", default=["model_2", "model_3"])
     parser.add_argument("--taps", type=int, default=64, help="model 3's samples for a pixel and frame (default: 64)")
     parser.add_argument("--samples", type=int, default=32, help="frames of each picture (default: 32)")
+    parser.add_argument("--only", nargs="+", default=[""], metavar="TEXT",
+                        help="images whose file's name holds one of these")
+    parser.add_argument("--albedos", nargs="+", type=float, metavar="A", help="and of these albedos")
     parser.add_argument("--json", type=pathlib.Path, metavar="FILE", help="also writes the rows there")
     parser.add_argument("--pictures", type=pathlib.Path, metavar="FOLDER", help="also keeps the pictures there")
     options = parser.parse_args()
     sys.path.insert(0, options.build)
     native = importlib.import_module("mesograin_native")
     shapes = Shapes(native, options.folder)
-    rows = list(measure(shapes, options.models, options.taps, options.samples, options.pictures))
+    images = [image for image in shapes.images if any(text in image["file"] for text in options.only)
+              and (not options.albedos or any(abs(albedo(image) - each) < 1e-6 for each in options.albedos))]
+    rows = list(measure(shapes, images, options.models, options.taps, options.samples, options.pictures))
     print("Relative L1 in % / total over the truth's, in blocks of 8x8 pixels")
     print("\n".join(table(rows)))
     for model in options.models:
