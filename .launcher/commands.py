@@ -267,11 +267,14 @@ class Package(Command):
     name, sentence = "package", "make a zip of the add-on"
     about = "Makes a zip of the add-on that Blender installs: build/package/mesograin-VERSION.zip."
     epilog = ("The one zip works as an add-on for Blender 3.4 to 4.1 and as an extension for 4.2 and later. Its\n"
-              "native modules run on the Debian they were built for.")
+              "native modules run on the Debian they were built for; those of a portable one, made on Debian 12, on\n"
+              "any x86-64 Linux from glibc 2.35 on, in Blenders with Python 3.11, 3.13 or 3.14.")
 
     def parser(self):
         made = super().parser()
         made.add_argument("-o", dest="zip", metavar="FILE.zip", help="where the zip goes")
+        made.add_argument("--portable", action="store_true",
+                          help="for many machines: the libraries are inside; make it on Debian 12")
         made.add_argument("--blender-4", action="append_const", dest="roots", const="debian-13", default=[],
                           help="also build the module for Blender 4.3 of Debian 13, in a root in the cache folder")
         made.add_argument("--blender-5", action="append_const", dest="roots", const="debian-sid",
@@ -280,11 +283,15 @@ class Package(Command):
 
     def check(self, words):
         chosen = self.parser().parse_args(words)
-        return ["blender", "product product", *(f"root_build {root}" for root in chosen.roots)]
+        if chosen.portable and chosen.roots:
+            self.parser().error("--portable builds for other Debians' Blenders; leave out --blender-4 and --blender-5")
+        portable = ["portable"] if chosen.portable else []
+        return ["blender", "product product", *portable, *(f"root_build {root}" for root in chosen.roots)]
 
     def run(self, words, place):
         chosen = self.parser().parse_args(words)
-        return [place.python, SOURCE / ".launcher/package.py", SOURCE, *([chosen.zip] if chosen.zip else [])]
+        portable = ["--portable", place.build] if chosen.portable else []
+        return [place.python, SOURCE / ".launcher/package.py", SOURCE, *portable, *([chosen.zip] if chosen.zip else [])]
 
 
 class Install(Command):

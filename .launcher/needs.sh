@@ -10,6 +10,7 @@ ensure_needs() {
       any_python) ensure_any_python ;;
       lists) ensure_lists $about ;;
       product) ensure_product "$about" ;;
+      portable) ensure_portable ;;
       referee) ensure_referee ;;
       sanitized) ensure_built sanitize "$source_folder/build/sanitize" "$about" "the native tests with sanitizers" ;;
       root_build) build_in_root $about ;;
