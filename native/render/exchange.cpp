@@ -252,7 +252,8 @@ void Exchange::send() {
     // What is not transparent lets nothing through.
     const heap::GrainTable& table = *known_->light->kinds[kind].from_light;
     const std::vector<glm::vec2>& offsets = table.came_in().offsets();
-    numbers.emplace_back(optics.transparent() ? glm::vec3(optics.sigma_t) : glm::vec3(1e30F), offsets.empty() ? 0.0F : table.seen_place_scale());
+    numbers.emplace_back(optics.transparent() ? glm::vec3(optics.sigma_t) : glm::vec3(1e30F),
+                         offsets.empty() ? 0.0F : table.seen_place_scale());
     for (const glm::vec3& node : table.lobe()) numbers.emplace_back(node, 0.0F);
     for (std::size_t pair = 0; pair < offsets.size(); pair += 2) numbers.emplace_back(offsets[pair], offsets[pair + 1]);
   }
