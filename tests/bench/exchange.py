@@ -1,15 +1,21 @@
 """What light between grains costs while a scene changes: milliseconds to the first and to the final answer after each
-kind of change, how far the first is off, and what was found anew.
+kind of change, the processor's until then, how far the first is off, and what was found anew. And what a sample costs
+that shows this light, over one that does not, and the memory of it all.
 
-    exchange.py BUILD_FOLDER [--grains N] [--rounds N] [--json FILE]
+    exchange.py BUILD_FOLDER [--grains N] [--rounds N] [--changes NAME ...] [--materials NAME ...] [--json FILE]
 
 A heap of equal balls, one sun and an even sky, seen by a view that waits for nothing, of 256 x 144 pixels. How far off:
 relative L1 in blocks of 8 x 8 pixels between the first picture with new light and the final one. Medians of the rounds.
+Each material is measured in a process of its own. Where a machine has other work, the processor's milliseconds over its
+cores are what a quiet one would need.
 """
 import argparse
 import json
+import os
 import pathlib
+import resource
 import statistics
+import subprocess
 import sys
 import time
 
@@ -25,6 +31,7 @@ MATERIALS = {
     "dielectric": {"model": "model_2", "sigma_a": (0.003,) * 3, "sigma_s": (2.997,) * 3, "eta": 1.3},
 }
 PARTS = ("tables", "links", "sources", "solutions")
+CHANGES = ["slider", "light", "sky", "grain", "grains"]
 
 
 def blocks(view):
@@ -44,6 +51,8 @@ def scenes(native, of, count, number):
               for name, values in of.items()}
     if "reflectance" in of:
         slider["reflectance"] = (0.8 - 0.02 * number,) * 3
+    moved = transforms.copy()
+    moved[-count // 20, :3, 3] += (0.0, 0.0, 0.3 * number)  # one of those on top
     fallen = transforms.copy()
     fallen[:, 2, 3] -= 0.02 * number * (fallen[:, 2, 3] - fallen[:, 2, 3].min())
 
@@ -53,7 +62,7 @@ def scenes(native, of, count, number):
                             world=native.World((sky,) * 3), exchange="order_1")
 
     return width, {"nothing before": scene(), "slider": scene(material=slider), "light": scene(to_light=turned),
-                   "sky": scene(sky=0.3 + 0.05 * number), "grains": scene(where=fallen)}
+                   "sky": scene(sky=0.3 + 0.05 * number), "grain": scene(where=moved), "grains": scene(where=fallen)}
 
 
 def follow(view, scene):
@@ -61,6 +70,7 @@ def follow(view, scene):
     statistics_ = view.statistics()["exchange"]
     before = statistics_["found"] if statistics_ else dict.fromkeys(PARTS, 0)
     started = time.perf_counter()
+    busy = time.process_time()
     view.set_scene(scene)
     set_ms = 1e3 * (time.perf_counter() - started)
     first = picture = None
@@ -69,6 +79,7 @@ def follow(view, scene):
         known = view.preparing is None
         if view.take_news():
             final = time.perf_counter() - started
+            cpu = time.process_time() - busy
             if picture is None:
                 first, picture = final, blocks(view)
         if known:
@@ -76,27 +87,60 @@ def follow(view, scene):
         time.sleep(0.001)
     right = blocks(view)
     after = view.statistics()["exchange"]
-    return {"set_ms": set_ms, "first_ms": 1e3 * first, "final_ms": 1e3 * final,
+    return {"set_ms": set_ms, "first_ms": 1e3 * first, "final_ms": 1e3 * final, "cpu_ms": 1e3 * cpu,
             "first_off": float(numpy.abs(picture - right).sum() / right.sum()),
             "found": {name: after["found"][name] - before[name] for name in PARTS}, "steps": after["steps"]}
 
 
-def measure(native, of, count, rounds):
-    """{change: dictionary} of one material."""
+def sample_milliseconds(view):
+    started = time.perf_counter()
+    view.render(1)
+    return 1e3 * (time.perf_counter() - started)
+
+
+def over_direct(native, view, scene, camera):
+    """What a sample of a scene whose light is known costs, over one without light between grains. They take turns, so
+    that what else the machine does slows both."""
+    direct = native.View(*SIZE, patient=False)
+    direct.set_camera(camera)
+    direct.set_scene(native.Scene(arrays=scene.arrays, lights=scene.lights, world=scene.world, exchange="off"))
+    times = ([], [])
+    for _ in range(24):
+        for one, of in zip((view, direct), times):
+            of.append(sample_milliseconds(one))
+    return statistics.median(times[0][4:]) / statistics.median(times[1][4:])
+
+
+def measure(native, of, count, rounds, wanted):
+    """({change: dictionary} of one material, a frame's cost over that of a direct one)."""
     found = {}
+    frames = None
     for number in range(1, rounds + 1):
         width, changes = scenes(native, of, count, number)
         eye = (0.0, -0.6 * width, 1.05 * width)
+        camera = native.Camera.look_at(eye, (0.0, 0.0, -0.15 * width), (0.0, 0.0, 1.0), 18.0, SIZE[0] / SIZE[1])
         view = native.View(*SIZE, patient=False)
-        view.set_camera(native.Camera.look_at(eye, (0.0, 0.0, -0.15 * width), (0.0, 0.0, 1.0), 18.0, SIZE[0] / SIZE[1]))
+        view.set_camera(camera)
         base = changes["nothing before"]
         for name, scene in changes.items():
+            if name not in wanted and scene is not base:
+                continue
             found.setdefault(name, []).append(follow(view, scene))
             if scene is not base:
                 follow(view, base)
+            elif frames is None:
+                frames = over_direct(native, view, scene, camera)
         del view
-    return {name: {key: statistics.median(one[key] for one in each) if key != "found" else each[-1][key]
-                   for key in each[0]} for name, each in found.items()}
+    medians = {name: {key: statistics.median(one[key] for one in each) if key != "found" else each[-1][key]
+                      for key in each[0]} for name, each in found.items()}
+    return medians, frames
+
+
+def measure_one(options, name):
+    import mesograin_native as native
+    changes, frames = measure(native, MATERIALS[name], options.grains, options.rounds, options.changes)
+    return {"changes": changes, "frame_over_direct": frames,
+            "peak_megabytes": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0}
 
 
 def main():
@@ -105,21 +149,31 @@ def main():
     parser.add_argument("--grains", type=int, default=10_000, help="in the heap (default: 10000)")
     parser.add_argument("--rounds", type=int, default=3, help="of changes (default: 3)")
     parser.add_argument("--materials", nargs="+", default=list(MATERIALS), choices=list(MATERIALS), metavar="NAME")
+    parser.add_argument("--changes", nargs="*", default=CHANGES, choices=CHANGES, metavar="NAME",
+                        help="after the first picture, which is always measured (default: all)")
     parser.add_argument("--json", type=pathlib.Path, metavar="FILE", help="also writes the result there")
+    parser.add_argument("--one", metavar="NAME", help=argparse.SUPPRESS)
     options = parser.parse_args()
     sys.path.insert(0, options.build)
-    import mesograin_native as native
-
-    print(f"{'material':<13}{'change':<16}{'first ms':>9}{'off':>7}{'final ms':>9}  found anew: {', '.join(PARTS)}")
+    if options.one:
+        print(json.dumps(measure_one(options, options.one)))
+        return
+    print(f"{'material':<13}{'change':<16}{'first ms':>9}{'off':>7}{'final ms':>9}{'cpu ms':>9}{'steps':>6}  "
+          f"found anew: {', '.join(PARTS)}")
     cases = {}
     for name in options.materials:
-        cases[name] = measure(native, MATERIALS[name], options.grains, options.rounds)
-        for change, case in cases[name].items():
+        words = [sys.executable, __file__, options.build, "--one", name, "--grains", str(options.grains),
+                 "--rounds", str(options.rounds), "--changes", *options.changes]
+        cases[name] = json.loads(subprocess.run(words, check=True, stdout=subprocess.PIPE, text=True).stdout)
+        for change, case in cases[name]["changes"].items():
             counts = ", ".join(str(case["found"][part]) for part in PARTS)
-            print(f"{name:<13}{change:<16}{case['first_ms']:>9.0f}{case['first_off']:>7.1%}{case['final_ms']:>9.0f}  "
-                  f"{counts}", flush=True)
+            print(f"{name:<13}{change:<16}{case['first_ms']:>9.0f}{case['first_off']:>7.1%}{case['final_ms']:>9.0f}"
+                  f"{case['cpu_ms']:>9.0f}{case['steps']:>6.0f}  {counts}")
+        print(f"{name:<13}a sample is {cases[name]['frame_over_direct']:.2f} times that without light between grains; "
+              f"{cases[name]['peak_megabytes']:.0f} MB at most", flush=True)
     if options.json:
-        options.json.write_text(json.dumps({"grains": options.grains, "cases": cases}, indent=1) + "\n")
+        options.json.write_text(json.dumps({"grains": options.grains, "load": os.getloadavg(), "cases": cases},
+                                           indent=1) + "\n")
 
 
 if __name__ == "__main__":
