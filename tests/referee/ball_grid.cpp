@@ -43,9 +43,9 @@ BallGrid::BallGrid(std::vector<Ball> balls) : balls_(std::move(balls)), lower_(1
     const glm::ivec3 last = glm::min(glm::ivec3((ball.middle + ball.radius - lower_) / size_), cells_ - 1);
     for (int z = first.z; z <= last.z; ++z)
       for (int y = first.y; y <= last.y; ++y)
-        for (int x = first.x; x <= last.x; ++x) visit(static_cast<std::size_t>((z * cells_.y + y) * cells_.x + x));
+        for (int x = first.x; x <= last.x; ++x) visit(number_of({x, y, z}));
   };
-  begins_.assign(static_cast<std::size_t>(cells_.x) * static_cast<std::size_t>(cells_.y * cells_.z) + 1, 0);
+  begins_.assign(number_of({0, 0, cells_.z}) + 1, 0);
   for (const Ball& ball : balls_) each_cell(ball, [&](std::size_t cell) { ++begins_[cell + 1]; });
   for (std::size_t cell = 1; cell < begins_.size(); ++cell) begins_[cell] += begins_[cell - 1];
   numbers_.resize(begins_.back());
