@@ -78,10 +78,19 @@ LightDraw WorldLight::draw(const glm::dvec2& random) const {
   const glm::dvec3 direction(across * std::cos(azimuth), across * std::sin(azimuth), up);
   const glm::dvec3 seen = world_.radiance * glm::dvec3(image.texels()[row * width + column]);
   if (luminance(seen) <= 0.0) return no_light();
-  // Density per steradian: luminance over the sum of luminance times solid angle.
-  const double whole = rows_.back() * 2.0 * PI / image.width();
-  return light_from(glm::normalize(glm::inverse(world_.world_to_image) * direction), seen * (whole / luminance(seen)),
-                    LIGHT_INFINITELY_FAR);
+  return light_from(glm::normalize(glm::inverse(world_.world_to_image) * direction),
+                    seen / (density() * luminance(seen)), LIGHT_INFINITELY_FAR);
+}
+
+double WorldLight::density() const {
+  if (!world_.image) return 1.0 / (4.0 * PI);
+  // Luminance over the sum of luminance times solid angle.
+  const double whole = rows_.back() * 2.0 * PI / world_.image->width();
+  return whole > 0.0 ? 1.0 / whole : 0.0;
+}
+
+double WorldLight::density(const glm::dvec3& direction) const {
+  return world_.image ? density() * luminance(radiance(world_, direction)) : density();
 }
 
 }  // namespace mesograin::lights

@@ -22,6 +22,12 @@ class WorldLight {
   /// `random` is in [0, 1)^2. Its irradiance is radiance over density; reach is LIGHT_INFINITELY_FAR.
   LightDraw draw(const glm::dvec2& random) const;
 
+  /// Of the directions drawn, per steradian: the luminance of the image there times this; without an image, this.
+  double density() const;
+
+  /// Of that direction (unit length).
+  double density(const glm::dvec3& direction) const;
+
  private:
   scene::World world_;
   std::vector<double> rows_;    ///< cumulative, of each row

@@ -5,6 +5,7 @@ namespace mesograin::models {
 
 MaterialInputs conductor_inputs(const scene::Material& material, double /*grain_radius*/) {
   MaterialInputs inputs;
+  inputs.facets = true;
   if (material.masking == scene::Masking::separable) inputs.defines = {"MASKING_SEPARABLE"};
   inputs.uniforms["material.reflectance"] = glm::vec3(material.reflectance);
   inputs.uniforms["material.roughness"] = static_cast<float>(material.roughness);

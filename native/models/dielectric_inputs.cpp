@@ -12,6 +12,7 @@ void add_dielectric(const scene::Material& material, MaterialInputs& inputs) {
   inputs.uniforms["surface.eta"] = static_cast<float>(material.eta);
   inputs.uniforms["surface.roughness"] = static_cast<float>(material.roughness);
   if (material.specular) {
+    inputs.facets = true;
     inputs.defines.emplace_back("SPECULAR");
     if (material.masking == scene::Masking::separable) inputs.defines.emplace_back("MASKING_SEPARABLE");
   }

@@ -41,7 +41,9 @@ void add_finish(const scene::Material& material, MaterialInputs& inputs) {
   if (finish.coat > 0.0) inputs.defines.emplace_back("COAT");
   if (finish.coat_shades_base) inputs.defines.emplace_back("COAT_SHADES_BASE");
   if (finish.retro_reflective) inputs.defines.emplace_back("RETRO_REFLECTIVE");
-  if (metallicity > 0.0 || finish.metallic.picture) inputs.defines.emplace_back("METALLIC");
+  const bool metallic = metallicity > 0.0 || finish.metallic.picture;
+  if (metallic) inputs.defines.emplace_back("METALLIC");
+  inputs.facets = metallic || finish.coat > 0.0;
   if (material.masking == scene::Masking::separable && !metal) inputs.defines.emplace_back("MASKING_SEPARABLE");
   inputs.uniforms["material.reflectance"] = glm::vec3(material.reflectance);
   // Of the conductor it is the alpha, of which the finish has the root.

@@ -33,6 +33,7 @@ struct MaterialInputs {
   std::map<std::string, Volume> volumes;                ///< sampler name -> texels
   std::map<std::string, scene::TextureMap> pictures{};  ///< sampler name -> what it wears
   bool finish = false;                                  ///< drawn by shaders/models/finish.glsl, whatever the model
+  bool facets = false;                                  ///< the surface is of facets that mirror, and they are seen
   bool light_maps = false;                              ///< the model reads shaders/models/light_map.glsl
 };
 

@@ -5,7 +5,8 @@
 
 namespace mesograin::render {
 
-CastContent::CastContent(DeviceCache& cache, Content& content) : instances_(&content.instances()->tree(cache)) {
+CastContent::CastContent(DeviceCache& cache, Content& content)
+    : instances_(content.instances() != nullptr ? &content.instances()->tree(cache) : nullptr) {
   std::vector<casting::PlacedGroup> groups;
   rows_.reserve(3 * content.draws().size());
   for (std::size_t i = 0; i < content.draws().size(); ++i) {
@@ -18,6 +19,16 @@ CastContent::CastContent(DeviceCache& cache, Content& content) : instances_(&con
         {cache.tree(draw.source), rows_.data() + 3 * i, 1, static_cast<std::uint32_t>(content.object_number(i))});
   }
   if (!groups.empty()) draws_ = std::make_unique<casting::PlacedTree>(std::move(groups));
+}
+
+void CastContent::first_hits(casting::Packet& packet, casting::Hits& hits) const {
+  if (instances_ != nullptr) instances_->first_hits(packet, hits);
+  if (draws_ != nullptr) draws_->first_hits(packet, hits);
+}
+
+void CastContent::find_occluded(casting::Packet& packet) const {
+  if (instances_ != nullptr) instances_->find_occluded(packet);
+  if (draws_ != nullptr) draws_->find_occluded(packet);
 }
 
 }  // namespace mesograin::render

@@ -15,11 +15,12 @@ class CastContent {
   /// `content` must outlive it.
   CastContent(DeviceCache& cache, Content& content);
 
-  /// Of instances of arrays alone.
-  const casting::PlacedTree& instances() const { return *instances_; }
+  /// Of instances of arrays alone; null if there are none.
+  const casting::PlacedTree* instances() const { return instances_; }
 
-  /// Null if there are no draws. Its numbers are those by which shadows know them.
-  const casting::PlacedTree* draws() const { return draws_.get(); }
+  /// As those of casting::PlacedTree, of everything. Draws have the numbers by which shadows know them.
+  void first_hits(casting::Packet& packet, casting::Hits& hits) const;
+  void find_occluded(casting::Packet& packet) const;
 
  private:
   const casting::PlacedTree* instances_;

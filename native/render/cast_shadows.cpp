@@ -5,6 +5,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
+#include <limits>
 
 #include "render/cast_work.h"
 #include "render/pixel_rays.h"
@@ -26,10 +27,11 @@ struct Shaded {
 };
 
 Shaded shaded_of(const Content& content, std::size_t number) {
-  const Instances& instances = *content.instances();
-  if (number < instances.count())
-    return {instances.ball(number), static_cast<std::uint32_t>(number), instances.shades_itself(number)};
-  const std::size_t index = number - instances.count();
+  const Instances* instances = content.instances();
+  const std::size_t count = instances != nullptr ? instances->count() : 0;
+  if (number < count)
+    return {instances->ball(number), static_cast<std::uint32_t>(number), instances->shades_itself(number)};
+  const std::size_t index = number - count;
   const Draw& draw = content.draws()[index];
   return {glm::vec4(glm::vec3(draw.centre - content.anchor()), static_cast<float>(draw.radius)),
           static_cast<std::uint32_t>(content.object_number(index)), content.shades_itself(draw)};
@@ -40,6 +42,12 @@ struct Lit {
   glm::vec3 place;  // from the anchor
   glm::vec3 normal;
   Shaded shaded;
+};
+
+/// Where a ray goes; nowhere if it does not leave the surface.
+struct Way {
+  glm::vec3 along;
+  float farthest = std::numeric_limits<float>::infinity();  // in lengths of it
 };
 
 // As shade.frag makes it of what is seen there.
@@ -67,6 +75,21 @@ Lit lit_at(const Content& content, const glm::vec4& position, const glm::vec4& f
 
 bool CastShadows::cast(const CastContent& cast, const Content& content, const SeenSurfaces& seen,
                        const std::vector<ShadowEye>& eyes, const GoOn& go_on) {
+  return cast_rounds(cast, content, seen, eyes.size(), go_on, [&](std::size_t light, std::size_t, const Lit& lit) {
+    const glm::vec3 eye(eyes[light]);
+    return eyes[light].w > 0.0 ? Way{eye - lit.place, 1.0F} : Way{eye};
+  });
+}
+
+bool CastShadows::cast(const CastContent& cast, const Content& content, const SeenSurfaces& seen,
+                       const std::vector<glm::vec4>& ways, const GoOn& go_on) {
+  return cast_rounds(cast, content, seen, 1, go_on,
+                     [&](std::size_t, std::size_t pixel, const Lit&) { return Way{glm::vec3(ways[pixel])}; });
+}
+
+template <typename WayOf>
+bool CastShadows::cast_rounds(const CastContent& cast, const Content& content, const SeenSurfaces& seen,
+                              std::size_t rounds, const GoOn& go_on, const WayOf& way_of) {
   const glm::ivec2 size = seen.size;
   reached_.assign(static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y), 0);
   const auto cast_packet = [&](const glm::ivec2& corner, int end_row) {
@@ -84,26 +107,20 @@ bool CastShadows::cast(const CastContent& cast, const Content& content, const Se
       lit[ray] = lit_at(content, seen.positions[places[ray]], facing, seen.viewer);
       seen_there[ray] = any = true;
     }
-    for (std::size_t light = 0; any && light < eyes.size(); ++light) {
-      const glm::vec3 eye(eyes[light]);
-      const bool placed = eyes[light].w > 0.0;
+    for (std::size_t round = 0; any && round < rounds; ++round) {
       casting::Packet packet;
       for (unsigned ray = 0; ray < casting::rays_in_packet; ++ray) {
         if (!seen_there[ray]) continue;
-        const glm::vec3 way = placed ? eye - lit[ray].place : eye;
-        if (glm::dot(way, lit[ray].normal) <= 0.0F) continue;
-        if (placed)
-          packet.set(ray, lit[ray].place, way, 1.0F);
-        else
-          packet.set(ray, lit[ray].place, way);
+        const Way way = way_of(round, places[ray], lit[ray]);
+        if (glm::dot(way.along, lit[ray].normal) <= 0.0F) continue;
+        packet.set(ray, lit[ray].place, way.along, way.farthest);
         const Shaded& shaded = lit[ray].shaded;
         packet.from[ray] = shaded.number;
-        if (shaded.itself) packet.own[ray] = clear_of_itself * shaded.ball.w / glm::length(way);
+        if (shaded.itself) packet.own[ray] = clear_of_itself * shaded.ball.w / glm::length(way.along);
       }
-      cast.instances().find_occluded(packet);
-      if (cast.draws() != nullptr) cast.draws()->find_occluded(packet);
+      cast.find_occluded(packet);
       for (unsigned ray = 0; ray < casting::rays_in_packet; ++ray)
-        if (packet.cast[ray]) reached_[places[ray]] |= 1U << light;
+        if (packet.cast[ray]) reached_[places[ray]] |= 1U << round;
     }
   };
   const bool whole = cast_rows(size.y, go_on, [&](int first, int end) {
@@ -134,8 +151,7 @@ bool cast_shadow_map(const CastContent& cast, const Content& content, const glm:
       const PixelRay through = rays.at(x + static_cast<int>(ray) % across, y + static_cast<int>(ray) / across);
       packet.set(ray, through.origin, through.direction, through.farthest);
     }
-    cast.instances().first_hits(packet, hits);
-    if (cast.draws() != nullptr) cast.draws()->first_hits(packet, hits);
+    cast.first_hits(packet, hits);
     for (unsigned ray = 0; ray < casting::rays_in_packet; ++ray) {
       const auto row = static_cast<std::size_t>(y) + ray / across;
       glm::vec2& texel =

@@ -37,10 +37,18 @@ class CastShadows {
   bool cast(const CastContent& cast, const Content& content, const SeenSurfaces& seen,
             const std::vector<ShadowEye>& eyes, const GoOn& go_on);
 
+  /// Casts a ray from each pixel along its own way; of length 0 where none is wanted. It is light 0.
+  bool cast(const CastContent& cast, const Content& content, const SeenSurfaces& seen,
+            const std::vector<glm::vec4>& ways, const GoOn& go_on);
+
   /// Makes them what shaders/scene/shadows.glsl reads.
   void bind(const gl::Program& program) const;
 
  private:
+  template <typename WayOf>
+  bool cast_rounds(const CastContent& cast, const Content& content, const SeenSurfaces& seen, std::size_t rounds,
+                   const GoOn& go_on, const WayOf& way_of);
+
   std::vector<std::uint32_t> reached_;  // a bit a light
   std::optional<gl::Texture> device_;
 };

@@ -121,7 +121,7 @@ void CastSurfaces::cast_band(const CastContent& cast, const Content& content, co
         const PixelRay through = rays.at(pixel.x, pixel.y);
         packet.set(ray, through.origin, through.direction, through.farthest);
       }
-      cast.instances().first_hits(packet, hits);
+      cast.instances()->first_hits(packet, hits);
       for (unsigned ray = 0; ray < casting::rays_in_packet; ++ray) {
         if (!packet.cast[ray]) continue;
         const glm::ivec2 pixel = pixel_of(ray);

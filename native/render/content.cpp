@@ -102,6 +102,12 @@ Content::Content(DeviceCache& cache, const scene::Scene& scene, Content before,
     for (const InstanceGroup& group : instances_->groups()) textured_ = textured_ || group.material->textured();
 }
 
+bool Content::facets() const {
+  if (std::any_of(draws_.begin(), draws_.end(), [](const Draw& draw) { return draw.material->facets(); })) return true;
+  return instances_ && std::any_of(instances_->groups().begin(), instances_->groups().end(),
+                                   [](const InstanceGroup& group) { return group.material->facets(); });
+}
+
 void Content::find_shadows() {
   shadows_ = (instances_ ? instances_->count() : 0) + draws_.size() > 1 ||
              std::any_of(draws_.begin(), draws_.end(), [this](const Draw& draw) { return shades_itself(draw); });

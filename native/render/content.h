@@ -71,6 +71,9 @@ class Content {
   /// Whether any material wears pictures.
   bool textured() const { return textured_; }
 
+  /// Whether any has facets that mirror.
+  bool facets() const;
+
  private:
   void tell_objects();
   void find_shadows();

@@ -70,6 +70,7 @@ DeviceMaterial::DeviceMaterial(scene::Model model, models::MaterialInputs inputs
       uniforms_(std::move(inputs.uniforms)),
       pictures_(std::move(pictures)),
       has_finish_(inputs.finish),
+      facets_(inputs.facets),
       light_maps_(inputs.light_maps) {
   for (const auto& [name, table] : inputs.tables) {
     gl::Texture texture(GL_RGBA32F, table.width, table.height);
@@ -257,6 +258,7 @@ const gl::Program& DeviceCache::shading(const DeviceMaterial& material, const Sh
   if (shading.gathered) defines.emplace_back("GATHERED");
   if (shading.world && std::find(defines.begin(), defines.end(), "CLEAR") != defines.end())
     defines.emplace_back("WORLD");
+  if (shading.mirrors_world && material.facets()) defines.emplace_back("MIRRORS_WORLD");
   if (shading.lights_at_place) defines.emplace_back("LIGHTS_AT_PLACE");
   return program(fmt::format("{} {} {}", pass, model, fmt::join(defines, " ")), gl::ShaderSource({vertex}, {}),
                  gl::ShaderSource({"passes/" + pass + ".frag", "models/" + model + ".glsl"}, defines));

@@ -36,6 +36,7 @@ struct Shading {
   bool exchange = false;         ///< light goes from grain to grain
   bool gathered = false;         ///< and was gathered for each pixel
   bool world = false;            ///< there is a world to be seen through it
+  bool mirrors_world = false;    ///< or in its facets
   bool lights_at_place = false;  ///< the place that is shaded draws its own directions of lights that have a place
 };
 
@@ -55,6 +56,9 @@ class DeviceMaterial {
 
   /// Whether it is drawn by models::finish_shader, whatever its model.
   bool has_finish() const { return has_finish_; }
+
+  /// Whether its surface is of facets that mirror, and they are seen.
+  bool facets() const { return facets_; }
 
   /// Whether its model reads light maps.
   bool light_maps() const { return light_maps_; }
@@ -76,6 +80,7 @@ class DeviceMaterial {
   std::map<std::string, gl::Volume> volumes_;
   Pictures pictures_;
   bool has_finish_;
+  bool facets_;
   bool light_maps_;
   int version_ = 0;
 };

@@ -105,6 +105,8 @@ Sample Frame::begin_sample(const GoOn& go_on) {
   const std::vector<Draw>& draws = content_->draws();
   const bool own_maps =
       std::any_of(draws.begin(), draws.end(), [](const Draw& draw) { return draw.light_maps != nullptr; });
+  const Mirrors mirrors = lighting_.world().shines() && !unwrapping_ ? arrays_.mirrors(*content_) : Mirrors::none;
+  if (mirrors == Mirrors::hindered && !targets_->mirror) targets_->mirror.emplace(targets_->sample, targets_->depth);
   return {.cache = cache_,
           .content = *content_,
           .lighting = lighting_,
@@ -119,6 +121,7 @@ Sample Frame::begin_sample(const GoOn& go_on) {
           .jitter = glm::vec2((2.0 * r2_point(index, seeded_offset(seed_)) - 1.0) / glm::dvec2(size_)),
           .lights = lighting_.sample(index, seed_, own_maps ? 1 : most_world_directions),
           .cast = arrays_.casts(*content_),
+          .mirrors = mirrors,
           .go_on = go_on};
 }
 
@@ -131,6 +134,7 @@ bool Frame::add_sample(const GoOn& go_on) {
   timers_.shade.start();
   if (!(unwrapping_ ? draw_unwrapped(sample) : draw_seen(sample))) return false;
   timers_.shade.stop();
+  if (!mirror_.run(sample, arrays_, surfaces_)) return false;
   timers_.accumulate.start();
   accumulate_.run(*targets_, samples_ == 0);
   timers_.accumulate.stop();
@@ -203,6 +207,7 @@ std::vector<PassTiming> Frame::timings() const {
     passes.push_back({"shadow_maps", shadows});
     shade -= shadows;
   }
+  if (mirror_.ran()) passes.push_back({"mirror", mirror_.milliseconds()});
   if (gather_.ran()) passes.push_back({"gather", gather_.milliseconds()});
   passes.push_back({"shade", shade});
   passes.push_back({"accumulate", timers_.accumulate.milliseconds()});

@@ -14,6 +14,7 @@
 #include "render/passes/accumulate_pass.h"
 #include "render/passes/array_visibility.h"
 #include "render/passes/light_map_pass.h"
+#include "render/passes/mirror_pass.h"
 #include "render/passes/sample.h"
 #include "render/passes/shade_pass.h"
 #include "render/passes/shadow_pass.h"
@@ -120,6 +121,7 @@ class Frame {
   ShadowPass shadows_;
   GatherPass gather_;
   ShadePass shade_;
+  MirrorPass mirror_;
   AccumulatePass accumulate_;
   PassTimers timers_;
   bool timed_ = false;

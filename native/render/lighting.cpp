@@ -44,10 +44,12 @@ SampledLights Lighting::sample(std::uint32_t index, std::uint32_t seed, int worl
     sampled.distant.push_back({drawn.to_light, drawn.irradiance, suns_[i].angle});
   }
   const glm::dvec2 offset = seeded_offset(seed + world_seed);
+  if (world_light_) sampled.world_density = world_directions * world_light_->density();
   for (int i = 0; world_light_ && i < world_directions; ++i) {
     const lights::LightDraw drawn = world_light_->draw(
         r2_point(index * static_cast<std::uint32_t>(world_directions) + static_cast<std::uint32_t>(i), offset));
-    sampled.distant.push_back({drawn.to_light, drawn.irradiance / static_cast<double>(world_directions), world_angle});
+    sampled.distant.push_back({drawn.to_light, drawn.irradiance / static_cast<double>(world_directions), world_angle,
+                               world_directions * world_light_->density(drawn.to_light)});
   }
   for (std::size_t i = 0; i < local_.size(); ++i)
     sampled.randoms.push_back(r4_point(index, seeded_offset(seed + local_seeds + static_cast<std::uint32_t>(i))));

@@ -21,12 +21,14 @@ struct LightDirection {
   glm::dvec3 to_light;    ///< unit length
   glm::dvec3 irradiance;  ///< linear RGB, on a plane that faces it
   double angle;           ///< edge to edge, of what it is drawn from
+  double density = 0.0;   ///< if of the world: of all its directions in the sample, per steradian
 };
 
 /// What one sample sees of the lights: a direction of each that is endlessly far, and a point of each that has a place.
 struct SampledLights {
   std::vector<LightDirection> distant;
   std::vector<glm::dvec2> randoms;  ///< of each light that has a place, in their order
+  double world_density = 0.0;       ///< as lights::WorldLight::density, of all directions of the world together
 };
 
 class Lighting {

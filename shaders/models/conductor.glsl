@@ -2,6 +2,7 @@
 // Not physical: light that meets a second microfacet is lost (up to 69 % for white at roughness 1). Roughness 0 is drawn as
 // GGX_SMALLEST_ALPHA, the narrowest highlight that single precision resolves.
 #include "models/interface.glsl"
+#include "models/mirrored_world.glsl"
 #include "physics/prelude.glsl"
 #include "physics/ggx.glsl"
 
@@ -16,6 +17,11 @@ Outwards look_outwards(SurfacePoint point) {
   return Outwards(mu, mu, 0.0);
 }
 
+#ifdef MIRRORS_WORLD
+float facet_alpha() { return max(material.roughness, GGX_SMALLEST_ALPHA); }
+vec3 facet_reflectance(float mu_h) { return material.reflectance; }
+#endif
+
 vec3 evaluate_model(SurfacePoint point, Outwards outwards, LightSample light) {
   float mu_i = dot(point.normal, light.to_light);
   if (mu_i <= 0.0) return vec3(0.0);
@@ -27,6 +33,9 @@ vec3 evaluate_model(SurfacePoint point, Outwards outwards, LightSample light) {
   float visibility = ggx_visibility_separable(mu_i, mu_o, alpha);
 #else
   float visibility = ggx_visibility_correlated(mu_i, mu_o, alpha);
+#endif
+#ifdef MIRRORS_WORLD
+  light.irradiance *= share_of_light(point, light, mu_o);
 #endif
   return material.reflectance * light.irradiance * (ggx_distribution(point.normal, half_vector, alpha) * visibility * mu_i);
 }

@@ -8,6 +8,7 @@
 //   SPECULAR             what the surface reflects is seen
 //   MASKING_SEPARABLE    masking and shadowing of facets are independent
 #include "models/interface.glsl"
+#include "models/mirrored_world.glsl"
 #include "physics/prelude.glsl"
 #include "physics/dielectric.glsl"
 #include "physics/half_space.glsl"
@@ -42,11 +43,22 @@ Outwards look_outwards(SurfacePoint point) {
 #endif
 }
 
+#ifdef MIRRORS_WORLD
+float facet_alpha() { return max(surface.roughness, GGX_SMALLEST_ALPHA); }
+vec3 facet_reflectance(float mu_h) { return vec3(fresnel_reflectance(mu_h, surface.eta)); }
+#endif
+
 #ifdef SPECULAR
 // Radiance to the viewer that the surface reflects.
 vec3 specular_reflection(SurfacePoint point, Outwards outwards, LightSample light) {
   float mu_i = dot(point.normal, light.to_light);
+#ifdef MIRRORS_WORLD
+  // Facets look for the world themselves: there is no lobe of few directions to be joined.
+  float alpha = light.density > 0.0 ? facet_alpha() : dielectric_alpha(surface.roughness, light.angle);
+  light.irradiance *= share_of_light(point, light, outwards.mu);
+#else
   float alpha = dielectric_alpha(surface.roughness, light.angle);
+#endif
   if (mu_i <= 0.0 || alpha <= 0.0) return vec3(0.0);
 #ifdef MASKING_SEPARABLE
   const bool correlated = false;

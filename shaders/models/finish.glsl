@@ -9,6 +9,7 @@
 //   RETRO_REFLECTIVE    the diffuse share is Burley's
 //   EMITS               it sends out light
 #include "models/interface.glsl"
+#include "models/mirrored_world.glsl"
 #include "physics/prelude.glsl"
 #include "physics/ggx.glsl"
 #include "physics/fresnel.glsl"
@@ -152,6 +153,24 @@ Outwards look_outwards(SurfacePoint point) {
 }
 
 #if defined(METALLIC) || defined(COAT)
+float facet_alpha() { return point_alpha; }
+
+vec3 facet_reflectance(float mu_h) {
+  vec3 straight = vec3(0.0);
+  float grazing = 0.0;
+#ifdef METALLIC
+  straight += point_metallicity * point_reflectance;
+#endif
+#ifdef COAT
+  straight += (1.0 - point_metallicity) * material.coat;
+  // How far from straight on to grazing a dielectric of this reflectance is: Cycles' mixing of colours by Fresnel's formula.
+  float root = sqrt(min(material.coat, 0.99));
+  float eta = (1.0 + root) / (1.0 - root);
+  grazing = (fresnel_reflectance(mu_h, eta) - material.coat) / (1.0 - min(material.coat, 0.99));
+#endif
+  return straight + grazing * (1.0 - straight);
+}
+
 float facets(SurfacePoint point, vec3 half_vector, float mu_i, float mu_o) {
 #ifdef MASKING_SEPARABLE
   float visibility = ggx_visibility_separable(mu_i, mu_o, point_alpha);
@@ -196,19 +215,11 @@ vec3 evaluate_model(SurfacePoint point, Outwards outwards, LightSample light) {
   diffuse *= lit_share_of_bump(unbent_normal, point.normal, light.to_light);
 #endif
 #if defined(METALLIC) || defined(COAT)
-  vec3 straight = vec3(0.0);
-  float grazing = 0.0;
-#ifdef METALLIC
-  straight += point_metallicity * point_reflectance;
+  float of_facets = facets(point, half_vector, mu_i, mu_o);
+#ifdef MIRRORS_WORLD
+  of_facets *= share_of_light(point, light, mu_o);
 #endif
-#ifdef COAT
-  straight += (1.0 - point_metallicity) * material.coat;
-  // How far from straight on to grazing a dielectric of this reflectance is: Cycles' mixing of colours by Fresnel's formula.
-  float root = sqrt(min(material.coat, 0.99));
-  float eta = (1.0 + root) / (1.0 - root);
-  grazing = (fresnel_reflectance(mu_h, eta) - material.coat) / (1.0 - min(material.coat, 0.99));
-#endif
-  diffuse += (straight + grazing * (1.0 - straight)) * facets(point, half_vector, mu_i, mu_o);
+  diffuse += facet_reflectance(mu_h) * of_facets;
 #endif
   return diffuse * light.irradiance * mu_i;
 }

@@ -14,6 +14,7 @@ struct LightSample {
   int index;        // which light this is
   float angle;      // of the disc that to_light is drawn from, edge to edge, in radians
   int map;          // its light map
+  float density;    // of the directions drawn of it, all together, per steradian; 0 if no facet looks for it by itself
 };
 
 // What the point and its viewer make of it, before any light.

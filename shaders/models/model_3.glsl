@@ -339,7 +339,7 @@ vec3 evaluate_model(SurfacePoint point, Outwards outwards, LightSample light) {
 #else
   float lobe = diffused_lobe(fit);
   Spectrum flowing = flowing_lobe(fit, point, light, flow_at(fit, table));
-  LightSample unit_light = LightSample(light.to_light, vec3(1.0), light.index, light.angle, light.map);
+  LightSample unit_light = LightSample(light.to_light, vec3(1.0), light.index, light.angle, light.map, light.density);
   vec3 sphere = corrected(fit.visible * half_space_light(point, outwards, unit_light).multiple, table.rgb, vec3(flowing));
 #endif
   float tilt = sqrt(max((1.0 - fit.cosine) * (1.0 + fit.cosine), 0.0));

@@ -11,9 +11,7 @@
 #include "physics/prelude.glsl"
 #include "physics/elementary.glsl"
 #include "physics/fresnel.glsl"
-#if defined(CLEAR) && defined(WORLD)
 #include "scene/world.glsl"
-#endif
 
 struct Stored {
   vec3 x_axis;  // of the body, in the prototype's

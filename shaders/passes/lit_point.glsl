@@ -7,12 +7,14 @@
 //   CLEAR, WORLD         the model knows what crosses the grain unscattered, and there is a world to be seen through it
 //   WHOLE_GRAIN          the model knows what light does in all of the grain, but not where it enters
 //   EMITS                the surface sends out light of its own
+//   MIRRORS_WORLD        the surface has facets, and there is a world; where anything may stand in the way, it is for a later pass to add
 
 #include "physics/prelude.glsl"
 #include "render/bindings.glsl"
 #include "render/distant_light.glsl"
 #include "lights/light.glsl"
 #include "models/interface.glsl"
+#include "models/mirrored_world.glsl"
 #include "scene/grain.glsl"
 #include "scene/shadows.glsl"
 #include "models/entries.glsl"
@@ -106,7 +108,7 @@ vec3 locally_lit(SurfacePoint point, Outwards outwards) {
 #endif
     LightDraw drawn = draw_light(local_lights[i], place, random);
     sum +=
-        lit_by(point, outwards, LightSample(drawn.to_light, drawn.irradiance, distant_light_count + i, light_angle(local_lights[i], drawn.reach), i));
+        lit_by(point, outwards, LightSample(drawn.to_light, drawn.irradiance, distant_light_count + i, light_angle(local_lights[i], drawn.reach), i, 0.0));
   }
   return sum;
 }
@@ -114,6 +116,10 @@ vec3 locally_lit(SurfacePoint point, Outwards outwards) {
 
 #ifdef EMITS
 vec3 emitted();
+#endif
+
+#if defined(MIRRORS_WORLD) && defined(SHADOWS)
+Mirrored mirrored;
 #endif
 
 vec3 lit_point(SurfacePoint point) {
@@ -136,11 +142,18 @@ vec3 lit_point(SurfacePoint point) {
 #if defined(CLEAR) && defined(WORLD)
   sum += crossing_light(point, outwards);
 #endif
+#ifdef MIRRORS_WORLD
+#ifdef SHADOWS
+  mirrored = mirrored_world(point, outwards.mu);
+#else
+  sum += mirrored_world(point, outwards.mu).radiance;
+#endif
+#endif
   if (light_count == 0) return sum;
   // Software renderers run a loop's body once more, masked, to find that a condition at its head has failed: it is at the foot.
   int i = 0;
   do {
-    sum += lit_by(point, outwards, LightSample(lights[i].to_light.xyz, lights[i].irradiance.rgb, i, lights[i].to_light.w, i));
+    sum += lit_by(point, outwards, LightSample(lights[i].to_light.xyz, lights[i].irradiance.rgb, i, lights[i].to_light.w, i, lights[i].irradiance.w));
   } while (++i < light_count);
   return sum;
 }

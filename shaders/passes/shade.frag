@@ -8,7 +8,11 @@ uniform sampler2D surface_normal;    // xyz: of unit length; w: number of the in
 uniform sampler2D surface_coordinates;  // xy: UV; zw: a packed tangent
 #endif
 
-out vec4 radiance;
+layout(location = 0) out vec4 radiance;
+#if defined(MIRRORS_WORLD) && defined(SHADOWS)
+layout(location = 1) out vec4 mirrored_radiance;  // of the world, if nothing stands in the way
+layout(location = 2) out vec4 mirrored_from;      // w: 1 where there is any
+#endif
 
 void main() {
   vec4 on_triangle = texelFetch(surface_position, ivec2(gl_FragCoord.xy), 0);
@@ -42,4 +46,9 @@ void main() {
 #endif
 
   radiance = vec4(lit_point(point), 1.0);
+#if defined(MIRRORS_WORLD) && defined(SHADOWS)
+  bool any_mirrored = max(mirrored.radiance.r, max(mirrored.radiance.g, mirrored.radiance.b)) > 0.0;
+  mirrored_radiance = vec4(mirrored.radiance, 0.0);
+  mirrored_from = vec4(mirrored.from, any_mirrored ? 1.0 : 0.0);
+#endif
 }

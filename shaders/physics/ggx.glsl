@@ -22,7 +22,27 @@ pure real ggx_visibility_correlated(real mu_i, real mu_o, real alpha) {
   return 0.5 / max(mu_i * ggx_smith_root(mu_o, alpha) + mu_o * ggx_smith_root(mu_i, alpha), 1e-18);
 }
 
+// Of directions mirrored in the facets that a viewer at the cosine mu_o sees, per steradian: G1(o) D(h) / (4 mu_o) (Heitz, "Sampling the GGX
+// Distribution of Visible Normals", JCGT 2018, equations 3 and 17).
+pure real ggx_mirrored_density(real distribution, real mu_o, real alpha) { return 0.5 * distribution / (mu_o + ggx_smith_root(mu_o, alpha)); }
+
 // G1(i) G1(o) / (4 mu_i mu_o), masking and shadowing taken as independent (Walter et al. 2007 eq. 23).
 pure real ggx_visibility_separable(real mu_i, real mu_o, real alpha) {
   return 1.0 / ((mu_i + ggx_smith_root(mu_i, alpha)) * (mu_o + ggx_smith_root(mu_o, alpha)));
+}
+
+// The normal of a facet that a viewer sees, drawn by how much of what is seen such facets are; `random` is in [0, 1)^2 (Dupuy and Benyoub,
+// "Sampling Visible GGX Normals with Spherical Caps", 2023, listing 3).
+pure real3 ggx_visible_facet(real3 normal, real3 to_viewer, real alpha, real2 random) {
+  real side = normal.z >= 0.0 ? 1.0 : -1.0;
+  real a = -1.0 / (side + normal.z);
+  real b = normal.x * normal.y * a;
+  real3 x = real3(1.0 + side * normal.x * normal.x * a, side * b, -side * normal.x);
+  real3 y = real3(b, side + normal.y * normal.y * a, -normal.y);
+  real3 wide = normalize(real3(alpha * dot(x, to_viewer), alpha * dot(y, to_viewer), dot(normal, to_viewer)));
+  real azimuth = 2.0 * PI * random.x;
+  real height = (1.0 - random.y) * (1.0 + wide.z) - wide.z;
+  real across = sqrt(clamp((1.0 - height) * (1.0 + height), 0.0, 1.0));
+  real3 facet = real3(across * cos(azimuth), across * sin(azimuth), height) + wide;
+  return normalize(alpha * facet.x * x + alpha * facet.y * y + max(facet.z, 1e-7) * normal);
 }

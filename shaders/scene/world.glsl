@@ -10,3 +10,13 @@ vec3 seen_of_world(vec3 direction) {
   vec3 colour = has_image != 0 ? textureLod(world_image, equirectangular(world_to_image * direction), 0.0).rgb : vec3(1.0);
   return world_radiance * colour;
 }
+
+// Of the world's directions in a sample, by how bright it is, per steradian: the image's luminance times this, or without an image this.
+uniform float world_density;
+
+float drawn_density_of_world(vec3 direction) {
+  if (has_image == 0) return world_density;
+  vec2 size = vec2(textureSize(world_image, 0));
+  ivec2 texel = ivec2(clamp(equirectangular(world_to_image * direction) * size, vec2(0.0), size - 1.0));
+  return world_density * dot(world_radiance * texelFetch(world_image, texel, 0).rgb, vec3(0.2126, 0.7152, 0.0722));
+}

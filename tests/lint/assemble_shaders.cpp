@@ -91,13 +91,16 @@ void write_shading(Writer& writer) {
                                                           {"LIGHTS_AT_PLACE"},
                                                           {"INSTANCED", "SHADOWS", "LIGHTS_AT_PLACE"},
                                                           clear};
+  const std::vector<std::vector<std::string>> mirrors = {{"MIRRORS_WORLD"}, {"MIRRORS_WORLD", "SHADOWS"}};
   std::set<std::string> written;
   for (const scene::Material& material : every_choice()) {
     const std::string model(scene::model_names[static_cast<std::size_t>(material.model)]);
     std::vector<std::string> defines;
+    bool facets = false;
     try {
       mesograin::models::MaterialInputs inputs = mesograin::models::material_inputs(material);
       defines = std::move(inputs.defines);
+      facets = inputs.facets;
       if (inputs.light_maps) defines.emplace_back("LIGHT_MAPS");
       if (scene::traits_of(material.model).mesh) defines.emplace_back("WHOLE_GRAIN");
     } catch (const mesograin::Error&) {
@@ -107,6 +110,13 @@ void write_shading(Writer& writer) {
     if (!written.insert(name).second) continue;
     writer.write(name, ShaderSource({"passes/full_screen.vert"}, {}),
                  ShaderSource({"passes/shade.frag", "models/" + model + ".glsl"}, defines));
+    if (facets && written.insert(model + " mirrors").second)
+      for (const std::vector<std::string>& shading : mirrors) {
+        std::vector<std::string> all = defines;
+        all.insert(all.end(), shading.begin(), shading.end());
+        writer.write(fmt::format("{}+{}", name, fmt::join(shading, "+")), ShaderSource({"passes/full_screen.vert"}, {}),
+                     ShaderSource({"passes/shade.frag", "models/" + model + ".glsl"}, all));
+      }
     // What else a program is compiled for asks the same of a model, so one of its choices stands for all of them.
     if (!written.insert(model).second) continue;
     for (const std::vector<std::string>& shading : shadings) {
@@ -145,13 +155,15 @@ void write_finishes(Writer& writer) {
       material.model = scene::Model::lambert;
       material.masking = masking;
       material.finish = finishes[i];
-      std::vector<std::string> defines = mesograin::models::material_inputs(material).defines;
+      const mesograin::models::MaterialInputs inputs = mesograin::models::material_inputs(material);
+      std::vector<std::string> defines = inputs.defines;
       const std::string name = fmt::format("finish_{}+{}", i, fmt::join(defines, "+"));
       for (const std::string pass : {"shade", "bake"})
         writer.write(fmt::format("{}+{}", pass, name),
                      ShaderSource({pass == "bake" ? "passes/bake.vert" : "passes/full_screen.vert"}, {}),
                      ShaderSource({"passes/" + pass + ".frag", "models/finish.glsl"}, defines));
       defines.insert(defines.end(), {"INSTANCED", "SHADOWS", "EXCHANGE", "LIGHTS_AT_PLACE"});
+      if (inputs.facets) defines.emplace_back("MIRRORS_WORLD");
       writer.write("shade+instanced+" + name, ShaderSource({"passes/full_screen.vert"}, {}),
                    ShaderSource({"passes/shade.frag", "models/finish.glsl"}, defines));
     }
@@ -164,6 +176,8 @@ void write_finishes(Writer& writer) {
 void write_passes(Writer& writer) {
   for (const std::string pass : {"accumulate", "background", "resolve"})
     writer.write(pass, ShaderSource({"passes/full_screen.vert"}, {}), ShaderSource({"passes/" + pass + ".frag"}, {}));
+  writer.write("mirror", ShaderSource({"passes/full_screen.vert"}, {}),
+               ShaderSource({"passes/mirror.frag"}, {"CAST_SHADOWS"}));
   writer.write("count", ShaderSource({"passes/bake.vert"}, {}), ShaderSource({"passes/count.frag"}, {}));
   for (const std::string pass : {"surface", "shadow"})
     for (const std::string instanced : {"", "instanced_"})

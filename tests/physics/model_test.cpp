@@ -98,7 +98,7 @@ class Evaluator {
         "  if (index >= radiance.length()) return;\n"
         "  SurfacePoint point = SurfacePoint(vec3(0.0), normal, directions[2u * index + 1u].xyz, vec3(0.0));\n"
         "  radiance[index] = vec4(evaluate_model(point, look_outwards(point), LightSample(directions[2u * index].xyz, "
-        "vec3(1.0), 0, 0.0, 0)), "
+        "vec3(1.0), 0, 0.0, 0, 0.0)), "
         "1.0);\n"
         "}\n";
     return programs_.emplace(key, gl::Program(key, gl::ShaderSource::from_text(key + ".comp", text, defines)))

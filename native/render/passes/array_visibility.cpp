@@ -30,8 +30,16 @@ bool ArrayVisibility::casts(const Content& content) const {
          (!gl::ContextThread::instance().device_info().hardware && casting::available());
 }
 
+Mirrors ArrayVisibility::mirrors(const Content& content) const {
+  if (!content.facets()) return Mirrors::none;
+  if (!content.shadows()) return Mirrors::unhindered;
+  // A tree of arrays that the device draws is not worth its memory.
+  return casts(content) || (content.instances() == nullptr && casting::available()) ? Mirrors::hindered : Mirrors::none;
+}
+
 void ArrayVisibility::prepare(const Sample& sample) {
-  if (sample.cast && !tree_) tree_ = std::make_unique<CastContent>(sample.cache, sample.content);
+  if ((sample.cast || sample.mirrors == Mirrors::hindered) && !tree_)
+    tree_ = std::make_unique<CastContent>(sample.cache, sample.content);
   const Instances* instances = sample.content.instances();
   if (instances == nullptr || selection_) return;
   // Light maps are as fine as the largest grain in the picture.

@@ -27,10 +27,13 @@ class ArrayVisibility {
   /// Whether rays are cast for this content.
   bool casts(const Content& content) const;
 
+  /// What surfaces of facets can do to find what of the world reaches them.
+  Mirrors mirrors(const Content& content) const;
+
   /// Makes ready what the passes of this sample need of the arrays.
   void prepare(const Sample& sample);
 
-  /// For a sample that is cast.
+  /// For a sample that casts rays.
   const CastContent& tree() const { return *tree_; }
 
   /// What the camera may see; null without arrays, or where rays find it and no light map must know how near it is.

@@ -25,6 +25,13 @@ struct Unwrapping {
   ViewFrom view_from;
 };
 
+/// Whether surfaces of facets look for the world themselves.
+enum class Mirrors {
+  none,
+  unhindered,  ///< nothing can stand in the way
+  hindered,    ///< rays find what does
+};
+
 struct Sample {
   DeviceCache& cache;
   Content& content;
@@ -39,6 +46,7 @@ struct Sample {
   glm::vec2 jitter;  ///< of the picture, in clip space
   SampledLights lights;
   bool cast;  ///< rays find what is seen of arrays
+  Mirrors mirrors;
   const GoOn& go_on;
 
   /// The camera from `origin` and 1; for a parallel projection the direction towards it and 0.

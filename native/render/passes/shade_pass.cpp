@@ -58,6 +58,7 @@ void ShadePass::clear(const Sample& sample) {
     return;
   }
   sample.targets.shade.clear_colour();
+  if (sample.mirrors == Mirrors::hindered) sample.targets.mirror->shade.clear_colour();
   if (sample.lighting.world().seen) draw_background(sample);
 }
 
@@ -74,7 +75,6 @@ void ShadePass::draw_background(const Sample& sample) {
 
 void ShadePass::shade_seen(const Sample& sample, const ShadowPass& shadows, const GatherPass& gathered,
                            std::size_t first) {
-  sample.targets.shade.bind();
   glDisable(GL_BLEND);
   glEnable(GL_STENCIL_TEST);
   glStencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
@@ -85,9 +85,10 @@ void ShadePass::shade_seen(const Sample& sample, const ShadowPass& shadows, cons
   const std::vector<Draw>& draws = sample.content.draws();
   for (std::size_t i = first; i < std::min(first + most_in_stencil, groups + draws.size()); ++i) {
     const bool instanced = i < groups;
-    const gl::Program& program =
-        prepare(sample, shadows, gathered.ran(),
-                instanced ? *instances->groups()[i].material : *draws[i - groups].material, instanced);
+    const DeviceMaterial& material = instanced ? *instances->groups()[i].material : *draws[i - groups].material;
+    const gl::Program& program = prepare(sample, shadows, gathered.ran(), material, instanced);
+    const bool mirrors = sample.mirrors == Mirrors::hindered && material.facets();
+    (mirrors ? sample.targets.mirror->shade : sample.targets.shade).bind();
     gathered.bind(program);
     if (instanced) {
       set_group(sample, program, instances->groups()[i]);
@@ -127,12 +128,20 @@ void ShadePass::shade_unwrapped(const Sample& sample, const ShadowPass& shadows)
 const gl::Program& ShadePass::prepare(const Sample& sample, const ShadowPass& shadows, bool gathered,
                                       const DeviceMaterial& material, bool instanced) {
   const bool world = sample.lighting.world().shines();
-  const gl::Program& program = sample.cache.shading(
-      material, {sample.unwrapping != nullptr, instanced, shadows.kind(sample.content), sample.exchange.any(), gathered,
-                 world, sample.lights_at_place(material, instanced)});
+  const gl::Program& program =
+      sample.cache.shading(material, {.unwrapped = sample.unwrapping != nullptr,
+                                      .instanced = instanced,
+                                      .shadows = shadows.kind(sample.content),
+                                      .exchange = sample.exchange.any(),
+                                      .gathered = gathered,
+                                      .world = world,
+                                      .mirrors_world = sample.mirrors != Mirrors::none,
+                                      .lights_at_place = sample.lights_at_place(material, instanced)});
   material.bind(program);
-  // Only what lets it through shows the world itself.
-  if (world && program.declares("world_radiance")) set_world(program, sample.lighting);
+  if (world) {
+    set_world(program, sample.lighting);
+    program.set("world_density", static_cast<float>(sample.lights.world_density));
+  }
   program.offer("sample_index", static_cast<int>(sample.index));
   program.offer("taps", taps_);
   shadows.bind(program);
@@ -176,7 +185,7 @@ void ShadePass::set_lights(const Sample& sample, const gl::Program& program,
   std::vector<layout::DistantLight> device;
   device.reserve(directions.size());
   for (const LightDirection& light : directions)
-    device.push_back({glm::vec4(light.to_light, light.angle), glm::vec4(light.irradiance, 0.0)});
+    device.push_back({glm::vec4(light.to_light, light.angle), glm::vec4(light.irradiance, light.density)});
   directions_.emplace(device);
   directions_->bind_storage(layout::DISTANT_LIGHTS_BINDING);
   program.set("light_count", static_cast<int>(device.size()));

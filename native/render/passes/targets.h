@@ -8,6 +8,19 @@
 
 namespace mesograin::render {
 
+/// Where surfaces of facets draw what they mirror of the world if nothing stands in the way.
+struct MirrorTargets {
+  /// Beside the colour and the depth, which must outlive it.
+  MirrorTargets(const gl::Texture& colour, const gl::Texture& depth)
+      : radiance(GL_RGBA32F, colour.width(), colour.height()),
+        from(GL_RGBA32F, colour.width(), colour.height()),
+        shade({&colour, &radiance, &from}, &depth) {}
+
+  gl::Texture radiance;
+  gl::Texture from;  ///< w: 1 where there is any
+  gl::Framebuffer shade;
+};
+
 /// The passes of one sample share the depth and its stencil.
 struct Targets {
   /// `textured`: with where on their pictures surfaces are.
@@ -32,6 +45,7 @@ struct Targets {
   gl::Framebuffer surfaces;
   gl::Framebuffer shade;
   gl::Framebuffer accumulate;
+  std::optional<MirrorTargets> mirror;  ///< of a sample that has Mirrors::hindered
 };
 
 }  // namespace mesograin::render
