@@ -31,7 +31,7 @@ struct Mirrored {
 
 Mirrored mirrored_world(SurfacePoint point, float mu_o) {
   float alpha = facet_alpha();
-  vec2 random = low_discrepancy_beside_pixel(uint(sample_index), pcg4d(uvec4(uvec2(gl_FragCoord.xy), 3u, 0u)).xy);
+  vec2 random = low_discrepancy_beside_pixel(uint(sample_index), pcg4d(uvec4(uvec2(gl_FragCoord.xy), 4u, 0u)).xy);
   vec3 facet = ggx_visible_facet(point.normal, point.to_viewer, alpha, random);
   float mu_h = clamp(dot(facet, point.to_viewer), 0.0, 1.0);
   Mirrored mirrored = Mirrored(vec3(0.0), normalize(2.0 * mu_h * facet - point.to_viewer));
