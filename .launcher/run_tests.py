@@ -64,7 +64,7 @@ def suites_of(part, options):
     if part == "lint":
         return [pytest_suite("lint", options.python, SOURCE / "tests/lint")]
     if part == "physics":
-        return [suite for room in ("physics", "transport", "referee")
+        return [suite for room in ("physics", "transport", "heap", "referee")
                 for suite in google_tests(part, build / "tests" / room, {})]
     if part == "native":
         strict = {"ASAN_OPTIONS": "detect_leaks=1:detect_stack_use_after_return=1",

@@ -107,8 +107,8 @@ vec3 locally_lit(SurfacePoint point, Outwards outwards) {
     vec2 random = low_discrepancy_beside_pixel(uint(sample_index), pcg4d(uvec4(uvec2(gl_FragCoord.xy), 2u, uint(i))).xy);
 #endif
     LightDraw drawn = draw_light(local_lights[i], place, random);
-    sum +=
-        lit_by(point, outwards, LightSample(drawn.to_light, drawn.irradiance, distant_light_count + i, light_angle(local_lights[i], drawn.reach), i, 0.0));
+    sum += lit_by(point, outwards,
+                  LightSample(drawn.to_light, drawn.irradiance, distant_light_count + i, light_angle(local_lights[i], drawn.reach), i, 0.0));
   }
   return sum;
 }

@@ -27,6 +27,10 @@ def picture(render):
     return do
 
 
+def blocks(pixels):
+    return pixels.reshape(9, 4, 16, 4, 3).mean(axis=(1, 3))
+
+
 def test_a_cube_becomes_sugar(steps, picture):
     steps.begin()
     plain = picture()
@@ -54,6 +58,8 @@ def test_sand_lights_sand(steps, picture):
     alone = picture()
     steps.send_light_between_grains()
     together = picture()
-    assert (together >= 0.98 * alone).all()
+    # Single pixels differ: shadows are asked for where light comes in, which is known of heaps alone.
+    darker = blocks(together) < blocks(alone)
+    assert not darker.any()
     heap = alone[10:26, 20:44]
     assert together[10:26, 20:44].mean() > 1.1 * heap.mean()
