@@ -74,7 +74,7 @@ def test_presets_set_what_the_table_says(row):
     assert tuple(grain.sigma_s) == pytest.approx(row.sigma_s_reduced)
     assert tuple(grain.sigma_a) == pytest.approx(row.sigma_a)
     # The table's scattering is reduced, so it is the grain's only without anisotropy.
-    assert (grain.g, grain.scale, grain.model) == (0.0, 1.0, "model_2")
+    assert (grain.g, grain.scale, grain.model) == (0.0, 1.0, "auto")
     assert grain.eta == pytest.approx(1.5 if row.name == "Marble" else 1.3)
 
 
