@@ -49,11 +49,13 @@ Volume sources_volume(const StoredTransport& stored) {
   return volume;
 }
 
-// The octahedral maps of four terms a texel, one below the other, each with a frame of the texels across its edges.
+// Octahedral maps, one below the other, each with a frame of the texels across its edges: four terms a texel (a grey
+// medium) or the three channels of a term.
 Table lobes_table(const StoredTransport& stored) {
   constexpr int side = transport::octahedron_side;
   constexpr int framed = side + 2;
-  const int blocks = stored.terms / terms_a_texel;
+  const bool grey = stored.channels == 1;
+  const int blocks = grey ? stored.terms / terms_a_texel : stored.terms;
   Table table{framed, framed * blocks, {}};
   for (int block = 0; block < blocks; ++block)
     for (int y = -1; y <= side; ++y)
@@ -68,10 +70,11 @@ Table lobes_table(const StoredTransport& stored) {
           v = v < 0 ? 0 : side - 1;
           u = side - 1 - u;
         }
-        glm::vec4 texel;
-        for (int term = 0; term < terms_a_texel; ++term) {
-          const int index = ((block * terms_a_texel + term) * side + v) * side + u;
-          texel[term] = stored.lobes[static_cast<std::size_t>(index)];
+        glm::vec4 texel(0.0F);
+        for (int component = 0; component < (grey ? terms_a_texel : 3); ++component) {
+          const int index = grey ? ((block * terms_a_texel + component) * side + v) * side + u
+                                 : ((block * side + v) * side + u) * 3 + component;
+          texel[component] = stored.lobes[static_cast<std::size_t>(index)];
         }
         table.texels.push_back(texel);
       }

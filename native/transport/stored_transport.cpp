@@ -113,7 +113,7 @@ StoredTransport compute_transport(Walks& walks, const StoredMedium& medium, cons
   const int channels = stored.channels;
   stored.sources.resize(static_cast<std::size_t>(kept * channels) * stored.nodes(), 0.0F);
   if (medium.albedo == glm::dvec3(0.0)) {  // clear: nothing is scattered
-    stored.lobes.resize(static_cast<std::size_t>(kept) * octahedron_texels, 0.0F);
+    stored.lobes.resize(static_cast<std::size_t>(kept * channels) * octahedron_texels, 0.0F);
     return stored;
   }
   std::vector<double> extinctions;
@@ -128,43 +128,37 @@ StoredTransport compute_transport(Walks& walks, const StoredMedium& medium, cons
   exchanges.reserve(extinctions.size());
   for (const double sigma_t : extinctions) exchanges.push_back(walks.exchange(sigma_t));
 
-  // One set of lobes for all channels.
+  // Channels have lobes of their own: light in a thick one is sharper in its direction than in a thin one.
   const auto nodes = static_cast<Eigen::Index>(grid.places().size());
-  Lights all(nodes * channels, octahedron_texels);
+  stored.lobes.resize(static_cast<std::size_t>(kept * channels) * octahedron_texels);
   for (int channel = 0; channel < channels; ++channel) {
     const std::size_t e = extinction_of[static_cast<std::size_t>(channel)];
-    Lights light = walks.unscattered(extinctions[e]);
-    calibrate(light, exchanges[e], medium.eta);
-    all.middleRows(channel * nodes, nodes) = light;
-  }
-  Terms terms = principal_terms(all, solved_terms);
-
-  Eigen::VectorXf weights(nodes * channels);
-  for (int channel = 0; channel < channels; ++channel) {
-    const std::size_t e = extinction_of[static_cast<std::size_t>(channel)];
-    const Lights unscattered = terms.amounts.middleRows(channel * nodes, nodes);
+    Lights unscattered = walks.unscattered(extinctions[e]);
+    calibrate(unscattered, exchanges[e], medium.eta);
+    Terms terms = principal_terms(unscattered, solved_terms);
     const Lights light =
-        solve_multiple(exchanges[e], medium.albedo[channel], unscattered,
+        solve_multiple(exchanges[e], medium.albedo[channel], terms.amounts,
                        part_of(effort, 0.8 + 0.2 * channel / channels, 0.8 + 0.2 * (channel + 1) / channels));
-    terms.amounts.middleRows(channel * nodes, nodes) = static_cast<float>(medium.albedo[channel]) * light;
+    terms.amounts = static_cast<float>(medium.albedo[channel]) * light;
+    Eigen::VectorXf weights(nodes);
     for (Eigen::Index node = 0; node < nodes; ++node) {
       // What is deep is seen little.
       const float depth = grid.depths()[static_cast<std::size_t>(node)] * static_cast<float>(extinctions[e]);
-      weights[channel * nodes + node] = 0.05F + std::exp(-0.5F * depth);
+      weights[node] = 0.05F + std::exp(-0.5F * depth);
+    }
+    terms = fewer_terms(terms, weights, kept);
+    const auto index = [&](std::size_t count, int term, std::size_t of) {
+      return (static_cast<std::size_t>(term) * count + of) * static_cast<std::size_t>(channels) +
+             static_cast<std::size_t>(channel);
+    };
+    for (int term = 0; term < kept; ++term) {
+      for (std::size_t node = 0; node < stored.nodes(); ++node)
+        if (grid.used()[node] >= 0)
+          stored.sources[index(stored.nodes(), term, node)] = terms.amounts(grid.used()[node], term);
+      for (std::size_t texel = 0; texel < octahedron_texels; ++texel)
+        stored.lobes[index(octahedron_texels, term, texel)] = terms.lobes(term, static_cast<Eigen::Index>(texel));
     }
   }
-  terms = fewer_terms(terms, weights, kept);
-
-  for (int term = 0; term < kept; ++term)
-    for (std::size_t node = 0; node < stored.nodes(); ++node) {
-      const int used = grid.used()[node];
-      if (used < 0) continue;
-      for (int channel = 0; channel < channels; ++channel)
-        stored.sources[(static_cast<std::size_t>(term) * stored.nodes() + node) * static_cast<std::size_t>(channels) +
-                       static_cast<std::size_t>(channel)] = terms.amounts(channel * nodes + used, term);
-    }
-  for (int term = 0; term < kept; ++term)
-    for (Eigen::Index texel = 0; texel < octahedron_texels; ++texel) stored.lobes.push_back(terms.lobes(term, texel));
   return stored;
 }
 

@@ -35,7 +35,7 @@ struct StoredTransport {
   int channels = 3;              ///< 1 for a grey medium
   std::vector<float> distances;  ///< from the surface at every node, negative inside; x runs fastest
   std::vector<float> sources;  ///< [term][node][channel]: radiance that a mean free path would send out, per irradiance
-  std::vector<float> lobes;    ///< [term][texel of the octahedral map that the light comes from]
+  std::vector<float> lobes;    ///< [term][texel of the octahedral map that the light comes from][channel]
 
   std::size_t nodes() const { return distances.size(); }
 };

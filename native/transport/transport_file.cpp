@@ -12,7 +12,7 @@
 namespace mesograin::transport {
 namespace {
 
-constexpr std::string_view title = "mesograin transport 2\n";
+constexpr std::string_view title = "mesograin transport 3\n";
 constexpr std::size_t name_length = 32;
 
 template <typename Value>
@@ -109,7 +109,7 @@ std::optional<StoredTransport> from_bytes(std::string_view bytes, std::string_vi
   stored.distances = reader.take<float>(nodes);
   for (const std::uint16_t half : reader.take<std::uint16_t>(nodes * terms * static_cast<std::size_t>(stored.channels)))
     stored.sources.push_back(glm::unpackHalf1x16(half));
-  stored.lobes = reader.take<float>(terms * octahedron_texels);
+  stored.lobes = reader.take<float>(terms * static_cast<std::size_t>(stored.channels) * octahedron_texels);
   if (reader.failed() || !reader.done()) return std::nullopt;
   return stored;
 }

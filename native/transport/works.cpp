@@ -20,9 +20,9 @@ constexpr Quality coarse{.nodes = 1500, .light_across = 10, .way_across = 8};
 
 // Half a megabyte of the device's memory for each prototype. The light in thick grains changes within short ways, but
 // hardly anything of it that is sharp in its direction is seen.
-Quality of_thin(const StoredMedium& medium) { return {.nodes = medium.grey() ? 6600 : 5000}; }
+Quality of_thin(const StoredMedium& medium) { return {.nodes = medium.grey() ? 6600 : 3000}; }
 
-Quality of_thick(const StoredMedium& medium) { return {.nodes = medium.grey() ? 10500 : 8000, .many_terms = false}; }
+Quality of_thick(const StoredMedium& medium) { return {.nodes = medium.grey() ? 10500 : 5500, .many_terms = false}; }
 
 double densest(const StoredMedium& medium) { return std::max({medium.sigma_t.r, medium.sigma_t.g, medium.sigma_t.b}); }
 

@@ -48,13 +48,17 @@ const int TERMS = 8;
 #endif
 
 // Terms of the source function: of the place, blocks of nodes behind one another; of the light's direction, octahedral maps with frames below
-// one another, four terms a texel.
+// one another, four terms a texel or three channels.
 uniform sampler3D sources;
 uniform sampler2D lobes;
 uniform sampler3D distances;  // from the surface, negative inside
 
+#ifdef GREY
 const int LOBE_TEXELS = TERMS / 4;
-vec4 lobe[LOBE_TEXELS];
+#else
+const int LOBE_TEXELS = TERMS;
+#endif
+vec4 lobe[LOBE_TEXELS];  // four terms of a grey medium, three channels of one term
 
 void look_up_lobes(vec3 to_light) {
   vec2 square = to_light.xy / (abs(to_light.x) + abs(to_light.y) + abs(to_light.z));
@@ -83,19 +87,14 @@ vec3 outwards_at(vec3 place) {
 Spectrum source_at(vec3 place) {
   vec3 size = stored.last_node + 1.0;
   vec3 node = to_nodes(place) + 0.5;
-#ifdef GREY
-  const int blocks = LOBE_TEXELS;
-#else
-  const int blocks = TERMS;
-#endif
-  vec3 scale = 1.0 / vec3(size.xy, size.z * float(blocks));
+  vec3 scale = 1.0 / vec3(size.xy, size.z * float(LOBE_TEXELS));
   Spectrum sum = Spectrum(0.0);
-  for (int block = 0; block < blocks; ++block) {
+  for (int block = 0; block < LOBE_TEXELS; ++block) {
     vec4 texel = texture(sources, vec3(node.xy, node.z + float(block) * size.z) * scale);
 #ifdef GREY
     sum += dot(texel, lobe[block]);
 #else
-    sum += texel.rgb * lobe[block / 4][block % 4];
+    sum += texel.rgb * lobe[block].rgb;
 #endif
   }
   return max(sum, Spectrum(0.0));

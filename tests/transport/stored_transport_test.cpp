@@ -71,7 +71,7 @@ TEST(StoredTransport, KeepsItsChannelsApart) {
     double sum = 0.0;
     for (std::size_t node = 0; node < stored.nodes(); ++node)
       for (int term = 0; term < stored.terms; ++term)
-        sum += lobes[term * octahedron_texels + 5] *
+        sum += lobes[(term * octahedron_texels + 5) * stored.channels + stored.channels / 2] *
                stored.sources[(term * stored.nodes() + node) * static_cast<std::size_t>(stored.channels) +
                               static_cast<std::size_t>(stored.channels / 2)];
     return sum;
