@@ -164,7 +164,13 @@ float largest(Spectrum value) {
 
 // What leaves the grain is followed until so little of it is left.
 const float LEAST_PASSED = 0.004;
+#ifdef CLEAR
+const int MOST_WAYS = 6;
+#else
 const int MOST_WAYS = 4;
+#endif
+// Light that is reflected wholly for ever, where nothing is scattered, is told as if so little of it left.
+const float TRAPPED = 1e-6;
 
 Spectrum radiance_inside(vec3 place, vec3 direction) {
   Spectrum sum = Spectrum(0.0);
@@ -181,7 +187,7 @@ Spectrum radiance_inside(vec3 place, vec3 direction) {
     left *= marched.passed * again;
     if (largest(left) < LEAST_PASSED) break;
     // From there on as if every way were like this one and the source as it is there.
-    if (i + 1 == MOST_WAYS) sum += left * source_at(place) * (1.0 - marched.passed) / max(1.0 - again * marched.passed, Spectrum(1e-4));
+    if (i + 1 == MOST_WAYS) sum += left * source_at(place) * (1.0 - marched.passed) / (1.0 - again * marched.passed + TRAPPED);
     direction = direction - 2.0 * cosine * normal;
 #else
     break;
@@ -210,7 +216,7 @@ vec3 evaluate_model(SurfacePoint point, Outwards outwards, LightSample light) {
 }
 
 #if defined(CLEAR) && defined(WORLD)
-// What is refracted out of the grain after each reflection inside; the last takes all that is left. Lengths are too short to tell the world
+// What is refracted out of the grain after each reflection inside; the last stands for all that follow. Lengths are too short to tell the world
 // from elsewhere.
 vec3 crossing_light(SurfacePoint point, Outwards outwards) {
   mat3 to_body = grain_to_body();
@@ -220,10 +226,10 @@ vec3 crossing_light(SurfacePoint point, Outwards outwards) {
   vec3 direction = normalize(to_body * inwards);
   vec3 left = vec3(outwards.transmittance);
   vec3 sum = vec3(0.0);
-  const int most = 6;
-  for (int i = 0; i < most; ++i) {
+  for (int i = 0; i < MOST_WAYS; ++i) {
     float way = way_through(place, direction);
-    left *= exp(-stored.sigma_t * way);
+    vec3 passed = exp(-stored.sigma_t * way);
+    left *= passed;
     place += way * direction;
     vec3 normal = outwards_at(place);
     float cosine = clamp(dot(normal, direction), 0.0, 1.0);
@@ -231,8 +237,10 @@ vec3 crossing_light(SurfacePoint point, Outwards outwards) {
     float again = fresnel_reflectance(cosine, 1.0 / stored.eta);
     float sine_squared = stored.eta * stored.eta * (1.0 - cosine) * (1.0 + cosine);
     vec3 outside = normalize(stored.eta * (direction - cosine * normal) + sqrt(max(1.0 - sine_squared, 0.0)) * normal);
-    bool last = i + 1 == most || max(left.r, max(left.g, left.b)) * again < LEAST_PASSED;
-    sum += left * (last ? 1.0 : 1.0 - again) * seen_of_world(to_world * outside);
+    bool last = i + 1 == MOST_WAYS || max(left.r, max(left.g, left.b)) * again < LEAST_PASSED;
+    // What is left after as many ways as radiance_inside follows goes on as if every way were like this one; what is scattered there is told there.
+    vec3 leaves = last ? (1.0 - again + TRAPPED) / (1.0 - again * passed + TRAPPED) : vec3(1.0 - again);
+    sum += left * leaves * seen_of_world(to_world * outside);
     if (last) break;
     left *= again;
     direction = direction - 2.0 * cosine * normal;
