@@ -20,10 +20,7 @@ def even_directions(count, turn=0.0):
 
 def map_directions(side=SIDE):
     """(side * side, 3): the direction in the middle of each texel, row by row."""
-    y, x = numpy.meshgrid(*2 * [2.0 * (numpy.arange(side) + 0.5) / side - 1.0], indexing="ij")
-    z = 1.0 - numpy.abs(x) - numpy.abs(y)
-    fold = numpy.maximum(-z, 0.0)
-    directions = numpy.stack((x - numpy.copysign(fold, x), y - numpy.copysign(fold, y), z), axis=-1).reshape(-1, 3)
+    directions = _unfolded(side).reshape(-1, 3)
     return directions / numpy.linalg.norm(directions, axis=1)[:, None]
 
 
