@@ -15,12 +15,6 @@ constexpr int background_niceness = 5;
 // A quick answer takes about a tenth of the time.
 constexpr double quick_share = 0.1;
 
-/// Whether light for one may be shown of the other.
-bool alike(const Heap& a, const Heap& b) {
-  return a.grains.grains.size() == b.grains.grains.size() && a.grains.kinds.size() == b.grains.kinds.size() &&
-         a.grains.walls.size() == b.grains.walls.size();
-}
-
 }  // namespace
 
 News Solving::news() const {
@@ -33,11 +27,10 @@ bool Solving::wait(std::chrono::milliseconds patience) const {
   return told_.wait_for(lock, patience, [this] { return news_.final; });
 }
 
-void Solving::tell(News news) {
+void Solving::tell(std::shared_ptr<const HeapLight> light, bool final, std::string failure) {
   {
     const std::lock_guard lock(mutex_);
-    news.number = news_.number + 1;
-    news_ = std::move(news);
+    news_ = {news_.number + 1, std::move(light), final, std::move(failure)};
   }
   told_.notify_all();
 }
@@ -81,13 +74,6 @@ void Solvers::loop(const std::stop_token& stop) {
   }
 }
 
-std::shared_ptr<Solving> Solvers::successor(const Solver& solver) {
-  const std::lock_guard lock(mutex_);
-  for (auto one = waiting_.rbegin(); one != waiting_.rend(); ++one)
-    if (std::shared_ptr<Solving> next = one->lock(); next && next->solver_.get() == &solver) return next;
-  return nullptr;
-}
-
 void Solvers::work(const std::weak_ptr<Solving>& of, const std::stop_token& stop) {
   std::atomic<bool> given_up{false};
   Heap heap;
@@ -99,24 +85,15 @@ void Solvers::work(const std::weak_ptr<Solving>& of, const std::stop_token& stop
     return;
   }
   const auto tell = [&](const Quality& quality, const transport::Effort& effort, bool final) {
-    News news{.light = std::make_shared<const HeapLight>(solver->solve(heap, quality, effort)), .final = final};
-    if (const std::shared_ptr<Solving> solving = of.lock()) {
-      solving->tell(std::move(news));
-    } else if (const std::shared_ptr<Solving> next = successor(*solver); next && alike(next->heap(), heap)) {
-      news.final = false;
-      news.outdated = true;
-      next->tell(std::move(news));
-    }
+    auto light = std::make_shared<const HeapLight>(solver->solve(heap, quality, effort));
+    if (const std::shared_ptr<Solving> solving = of.lock()) solving->tell(std::move(light), final);
   };
   transport::Effort effort;
   effort.stop = &given_up;
   effort.progress = [&](double share) {
     const std::shared_ptr<Solving> solving = of.lock();
     if (solving) solving->progress_ = share;
-    // What changes faster than it is solved, a slider that is dragged, a heap that falls, would stand in old light
-    // for as long: a coarse answer that is under way is the next one's until that has its own.
-    const bool wanted = solving || (share < quick_share && successor(*solver) != nullptr);
-    if (!wanted || stop.stop_requested()) given_up = true;
+    if (!solving || stop.stop_requested()) given_up = true;
   };
   try {
     tell(coarse, transport::part_of(effort, 0.0, quick_share), false);
@@ -124,7 +101,7 @@ void Solvers::work(const std::weak_ptr<Solving>& of, const std::stop_token& stop
   } catch (const transport::Stopped&) {
     return;
   } catch (const std::exception& failure) {
-    if (const std::shared_ptr<Solving> solving = of.lock()) solving->tell({.final = true, .failure = failure.what()});
+    if (const std::shared_ptr<Solving> solving = of.lock()) solving->tell(nullptr, true, failure.what());
   }
 }
 

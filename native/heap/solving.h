@@ -16,11 +16,10 @@ namespace mesograin::heap {
 
 /// What is known so far.
 struct News {
-  int number = 0;                            ///< grows with everything new
-  std::shared_ptr<const HeapLight> light{};  ///< the best so far, or null
+  int number = 0;                          ///< grows with everything new
+  std::shared_ptr<const HeapLight> light;  ///< the best so far, or null
   bool final = false;
-  bool outdated = false;  ///< the light is that of as many grains before a change
-  std::string failure{};  ///< one sentence, if there can be none
+  std::string failure;  ///< one sentence, if there can be none
 };
 
 /// One heap's, for as long as somebody holds it. May be asked from any thread.
@@ -41,7 +40,7 @@ class Solving {
  private:
   friend class Solvers;
 
-  void tell(News news);
+  void tell(std::shared_ptr<const HeapLight> light, bool final, std::string failure = {});
 
   const Heap heap_;
   const std::shared_ptr<Solver> solver_;  ///< the thread's
@@ -67,10 +66,7 @@ class Solvers {
 
  private:
   void loop(const std::stop_token& stop);
-  void work(const std::weak_ptr<Solving>& of, const std::stop_token& stop);
-
-  /// What was asked for last in the place of what had this solver; null if nothing was.
-  std::shared_ptr<Solving> successor(const Solver& solver);
+  static void work(const std::weak_ptr<Solving>& of, const std::stop_token& stop);
 
   std::mutex mutex_;
   std::condition_variable_any wake_;

@@ -159,7 +159,7 @@ bool Exchange::take_news() {
   heap::News news = solving_->news();
   if (news.number == news_ || !news.light) return false;
   news_ = news.number;
-  known_ = Known{solving_->heap().grains, std::move(news.light), news.outdated};
+  known_ = Known{solving_->heap().grains, std::move(news.light)};
   gather_.reset();
   find_gather();
   send();
@@ -168,7 +168,7 @@ bool Exchange::take_news() {
 
 void Exchange::find_gather() {
   if (!gathers_ || !known_) gather_.reset();
-  if (gathers_ && known_ && !known_->outdated && !gather_ && solving_->heap().grains == known_->grains)
+  if (gathers_ && known_ && !gather_ && solving_->heap().grains == known_->grains)
     gather_ = std::make_unique<const heap::Gather>(solving_->heap(), known_->light);
 }
 

@@ -87,7 +87,6 @@ class Exchange {
   struct Known {
     heap::Grains grains;
     std::shared_ptr<const heap::HeapLight> light;
-    bool outdated;  ///< it is of the same grains before they changed
   };
 
   void send();

@@ -48,28 +48,6 @@ TEST(Solvers, GiveUpWhatNobodyWaitsForAnyMore) {
   EXPECT_EQ(after.solutions, before.solutions + 1);
 }
 
-TEST(Solvers, ShowWhatChangesFasterThanItIsSolvedInTheLightOfAMomentAgo) {
-  Solvers solvers;
-  std::shared_ptr<const Solving> solving = solvers.ask(lit(20, 0.99), nullptr);
-  while (solving->progress() == 0.0) solving->wait(1ms);
-  ASSERT_FALSE(solving->news().light) << "a coarse answer takes longer than its first rays";
-  solving = solvers.ask(lit(20, 0.98), solving);
-  while (!solving->news().light) solving->wait(1ms);
-  EXPECT_TRUE(solving->news().outdated);
-  EXPECT_FALSE(solving->news().final);
-  while (solving->news().outdated) solving->wait(1ms);
-  EXPECT_FALSE(solving->news().final) << "its own coarse answer comes next";
-}
-
-TEST(Solvers, GiveUpACoarseAnswerThatNoOtherHeapCanShow) {
-  Solvers solvers;
-  std::shared_ptr<const Solving> solving = solvers.ask(lit(20, 0.99), nullptr);
-  while (solving->progress() == 0.0) solving->wait(1ms);
-  solving = solvers.ask(lit(4, 0.98), nullptr);
-  while (!solving->news().light) solving->wait(1ms);
-  EXPECT_FALSE(solving->news().outdated);
-}
-
 TEST(Solvers, SolveTheSameHeapOnce) {
   Solvers solvers;
   const std::shared_ptr<const Solving> one = solvers.ask(lit(4, 0.9), nullptr);
