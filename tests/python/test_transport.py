@@ -278,7 +278,7 @@ def ellipsoid():
                        numpy.array(faces, numpy.uint32))
 
 
-# What is far too thick to be stored is model 3's, which does not know all of a light map's edge; its noise is there, too.
+# Too thick to be stored it is model 3's, which does not know all of a light map's edge; its noise is there, too.
 @pytest.mark.parametrize("radius, tolerance", [(0.01, 0.015), (1.0, 0.015), (10.0, 0.015), (1e4, 0.03)])
 @pytest.mark.parametrize("shape", [salt, ellipsoid])
 def test_what_absorbs_nothing_sends_out_what_comes_in(shape, radius, tolerance):
