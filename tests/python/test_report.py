@@ -55,6 +55,7 @@ def write_case(folder, name, model, reference, **changes):
         **groups,
         "material": {"Sand <b>": {"sigma_s": [0.9] * 3, "g": 0.1}},
         "samples": 4,
+        "our_seconds": 0.8,
         "frame_ms": 2.5,
         "frames_timed": 3,
         "passes_ms": {"shade": 2.5},
@@ -174,6 +175,11 @@ def test_plots_are_files_too(built):
         assert svg.rstrip().endswith("</svg>") and "var(--" not in svg
         assert (built / "plots" / f"{name}.png").read_bytes()[:4] == b"\x89PNG"
     assert "radiance, W m⁻² sr⁻¹" in (built / "plots/lambert.diffuse.profile.svg").read_text()
+    cost = (built / "plots/cost.svg").read_text()
+    assert "Cycles Diffuse" in cost and "model 1" in cost, "Cycles is a point among ours"
+    figure = (built / "plots/overview.svg").read_text()
+    for words in ("disc.blend, 48 × 48 pixels, against Cycles Diffuse.", "noise in a pixel", "in blocks"):
+        assert words in figure, words
     page = (built / "report.html").read_text()
     assert "#010203" not in page, "a plot in the page has the page's colours"
 
@@ -220,7 +226,7 @@ def test_significance_is_shown_where_it_was_tested(built):
     assert "noise was 0.200 of the error in relative_l1: it is 0.310 of it; 4 seeds were not enough." in text
     assert (built / "plots/model_1.volume.by_angle.svg").is_file() and "by_angle" not in first
     overview = page[:page.index('<section class="case"')]
-    assert overview.count('popovertarget="define-metrics.relative_l1_blocks"') == 1, "the number to read first"
+    assert overview.count('popovertarget="define-metrics.relative_l1_blocks_corrected"') == 2, "what to read first"
     assert "1.23 %" in text and "whether <noise> explains it" in html.unescape(page)
     live = json.loads(re.search(r'class="live">(.*?)</script>', second)[1])
     scores = unpack(dict(re.findall(r'id="(\w+)">(.*?)</script>', page))[live["scores"]], 48, 48)[..., 0]

@@ -10,7 +10,8 @@ import numpy
 from markupsafe import Markup
 
 from . import colours, payload, plots
-from .wording import compared, controls, form, mask_steps, parameters, significance, until, verdict
+from .wording import (compared, controls, form, headline, mask_steps, named, parameters, significance, terms, until,
+                      verdict)
 
 PAGE = Path(__file__).resolve().parent / "page"
 PLOTS = "plots"
@@ -21,10 +22,11 @@ LIVE_BUDGET = 48 * 2**20
 
 # The numbers that lead the table and each case, with how to write them: (key, title, form).
 LEADING = (
+    ("metrics.relative_l1_blocks_corrected", "L1 in 8×8 blocks, noise taken off", "percent"),
+    ("metrics.relative_l1_blocks", "L1 in 8×8 blocks", "percent"),
+    ("metrics.relative_l1_corrected", "L1 a pixel, noise taken off", "percent"),
     ("metrics.relative_l1", "relative L1", "percent"),
     ("noise_floor.relative_l1", "noise floor", "percent"),
-    ("metrics.relative_l1_corrected", "L1, noise taken off", "percent"),
-    ("metrics.relative_l1_blocks", "L1 in 8×8 blocks", "percent"),
     ("our_noise.relative_l1", "our own noise", "percent"),
     ("significance.share", "significant pixels", "percent"),
     ("metrics.bias", "bias", "ratio"),
@@ -52,7 +54,7 @@ def build(results, cases, folder):
             for key, title, how in LEADING
         ],
         cost=plot(plots.cost([of.case for of in done]), Path(folder) / PLOTS, "cost"),
-        overview=_files(plots.overview(rows), Path(folder) / PLOTS, "overview"),
+        overview=_files(plots.overview(rows, terms(results)), Path(folder) / PLOTS, "overview"),
         pictures=pictures.texts,
         script=Markup((PAGE / "report.js").read_text(encoding="utf-8")),
         colour_tables=Markup(_colour_tables()),
@@ -115,7 +117,8 @@ class _Pictures:
 def _view(of, definitions, pictures, folder):
     """What the template needs of one case. of: reading.CasePictures."""
     case = of.case
-    view = {"case": case, "done": case["status"] == "done", "parameters": parameters(case["material"])}
+    view = {"case": case, "done": case["status"] == "done", "parameters": parameters(case["material"]),
+            "model": named(case["model"])}
     if not view["done"]:
         return view
     view["png"] = of.png
@@ -178,8 +181,7 @@ def _view(of, definitions, pictures, folder):
     view["unfiltered"] = None if unfiltered is None else form(unfiltered, "percent")
     view["mask_steps"] = mask_steps(case)
     view["until"] = until(case)
-    judged_by = f"metrics.{case.get('judged_by', 'relative_l1')}"
-    view["leading"] = next(number for number in view["numbers"] if number["key"] == judged_by)
+    view["leading"] = next(number for number in view["numbers"] if number["key"] == headline(case))
     return view
 
 

@@ -6,6 +6,7 @@ import base64
 import io
 import os
 import re
+import textwrap
 from dataclasses import astuple, dataclass
 
 import matplotlib.image
@@ -16,7 +17,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
 from . import colours
-from .wording import form
+from .wording import form, headline, named
 
 
 @dataclass(frozen=True)
@@ -102,39 +103,63 @@ def _style(palette):
 
 
 def cost(cases):
-    """A plot of error against milliseconds of a frame, a dot a case; the bar under it reaches down to what the
-    reference's noise alone would score."""
+    """A plot of error against seconds, a dot a picture: each of ours, its error less the reference's noise but not less
+    than its own; each reference, whose error is its noise, with the line along which more samples lead to it."""
 
     def draw(palette):
-        figure, axes = new_figure(9.0, 2.9)
+        shown = sorted((dot for dot in map(_ours, cases) if dot), key=lambda dot: dot[0])
+        theirs = dict(filter(None, map(_theirs, cases)))
+        if not shown:
+            return None
+        figure, axes = new_figure(9.0, 3.1)
         axes.set_xscale("log")
         axes.set_yscale("log")
-        shown = [case for case in cases if case["metrics"]["relative_l1"]]
+        axes.set_xlabel("time of the picture, s")
+        axes.set_ylabel("relative L1")
+        seconds, errors = ([dot[part] for dot in [*shown, *theirs.values()]] for part in (0, 1))
+        log_axis(axes.xaxis, seconds, 1.8, lambda value, _: f"{value:g}", steps=(1, 3))
+        log_axis(axes.yaxis, errors, 2.5, percent, steps=(1, 3))
+        axes.set_xlim(right=4.0 * axes.get_xlim()[1])  # room for the names
+        top = axes.get_ylim()[1]
+        for title, (at, noise) in theirs.items():
+            # Noise falls with the root of the time.
+            fewer = at * (noise / top) ** 2
+            axes.plot([fewer, at], [top, noise], color=palette.theirs, linewidth=1.0, linestyle=(0, (1, 2)))
+            axes.plot([at], [noise], marker="s", color=palette.theirs, markersize=6)
+            axes.annotate(title, (at, noise), (7, 0), textcoords="offset points", va="center", fontsize=8.5,
+                          color=palette.quiet)
         labelled = []
-        for number, case in enumerate(sorted(shown, key=lambda case: case["frame_ms"])):
-            at, error, floor = case["frame_ms"], case["metrics"]["relative_l1"], case["noise_floor"]["relative_l1"]
-            if floor:
-                axes.plot([at] * 2, [min(floor, error), error], color=palette.ours, linewidth=1.0, alpha=0.45)
-                axes.plot([at], [floor], marker="_", color=palette.ours, markersize=8, alpha=0.7)
+        models = [dot[2]["model"] for dot in shown]
+        for number, (at, error, case) in enumerate(shown):
             axes.plot([at], [error], marker="o", color=palette.ours, markersize=6)
+            twice = models.count(case["model"]) > 1
+            label = named(case["model"]) + (f", {case['reference_title']}" if twice else "")
             # Above and below by turns: models of one kind are often as far off as each other.
-            label = case["name"] if len({other["reference"] for other in shown}) > 1 else case["model"]
             side = 1 if number % 2 == 0 else -1
             near = [other for other in labelled if other[0] == side and at < 2.5 * other[1] and
                     abs(numpy.log10(error / other[2])) < 0.4]
             labelled.append((side, at, error))
             axes.annotate(label, (at, error), (0, (8 + 11 * len(near)) * side), textcoords="offset points", ha="center",
                           va="bottom" if side > 0 else "top", fontsize=8.5)
-        axes.set_xlabel("time of a frame, ms")
-        axes.set_ylabel("relative L1")
-        log_axis(axes.xaxis, [case["frame_ms"] for case in shown], 1.8, lambda value, _: f"{value:g}")
-        shares = [value for case in shown for value in (case["metrics"]["relative_l1"],
-                                                        case["noise_floor"]["relative_l1"]) if value]
-        log_axis(axes.yaxis, shares, 2.5, percent, steps=(1, 3))
         axes.grid(True, which="major")
-        return figure if shown else None
+        return figure
 
     return draw
+
+
+def _ours(case):
+    """(seconds, error, case) of our picture of a case; None where that is not known."""
+    error = case["metrics"].get("relative_l1_corrected")
+    if error is None:
+        return None
+    error = max(error, (case.get("our_noise") or {}).get("relative_l1") or 0.0)
+    return (case["our_seconds"], error, case) if error > 0.0 and case["our_seconds"] > 0.0 else None
+
+
+def _theirs(case):
+    """(title, (seconds, error)) of a case's reference; None where that is not known."""
+    noise, seconds = case["noise_floor"]["relative_l1"], case["reference_seconds"]
+    return (case["reference_title"], (seconds, noise)) if noise and seconds else None
 
 
 def profile(model, reference, noise):
@@ -219,9 +244,10 @@ def histogram(relative, mask):
     return draw
 
 
-def overview(pictures):
+def overview(pictures, terms):
     """A plot of model, reference and false-coloured relative error in a row for each case, with the colour bar: the
-    figure for a paper. pictures: [(case, model, reference, mask)], at most a page of them is drawn."""
+    figure for a paper. pictures: [(case, model, reference, mask)], at most a page of them is drawn. terms: [sentence],
+    below it."""
 
     def draw(palette):
         rows = pictures[:12]
@@ -241,14 +267,16 @@ def overview(pictures):
                 place.set_xticks([])
                 place.set_yticks([])
                 place.spines[:].set_visible(False)
-            axes[0].set_ylabel(f"{case['model']}\n{form(case['metrics']['relative_l1'], 'percent')}",
-                               color=palette.ink, rotation=0, ha="right", va="center")
+            error = form(case["metrics"][headline(case).partition(".")[2]], "percent")
+            axes[0].set_ylabel(f"{named(case['model'])}\n{error}\nin blocks", color=palette.ink, rotation=0, ha="right",
+                               va="center")
         for place, title in zip(grid[0], ("model", "reference", "relative error")):
             place.set_title(title, fontsize=9, color=palette.ink)
         shades = matplotlib.cm.ScalarMappable(matplotlib.colors.LogNorm(*colours.ERROR_RANGE),
                                               ListedColormap(colours.SEQUENTIAL))
         bar = figure.colorbar(shades, ax=grid, location="bottom", shrink=0.66, aspect=50, pad=0.015)
         bar.set_label("|model − reference| / (reference + 0.01), mean of the channels")
+        figure.supxlabel("\n".join(textwrap.fill(sentence, 100) for sentence in terms), fontsize=7, color=palette.quiet)
         bar.outline.set_visible(False)
         bar.ax.xaxis.set_major_formatter(FuncFormatter(percent))
         bar.ax.xaxis.set_minor_locator(NullLocator())

@@ -18,6 +18,35 @@ def _text(value):
     return f"{value:.4g}" if isinstance(value, float) else str(value)
 
 
+def named(model):
+    """A model as a reader says it: 'model 3'."""
+    return model.replace("_", " ")
+
+
+def headline(case):
+    """The key of the number to read first: how far off is what noise does not explain, if that is known."""
+    metric = "relative_l1_blocks"
+    corrected = case["metrics"].get(f"{metric}_corrected")
+    return f"metrics.{metric}" if corrected is None else f"metrics.{metric}_corrected"
+
+
+def terms(results):
+    """What a figure must say of a comparison to be read alone: [sentence]."""
+    done = [case for case in results["cases"] if case["status"] == "done"]
+    references = dict.fromkeys(
+        case["reference_title"] + (f" (boundary {case['boundary']})" if case["boundary"] else "") for case in done
+    )
+    floors = [case["noise_floor"]["relative_l1"] for case in done if case["noise_floor"]["relative_l1"] is not None]
+    noise = "not known"
+    if floors:
+        low, high = (form(value, "percent") for value in (min(floors), max(floors)))
+        noise = low if low == high else f"{low} to {high}"
+    return [
+        f"{results['scene']}, {results['size'][0]} × {results['size'][1]} pixels, against {'; '.join(references)}.",
+        f"Linear radiance, W m⁻² sr⁻¹; errors are relative L1. The references' own noise in a pixel: {noise}.",
+    ]
+
+
 def verdict(case):
     """One sentence on how the model fares, as far as the reference's noise lets us see."""
     metrics, floors = case["metrics"], case["noise_floor"]

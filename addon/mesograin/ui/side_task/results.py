@@ -40,8 +40,11 @@ def seconds(number):
 def _numbers(entry, ours):
     """(title, value) pairs. The definitions are in the file of the results."""
     # Short enough for half a panel of Blender's default width.
-    yield "Relative L1", _share(entry["metrics"]["relative_l1"])
-    yield "Noise floor", _share(entry["noise_floor"]["relative_l1"])
+    metrics = entry["metrics"]
+    off = metrics["relative_l1_blocks_corrected"]
+    yield "Off in Blocks", _share(metrics["relative_l1_blocks"] if off is None else off)
+    yield "Relative L1", _share(metrics["relative_l1"])
+    yield "Noise Floor", _share(entry["noise_floor"]["relative_l1"])
     yield ours
     yield "Cycles", seconds(entry["reference_seconds"])
 
