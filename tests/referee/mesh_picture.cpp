@@ -3,15 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/common.hpp>
-#include <glm/exponential.hpp>
 #include <glm/geometric.hpp>
 #include <optional>
 
 #include "base/error.h"
 #include "mesh_body.h"
 #include "mesh_light.h"
-#include "parallel.h"
+#include "pixels.h"
 #include "view.h"
 
 namespace mesograin::referee {
@@ -113,11 +111,6 @@ Picture trace_mesh_picture(const PictureCase& setup, const std::function<void()>
       setup.material.boundary != scene::Boundary::index_matched)
     throw Error("On a mesh the referee's boundary must be dielectric or index_matched.");
   const std::vector<Grain> grains = grains_of(setup);
-  const int strata = static_cast<int>(std::sqrt(setup.samples));
-  Picture picture;
-  picture.radiance.resize(static_cast<std::size_t>(setup.width) * static_cast<std::size_t>(setup.height));
-  picture.noise.resize(picture.radiance.size());
-  picture.coverage.resize(picture.radiance.size());
   const auto trace = [&](double x, double y, Rng& rng) -> std::optional<glm::dvec3> {
     const Ray ray = view_ray(setup.clip_to_world, x, y);
     glm::dvec3 radiance(0);
@@ -135,34 +128,8 @@ Picture trace_mesh_picture(const PictureCase& setup, const std::function<void()>
     }
     return radiance;
   };
-  parallel(static_cast<std::size_t>(setup.height), setup.threads, [&](std::size_t row) {
-    Rng rng(setup.seed, row);
-    for (int column = 0; column < setup.width; ++column) {
-      glm::dvec3 sum(0), squares(0);
-      int hits = 0;
-      for (int sample = 0; sample < setup.samples; ++sample) {
-        const bool stratified = sample < strata * strata;
-        const int across = sample % strata, down = sample / strata;
-        const double u = stratified ? (across + rng.uniform()) / strata : rng.uniform();
-        const double v = stratified ? (down + rng.uniform()) / strata : rng.uniform();
-        const std::optional<glm::dvec3> radiance =
-            trace(2 * (column + u) / setup.width - 1, 1 - 2 * (static_cast<double>(row) + v) / setup.height, rng);
-        if (!radiance) continue;
-        ++hits;
-        sum += *radiance;
-        squares += *radiance * *radiance;
-      }
-      const double samples = setup.samples;
-      const std::size_t pixel = row * static_cast<std::size_t>(setup.width) + static_cast<std::size_t>(column);
-      const glm::dvec3 mean = sum / samples;
-      picture.radiance[pixel] = mean;
-      picture.noise[pixel] =
-          glm::sqrt(glm::max(squares / samples - mean * mean, glm::dvec3(0)) / std::max(1.0, samples - 1));
-      picture.coverage[pixel] = hits / samples;
-    }
-    if (row_done) row_done();
-  });
-  return picture;
+  return trace_pixels(
+      setup, [&] { return trace; }, row_done);
 }
 
 }  // namespace mesograin::referee

@@ -3,15 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/common.hpp>
-#include <glm/exponential.hpp>
 #include <glm/geometric.hpp>
 #include <numbers>
 #include <optional>
 
 #include "base/error.h"
 #include "mesh_picture.h"
-#include "parallel.h"
+#include "pixels.h"
 #include "reduced_light.h"
 #include "view.h"
 #include "walk.h"
@@ -139,64 +137,28 @@ Picture trace_picture(const PictureCase& setup, const std::function<void()>& row
         grain_of[channel] = grain_of[before];
     if (grain_of[channel] == grains.size()) grains.emplace_back(setup, channel);
   }
-  const int strata = static_cast<int>(std::sqrt(setup.samples));
   const std::size_t suns = setup.lights.size();
-  Picture picture;
-  picture.radiance.resize(static_cast<std::size_t>(setup.width) * static_cast<std::size_t>(setup.height));
-  picture.noise.resize(picture.radiance.size());
-  picture.coverage.resize(picture.radiance.size());
-
-  /// One path's radiance; nothing where the ray misses.
-  const auto trace_sample = [&](double x, double y, Rng& rng, std::vector<glm::dvec3>& to_light,
-                                std::vector<double>& per_sun) -> std::optional<glm::dvec3> {
-    const Ray ray = view_ray(setup.clip_to_world, x, y);
-    const glm::dvec3 origin = ray.origin - setup.centre;
-    const std::optional<double> distance = hit(origin, ray.direction, setup.radius);
-    if (!distance) return std::nullopt;
-    const glm::dvec3 normal = glm::normalize(origin + *distance * ray.direction);
-    for (std::size_t sun = 0; sun < suns; ++sun) to_light[sun] = sample_sun(setup.lights[sun], rng);
-    glm::dvec3 radiance(0);
-    for (std::size_t grain = 0; grain < grains.size(); ++grain) {
-      std::fill(per_sun.begin(), per_sun.end(), 0.0);
-      trace_path(grains[grain], normal, ray.direction, to_light, rng, per_sun);
-      for (int channel = 0; channel < 3; ++channel)
-        for (std::size_t sun = 0; sun < suns && grain_of[channel] == grain; ++sun)
-          radiance[channel] += per_sun[sun] * setup.lights[sun].irradiance[channel];
-    }
-    return radiance;
-  };
-
-  parallel(static_cast<std::size_t>(setup.height), setup.threads, [&](std::size_t row) {
-    Rng rng(setup.seed, row);
-    std::vector<glm::dvec3> to_light(suns);
-    std::vector<double> per_sun(suns);
-    for (int column = 0; column < setup.width; ++column) {
-      glm::dvec3 sum(0), squares(0);
-      int hits = 0;
-      for (int sample = 0; sample < setup.samples; ++sample) {
-        // The first strata^2 paths are stratified over the pixel, the rest are anywhere in it.
-        const bool stratified = sample < strata * strata;
-        const int stratum_x = sample % strata, stratum_y = sample / strata;
-        const double u = stratified ? (stratum_x + rng.uniform()) / strata : rng.uniform();
-        const double v = stratified ? (stratum_y + rng.uniform()) / strata : rng.uniform();
-        const double x = 2 * (column + u) / setup.width - 1, y = 1 - 2 * (static_cast<double>(row) + v) / setup.height;
-        const std::optional<glm::dvec3> radiance = trace_sample(x, y, rng, to_light, per_sun);
-        if (!radiance) continue;
-        ++hits;
-        sum += *radiance;
-        squares += *radiance * *radiance;
+  const auto make_tracer = [&] {
+    return [&, to_light = std::vector<glm::dvec3>(suns), per_sun = std::vector<double>(suns)](
+               double x, double y, Rng& rng) mutable -> std::optional<glm::dvec3> {
+      const Ray ray = view_ray(setup.clip_to_world, x, y);
+      const glm::dvec3 origin = ray.origin - setup.centre;
+      const std::optional<double> distance = hit(origin, ray.direction, setup.radius);
+      if (!distance) return std::nullopt;
+      const glm::dvec3 normal = glm::normalize(origin + *distance * ray.direction);
+      for (std::size_t sun = 0; sun < suns; ++sun) to_light[sun] = sample_sun(setup.lights[sun], rng);
+      glm::dvec3 radiance(0);
+      for (std::size_t grain = 0; grain < grains.size(); ++grain) {
+        std::fill(per_sun.begin(), per_sun.end(), 0.0);
+        trace_path(grains[grain], normal, ray.direction, to_light, rng, per_sun);
+        for (int channel = 0; channel < 3; ++channel)
+          for (std::size_t sun = 0; sun < suns && grain_of[channel] == grain; ++sun)
+            radiance[channel] += per_sun[sun] * setup.lights[sun].irradiance[channel];
       }
-      const double samples = setup.samples;
-      const std::size_t pixel = row * static_cast<std::size_t>(setup.width) + static_cast<std::size_t>(column);
-      const glm::dvec3 mean = sum / samples;
-      picture.radiance[pixel] = mean;
-      picture.noise[pixel] =
-          glm::sqrt(glm::max(squares / samples - mean * mean, glm::dvec3(0)) / std::max(1.0, samples - 1));
-      picture.coverage[pixel] = hits / samples;
-    }
-    if (row_done) row_done();
-  });
-  return picture;
+      return radiance;
+    };
+  };
+  return trace_pixels(setup, make_tracer, row_done);
 }
 
 }  // namespace mesograin::referee
