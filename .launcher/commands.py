@@ -12,6 +12,7 @@ SOURCE = pathlib.Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(SOURCE / "addon"))
 
 from mesograin.command_line.parser import Parser  # noqa: E402
+from mesograin.studies.animation import arguments as animate_arguments  # noqa: E402
 from mesograin.studies.baking import arguments as bake_arguments  # noqa: E402
 from mesograin.studies.comparison import arguments as compare_arguments  # noqa: E402
 from mesograin.studies.sweep import arguments as sweep_arguments  # noqa: E402
@@ -125,6 +126,21 @@ class Sweep(Command):
 
     def run(self, words, place):
         return [place.python, SOURCE / "addon/mesograin/studies/sweep/command.py", *words, "--blender", place.blender]
+
+
+class Animate(Command):
+    name, sentence = "animate", "render the frames of an animation that are missing, on one machine or many"
+
+    def parser(self):
+        return animate_arguments.build()
+
+    def check(self, words):
+        animate_arguments.build().parse_args(words)
+        return ["blender", "product product"]
+
+    def run(self, words, place):
+        command = SOURCE / "addon/mesograin/studies/animation/command.py"
+        return ["/usr/bin/python3", command, *words, "--blender", place.blender]
 
 
 class Render(Command):
@@ -321,7 +337,7 @@ RENDER = Render()
 COMMANDS = {command.name: command for command in (
     InBlender("compare", "render every model and Cycles, measure, write a report", "comparison", compare_arguments),
     InBlender("trade", "measure error against time, for every model and for Cycles", "trade", trade_arguments),
-    Sweep(), RENDER, Bake(), Test(), Bench(), Build(), Package(), Install())}
+    Sweep(), Animate(), RENDER, Bake(), Test(), Bench(), Build(), Package(), Install())}
 
 
 def _referee(words):

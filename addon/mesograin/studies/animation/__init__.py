@@ -1,0 +1,1 @@
+# Frames of an animation on one machine or many: those that are there stay, each is written whole or not at all.
