@@ -17,8 +17,9 @@ ROOMS = ("compat", "native_module", "grains.shape", "grains.kinds", "grains.pile
          "scene.mesh_lights", "scene.images", "scene.node_colours", "scene.colours", "scene.surroundings",
          "scene.textures", "scene.plain_materials", "scene.thick_layer", "scene.export",
          "engine.status", "engine.passes", "engine.viewport", "engine.viewport_text", "engine.engine",
-         "cycles.reference_cache", "ui.presets", "ui.look", "ui.conversion", "ui.panels", "ui.notes",
-         "ui.grain_tools", "ui.grain_colours", "ui.preferences",
+         "cycles.reference_cache", "ui.presets", "ui.look", "ui.conversion", "ui.named_things", "ui.panels",
+         "ui.node_panels", "ui.notes",
+         "ui.grain_tools", "ui.grain_colours", "ui.self_test", "ui.preferences",
          *(f"ui.side_task.{name}" for name in ("settings", "session", "pictures", "operators", "panel", "results")),
          *(f"ui.compare_panel.{name}" for name in ("properties", "session", "operators", "panel")),
          *(f"ui.bake_panel.{name}" for name in ("properties", "compared", "session", "operators", "panel")))

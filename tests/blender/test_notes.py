@@ -4,7 +4,7 @@ import types
 import bpy
 import pytest
 from mesograin.engine import status
-from mesograin.ui import notes, preferences
+from mesograin.ui import named_things, notes, preferences
 
 
 @pytest.fixture(autouse=True)
@@ -51,12 +51,14 @@ class Asked:
 
     def __init__(self):
         self.operators, self.sentences = [], []
+        self.name = ""  # of what a button selects
 
     def __getattr__(self, name):
         return lambda *_, **__: self
 
     def operator(self, name, *_, **__):
         self.operators.append(name)
+        return self
 
     operator_menu_enum = operator
 
@@ -67,7 +69,8 @@ class Asked:
 def drawn(thing):
     panel = types.SimpleNamespace(layout=Asked(), bl_ui_units_x=notes.MESOGRAIN_PT_notes.bl_ui_units_x)
     preferences_ = types.SimpleNamespace(system=types.SimpleNamespace(ui_scale=1.0))
-    context = types.SimpleNamespace(scene=bpy.context.scene, object=thing, region=None, preferences=preferences_)
+    context = types.SimpleNamespace(scene=bpy.context.scene, object=thing, region=None, preferences=preferences_,
+                                    view_layer=bpy.context.view_layer)
     notes.MESOGRAIN_PT_notes.draw(panel, context)
     return panel.layout
 
@@ -80,6 +83,24 @@ def test_the_header_offers_what_is_missing_and_nothing_else(native):
     assert drawn(thing).operators == [] and drawn(thing).sentences == ["Nothing is left out."]
     status.put(status.VIEWPORT, status.Status(warnings=("Fog is left out.",)))
     assert drawn(thing).sentences == ["Fog is left out."]
+
+
+def test_what_a_complaint_names_is_selected_by_a_button(native):
+    scene, ball = dark_scene()
+    bpy.ops.mesograin.add_sun()
+    bpy.ops.mesograin.make_grain(preset="sand")
+    bpy.ops.mesh.primitive_cube_add()
+    cube = bpy.context.object
+    bpy.ops.mesograin.make_grain(preset="salt")
+    for sentence, named in ((f"Object '{cube.name}' is scaled to nothing, so it is not drawn.", [cube]),
+                            (f"Material '{ball.active_material.name}' is no number.", [ball]),
+                            ("Light 'Sun' and object 'Gone' have something.", [bpy.data.objects["Sun"]])):
+        assert named_things.find(sentence, bpy.context) == named, sentence
+    status.put(status.VIEWPORT, status.Status(warnings=(f"Object '{ball.name}' has no faces.",)))
+    layout = drawn(cube)
+    assert layout.operators == ["mesograin.select_named"] and layout.name == ball.name
+    assert bpy.ops.mesograin.select_named(name=ball.name) == {"FINISHED"}
+    assert bpy.context.object == ball and bpy.context.selected_objects == [ball]
 
 
 def test_diagnostics_name_what_a_maintainer_asks_for(native):

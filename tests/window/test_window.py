@@ -2,16 +2,12 @@
 #   MESOGRAIN_BLENDER=/usr/bin/blender python3 -m pytest tests/window
 import ast
 import functools
-import json
 import os
-import pathlib
-import shutil
-import subprocess
 import tempfile
 
 import pytest
+from launch import HERE, launch
 
-HERE = pathlib.Path(__file__).resolve().parent
 EMPTY_FOLDER = tempfile.mkdtemp(prefix="mesograin-no-native-")
 SMALL, TALL, TALLER = (900, 640), (1100, 1000), (1100, 1400)
 SIMULATED = ["--enable-event-simulate"]
@@ -43,27 +39,11 @@ def launched(tmp_path_factory):
     """launched(name) runs that launch once and gives ({check: traceback or ''}, Blender's output)."""
 
     @functools.lru_cache(maxsize=None)
-    def launch(name):
-        assert shutil.which("xvfb-run"), "the window tests need xvfb-run, of Debian's package xvfb"
-        module, environment, (width, height), options = LAUNCHES[name]
-        folder = tmp_path_factory.mktemp(name)
-        # The window fills the screen, and no mouse pointer hides a pixel of it.
-        screen = f"-screen 0 {width}x{height}x24 -fbdir {folder} -nocursor"
-        command = ["xvfb-run", "--auto-servernum", f"--server-args={screen}",
-                   os.environ.get("MESOGRAIN_BLENDER", "blender"), "--factory-startup", *options,
-                   "--window-geometry", "0", "0", str(width), str(height), "--python-exit-code", "1",
-                   "--python", str(HERE / "driver.py"), "--", str(folder), str(folder / "Xvfb_screen0"), module]
-        # Installed as an artist has it, so that preferences find it.
-        addons = folder / "scripts" / "addons"
-        addons.mkdir(parents=True)
-        (addons / "mesograin").symlink_to(HERE.parents[1] / "addon" / "mesograin")
-        environment = {**os.environ, "BLENDER_USER_SCRIPTS": str(addons.parent), **environment}
-        run = subprocess.run(command, env=environment, stdout=subprocess.PIPE,
-                             stderr=subprocess.STDOUT, text=True, timeout=LIMIT)
-        results = folder / "results.json"
-        return (json.loads(results.read_text()) if results.exists() else {}), run.stdout
+    def launch_once(name):
+        module, environment, size, options = LAUNCHES[name]
+        return launch(module, tmp_path_factory.mktemp(name), size, LIMIT, options, environment)
 
-    yield launch
+    yield launch_once
     os.rmdir(EMPTY_FOLDER)
 
 

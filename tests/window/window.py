@@ -190,11 +190,16 @@ class Window:
         window.event_simulate(type=button, value="RELEASE", **at)
         yield 0.2
 
-    def press(self, area, key):
-        region, window = self.region(area), self._window()
+    def point_at(self, area):
+        """Moves the mouse to the middle of an area; gives where that is."""
+        region = self.region(area)
         at = {"x": region.x + region.width // 2, "y": region.y + region.height // 2}
-        window.event_simulate(type="MOUSEMOVE", value="NOTHING", **at)
+        self._window().event_simulate(type="MOUSEMOVE", value="NOTHING", **at)
         yield 0.05
+        return at
+
+    def press(self, area, key):
+        window, at = self._window(), (yield from self.point_at(area))
         for value in ("PRESS", "RELEASE"):
             window.event_simulate(type=key, value=value, **at)
             yield 0.05
@@ -213,16 +218,18 @@ class Window:
         yield from self.until(converged)
         return (yield from self.picture(area))
 
-    def picture(self, area):
-        """The area's pixels as the screen shows them, (h, w, 3) in 0..1 with row 0 at the top; kept as a PNG."""
+    def picture(self, area, whole=False):
+        """The pixels of an area's main region, or of the whole area, as the screen shows them, (h, w, 3) in 0..1 with
+        row 0 at the top; kept as a PNG: of a whole area, else of the screen."""
         area.tag_redraw()
         yield from self.seconds(0.3)
         self._shots += 1
         shot = self._screen()
-        save_picture(shot, self.folder / f"{self.check}_{self._shots}.png")
-        region = self.region(area)
-        top = shot.shape[0] - region.y - region.height
-        return shot[top:top + region.height, region.x:region.x + region.width]
+        shown = area if whole else self.region(area)
+        top = shot.shape[0] - shown.y - shown.height
+        pixels = shot[top:top + shown.height, shown.x:shown.x + shown.width]
+        save_picture(pixels if whole else shot, self.folder / f"{self.check}_{self._shots}.png")
+        return pixels
 
     def _screen(self):
         """What the virtual screen shows, (h, w, 3) in 0..1. Read from Xvfb, not by Blender's own screenshot operator,

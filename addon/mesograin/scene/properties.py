@@ -37,7 +37,8 @@ def _property(parameter):
         if value is not None:
             limits[name] = value
     if parameter.kind == "rgb":
-        return FloatVectorProperty(size=3, **limits, **common)
+        # What is a share of the light is a colour; coefficients have no end.
+        return FloatVectorProperty(size=3, subtype="NONE" if parameter.unit else "COLOR", **limits, **common)
     return FloatProperty(**limits, **common)
 
 

@@ -184,7 +184,14 @@ class MESOGRAIN_OT_choose_model(OnActiveMaterial, bpy.types.Operator):
 def draw(layout, look):
     """The rows that stand for sigma_s, sigma_a and scale."""
     layout.prop(look, "colour")
-    layout.prop(look, "mean_free_path")
+    draw_channels(layout, look, "mean_free_path", "Path")
+
+
+def draw_channels(layout, owner, name, text):
+    """Three numbers that are no colour: a row each, which says of which channel it is."""
+    column = layout.column(align=True)
+    for index, channel in enumerate("RGB"):
+        column.prop(owner, name, index=index, text=channel if index else f"{text} {channel}")
 
 
 _register_classes, _unregister_classes = bpy.utils.register_classes_factory((LookProperties, MESOGRAIN_OT_choose_model))

@@ -69,8 +69,7 @@ class MESOGRAIN_PT_notes(bpy.types.Panel):
         layout, thing = self.layout, context.object
         if panels.draw_native_problem(layout, context):
             return
-        for sentence in status.complaints():
-            panels.draw_sentence(layout, context, sentence, icon="INFO", units=self.bl_ui_units_x)
+        panels.draw_complaints(layout, context, icon="INFO", units=self.bl_ui_units_x)
         if not is_lit(context.scene):
             layout.operator(MESOGRAIN_OT_add_sun.bl_idname, icon="LIGHT_SUN")
         if lacks_grain(thing):

@@ -7,7 +7,7 @@ from .. import native_module
 from ..engine import engine, passes, status
 from ..scene import export, plain_materials
 from ..schema import models, parameters
-from . import conversion, look, presets
+from . import conversion, look, named_things, presets
 
 ENGINES = {engine.MesograinRenderEngine.bl_idname}
 # At a UI scale of 1, in pixels: the average width of a character, and what margins and an icon take of a panel's width.
@@ -33,6 +33,13 @@ def draw_sentence(layout, context, sentence, icon="ERROR", units=None):
     column.scale_y = 0.8
     for line, text in enumerate(textwrap.wrap(sentence, columns)):
         column.label(text=text, icon="BLANK1" if line and icon != "NONE" else icon)
+
+
+def draw_complaints(layout, context, icon="ERROR", units=None):
+    """What is wrong with the last pictures, with buttons that select what is named."""
+    for sentence in status.complaints():
+        draw_sentence(layout, context, sentence, icon, units)
+        named_things.draw(layout, context, sentence)
 
 
 def draw_native_problem(layout, context):
@@ -77,8 +84,8 @@ class MESOGRAIN_PT_material(MesograinPanel, bpy.types.Panel):
         row.use_property_split = False
         row.prop(grain, "model", text="")
         if plain_materials.is_plain(context.material):
-            draw_sentence(layout, context, "No grain yet: it is drawn as its nodes say. Choose a model to make it one.",
-                          icon="INFO")
+            self._draw_plain(context)
+            return
         takes = models.CHOICES[grain.model].parameters
         if "sigma_s" in takes:
             self._draw_choice(context)
@@ -87,6 +94,14 @@ class MESOGRAIN_PT_material(MesograinPanel, bpy.types.Panel):
             if name not in (*MEDIUM, *SURFACE):
                 layout.prop(grain, name)
         self._draw_surface(grain, takes)
+
+    def _draw_plain(self, context):
+        """Ways to a grain."""
+        draw_sentence(self.layout, context, "No grain yet: it is drawn as its nodes say. Choose a model, a material or"
+                      " what its nodes mean to make it one.", icon="INFO")
+        column = self.layout.column(align=True)
+        column.menu(presets.MESOGRAIN_MT_presets.bl_idname, icon="PRESET")
+        column.operator(conversion.MESOGRAIN_OT_from_cycles.bl_idname, icon="NODE_MATERIAL")
 
     def _draw_material_problem(self, context):
         native = native_module.get()
@@ -111,21 +126,26 @@ class MESOGRAIN_PT_material(MesograinPanel, bpy.types.Panel):
 
     def _draw_medium(self, context, grain):
         layout, said = self.layout, context.material.mesograin_look
-        layout.row().prop(said, "way", expand=True)
+        row = layout.row()
+        row.use_property_decorate = False  # how it is said, and no part of it
+        row.prop(said, "way", expand=True)
+        sigma_t = [(sigma_s + sigma_a) * grain.scale for sigma_s, sigma_a in zip(grain.sigma_s, grain.sigma_a)]
         if said.way == "look":
             look.draw(layout, said)
+            units = f"Path in mm; sigma_t {', '.join(f'{value:.3g}' for value in sigma_t)} per mm"
         else:
-            layout.prop(grain, "sigma_s", text="sigma_s")
-            layout.prop(grain, "sigma_a", text="sigma_a")
+            look.draw_channels(layout, grain, "sigma_s", "sigma_s")
+            look.draw_channels(layout, grain, "sigma_a", "sigma_a")
             layout.prop(grain, "scale")
+            paths = ", ".join(f"{1.0 / value:.3g}" if value > 0.0 else "endless" for value in sigma_t)
+            units = f"sigma per mm; mean free path {paths} mm"
+        column = layout.column()
+        column.active = False
+        draw_sentence(column, context, units, icon="NONE")
         layout.prop(grain, "g")
         row = layout.row(heading="Profile")
         row.menu(MESOGRAIN_MT_profiles.bl_idname, text=_profile_label(grain))
-        column = layout.column()
-        column.active = False
-        sigma_t = [(sigma_s + sigma_a) * grain.scale for sigma_s, sigma_a in zip(grain.sigma_s, grain.sigma_a)]
-        paths = ", ".join(f"{1.0 / value:.3g}" if value > 0.0 else "endless" for value in sigma_t)
-        draw_sentence(column, context, f"sigma per mm; mean free path {paths} mm", icon="NONE")
+        row.label(icon="BLANK1")  # where the others have their dot
 
     def _draw_surface(self, grain, takes):
         if "eta" in takes:
@@ -168,20 +188,20 @@ class MESOGRAIN_PT_light(MesograinPanel, bpy.types.Panel):
         layout.prop(light, "type")
         layout.prop(light, "color")
         layout.prop(light, "energy", text="Irradiance" if light.type == "SUN" else "Power")
-        for name in LIGHT_PROPERTIES[light.type]:
+        for name, text in LIGHT_PROPERTIES[light.type].items():
             if hasattr(light, name):
-                layout.prop(light, name)
+                layout.prop(light, name, **({"text": text} if text else {}))
         if light.type == "AREA" and light.shape in ("RECTANGLE", "ELLIPSE"):
             layout.prop(light, "size_y")
 
 
 LIGHT_PROPERTIES = {
-    "SUN": ("angle",),
-    "POINT": ("shadow_soft_size", "use_soft_falloff"),
-    "SPOT": ("shadow_soft_size", "use_soft_falloff", "spot_size", "spot_blend"),
-    "AREA": ("shape", "size", "spread"),
+    "SUN": {"angle": ""},
+    "POINT": {"shadow_soft_size": "Radius", "use_soft_falloff": ""},
+    "SPOT": {"shadow_soft_size": "Radius", "use_soft_falloff": "", "spot_size": "Beam", "spot_blend": "Blend"},
+    "AREA": {"shape": "", "size": "", "spread": ""},
 }
-"""What a light has beside its colour and strength, where this Blender has it."""
+"""What a light has beside its colour and strength, where this Blender has it, and what it is called if not as there."""
 
 
 class MESOGRAIN_PT_sampling(MesograinPanel, bpy.types.Panel):
@@ -193,8 +213,7 @@ class MESOGRAIN_PT_sampling(MesograinPanel, bpy.types.Panel):
         layout.use_property_split = True
         layout.use_property_decorate = True
         if not draw_native_problem(layout, context):
-            for sentence in status.complaints():
-                draw_sentence(layout, context, sentence)
+            draw_complaints(layout, context)
         column = layout.column(align=True)
         column.prop(settings, "samples", text="Render")
         column.prop(settings, "viewport_samples", text="Viewport")

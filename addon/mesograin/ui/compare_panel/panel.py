@@ -47,7 +47,7 @@ def draw_results(layout, context):
 
 def _draw_case(box, context, entry):
     if entry["status"] != "done":
-        results.draw_title(box, entry)
+        results.draw_title(box, context, entry)
         panels.draw_sentence(box, context, entry["error"])
         return
     results.draw(box, context, entry, ("Mesograin", f"{entry['frame_ms']:.2f} ms"),

@@ -15,7 +15,7 @@ FILES = {"model": "model", "reference": "reference", "error": "error", "error co
 # What each is called on its button, and what it shows.
 BUTTONS = {
     "model": ("Model", "Our picture, linear"),
-    "reference": ("Reference", "The mean of Cycles' seeds, linear"),
+    "reference": ("Cycles", "The reference: the mean of Cycles' seeds, linear"),
     "error": ("Error", "Our picture less the reference, linear; negative where ours is too dark"),
     "error colours": ("Colours", "The relative error in false colours"),
     "z-map": ("Z-map", "In colour where the two differ by more than their noise explains"),

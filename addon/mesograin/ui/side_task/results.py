@@ -7,15 +7,16 @@ from .. import panels
 from . import pictures
 
 
-def draw_title(box, entry):
+def draw_title(box, context, entry):
     """What was compared."""
-    box.label(text=f"{CHOICES[entry['model']].label} against {entry['reference_title']}")
+    panels.draw_sentence(box, context, f"{CHOICES[entry['model']].label} against {entry['reference_title']}",
+                         icon="NONE")
 
 
 def draw(box, context, entry, ours, button, **properties):
     """entry: as a case of results.json, `name` and `files` included. ours: (title, text), what our side took.
     button: the operator that shows a picture, with `properties`."""
-    draw_title(box, entry)
+    draw_title(box, context, entry)
     grid = box.grid_flow(row_major=True, columns=2, even_columns=True, align=True)
     for title, value in _numbers(entry, ours):
         grid.label(text=title)
