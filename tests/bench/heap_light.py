@@ -2,11 +2,12 @@
 lights.
 
     heap_light.py BUILD_FOLDER [--kinds K ...] [--lights L ...] [--models M ...] [--exchanges E ...] [--samples N]
-        [--paths N] [--json FILE] [--markdown FILE]
+        [--paths N] [--out FOLDER] [--markdown FILE]
 
 The truth is traced beside it (mesograin-referee heap): so many paths a pixel, and its own noise in blocks is told.
 Errors are relative L1 in blocks of 8 x 8 pixels of a picture of 96 x 96, over all channels. A sun that balls with a
-refracting surface are lit by is 20 degrees wide: a point's light no path finds.
+refracting surface are lit by is 20 degrees wide: a point's light no path finds. Writes heap_light.json and
+heap_light.html, and prints a line for each.
 """
 import argparse
 import json
@@ -16,8 +17,8 @@ import subprocess
 import sys
 import tempfile
 
+import heap_light_page
 import numpy
-
 from frame import sphere
 
 DATA = pathlib.Path(__file__).resolve().parents[1] / "data/heaps"
@@ -103,23 +104,17 @@ def camera(native):
 
 
 def measure(native, of, model, exchange, samples):
-    """One way to draw a heap against its truth, as a dictionary."""
+    """One way to draw a heap against its truth: numbers as a dictionary, and the picture."""
     material, light, (right, noise) = of
     view = native.View(*SIZE)
     view.set_scene(scene(native, material, model, light, exchange))
     view.set_camera(camera(native))
     view.render(samples)
     found = view.read()[..., :3]
-    return {"model": model, "exchange": exchange, "total": float(found.sum() / right.sum()), "truth_noise": noise,
-            "blocks": float(numpy.abs(blocks(found) - blocks(right)).sum() / blocks(right).sum()),
-            "finite": bool(numpy.isfinite(found).all())}
-
-
-def markdown(cases):
-    lines = ["| grains | light | model | exchange | total | blocks | truth's noise |", "|---|---|---|---|---|---|---|"]
-    lines += [f"| {case['kind']} | {case['light']} | {case['model']} | `{case['exchange']}` | {case['total']:.3f} |"
-              f" {case['blocks']:.1%} | {case['truth_noise']:.1%} |" for case in cases]
-    return "\n".join(lines) + "\n"
+    numbers = {"model": model, "exchange": exchange, "total": float(found.sum() / right.sum()), "truth_noise": noise,
+               "blocks": float(numpy.abs(blocks(found) - blocks(right)).sum() / blocks(right).sum()),
+               "finite": bool(numpy.isfinite(found).all())}
+    return numbers, found
 
 
 def main():
@@ -134,14 +129,16 @@ def main():
                         choices=["off", "order_1", "gathered"])
     parser.add_argument("--samples", type=int, default=16, help="of each picture (default: 16)")
     parser.add_argument("--paths", type=int, default=128, help="of the truth, a pixel (default: 128)")
-    parser.add_argument("--json", type=pathlib.Path, metavar="FILE", help="also writes the result there")
-    parser.add_argument("--markdown", type=pathlib.Path, metavar="FILE", help="and as a table there")
+    parser.add_argument("--out", type=pathlib.Path, metavar="FOLDER", help="for the page and the JSON (default: .)",
+                        default=pathlib.Path())
+    parser.add_argument("--markdown", type=pathlib.Path, metavar="FILE", help="also writes a table there")
     options = parser.parse_args()
     sys.path.insert(0, options.build)
     import mesograin_native as native
 
     referee = pathlib.Path(options.build) / "tests/referee/mesograin-referee"
-    cases = []
+    options.out.mkdir(parents=True, exist_ok=True)
+    cases, pictures = [], []
     with tempfile.TemporaryDirectory() as folder:
         for kind in options.kinds:
             material = KINDS[kind]
@@ -150,16 +147,22 @@ def main():
                 # Few paths find the wide sun, or lights that a path must leave the heap towards.
                 paths = options.paths * (16 if "eta" in material and name != "sky" else 1)
                 of = (material, light, truth(native, referee, material, light, paths, pathlib.Path(folder)))
+                drawn = []
                 for model in ["lambert"] if material["kind"] == "diffuse" else options.models:
                     for exchange in options.exchanges:
-                        case = {"kind": kind, "light": name, **measure(native, of, model, exchange, options.samples)}
+                        numbers, found = measure(native, of, model, exchange, options.samples)
+                        case = {"kind": kind, "light": name, **numbers}
                         cases.append(case)
+                        drawn.append((f"{model}, {exchange}", found))
                         print(f"{kind:<16}{name:<5}{model:<9}{exchange:<9}{case['total']:>7.3f}{case['blocks']:>7.1%}"
                               f"  truth's noise {case['truth_noise']:.1%}", flush=True)
-    if options.json:
-        options.json.write_text(json.dumps(cases, indent=1) + "\n")
+                pictures.append(heap_light_page.pictures_of(kind, name, of[2][0], drawn))
+    (options.out / "heap_light.json").write_text(json.dumps(cases, indent=1) + "\n")
+    (options.out / "heap_light.html").write_text(heap_light_page.html(
+        cases, pictures, spheres=len(numpy.loadtxt(DATA / "spheres.csv", delimiter=",", skiprows=1)), size=SIZE,
+        samples=options.samples, paths=options.paths))
     if options.markdown:
-        options.markdown.write_text(markdown(cases))
+        options.markdown.write_text(heap_light_page.markdown(cases))
 
 
 if __name__ == "__main__":
