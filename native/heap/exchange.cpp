@@ -11,6 +11,12 @@ Quality quality_for(std::size_t grains) {
   constexpr std::size_t most_links = 16'000'000;
   const auto each = static_cast<int>(most_links / std::max(grains, std::size_t{1}));
   Quality quality;
+  // The noise of a grain's rays is seen where grains are few and large; there they cost no more than those of 10^4 do.
+  constexpr std::size_t affordable = 10'000;
+  constexpr std::size_t most = 4;
+  const auto finer = static_cast<int>(std::clamp(affordable / std::max(grains, std::size_t{1}), std::size_t{1}, most));
+  quality.rays *= finer;
+  quality.seen_rays *= finer;
   quality.rays = std::clamp(each, coarse.rays, quality.rays);
   quality.light_rays = std::clamp(each, coarse.light_rays, quality.light_rays);
   quality.seen_rays = std::clamp(each / 2, coarse.seen_rays, quality.seen_rays);

@@ -21,7 +21,8 @@ struct Quality {
   bool quick = false;                  ///< links that were found at other materials will do
 };
 
-/// As fine as the memory for a heap of so many grains allows: half a gigabyte for its links.
+/// As fine as the memory for a heap of so many grains allows: half a gigabyte for its links. Where there are few, finer
+/// than the default, but with no more rays in all than 10^4 grains have there.
 Quality quality_for(std::size_t grains);
 
 /// For a first picture: within a tenth of what the default finds.
@@ -42,7 +43,7 @@ struct Parts {
 struct HeapLight {
   Field answer;   ///< exitance over pi, but for what answers to light that comes straight from a light
   Field crossed;  ///< of `answer`: what comes from lights straight through others, but from no even world
-  Field behind;   ///< of grains only: what is seen through a transparent one
+  Field behind;   ///< of grains only: what is seen through a transparent one, by look_through()
   Field sent;     ///< exitance over pi because of all light, to begin the next solution from
   Patches patches;
   std::vector<Kind> kinds;

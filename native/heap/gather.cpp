@@ -49,9 +49,10 @@ class Asking {
     looked_at_ = normal;
   }
 
-  glm::vec3 found(const Space& space, std::uint32_t grain) const {
+  /// `aside`: of the grain's surface from the sphere's.
+  glm::vec3 found(const Space& space, std::uint32_t grain, const glm::vec3& aside) const {
     if (!(all_ > 0.0F)) return glm::vec3(0.0F);
-    Ray ray{space.place(space.grains()[grain], looked_at_), to_light_, glm::vec3(1.0F)};
+    Ray ray{space.place(space.grains()[grain], looked_at_) + aside, to_light_, glm::vec3(1.0F)};
     return all_ * colour_ * space.passed(ray, reach_);
   }
 
@@ -94,16 +95,15 @@ glm::vec3 Gather::look(std::uint32_t grain, const glm::vec3& normal, const glm::
   return glm::max(sum, 0.0F);
 }
 
-bool Gather::sees_all(std::uint32_t grain, const glm::vec3& place, const glm::vec3& normal) const {
-  constexpr float close = 0.1F;
-  const Grain& ball = space_.grains()[grain];
-  const Surface surface = heap_.grains.kinds[ball.kind].surface;
-  if (surface != Surface::index_matched && surface != Surface::lambert_lambert) return false;
-  return glm::distance(place / ball.radius, normal) < close;
+bool Gather::sees_all(std::uint32_t grain) const {
+  const Surface surface = heap_.grains.kinds[space_.grains()[grain].kind].surface;
+  return surface == Surface::index_matched || surface == Surface::lambert_lambert;
 }
 
-glm::vec3 Gather::look_at_all(std::uint32_t grain, const glm::vec3& normal, const glm::vec3& towards, int rays,
-                              transport::Random& random) const {
+glm::vec3 Gather::look_at_all(std::uint32_t grain, const glm::vec3& place, const glm::vec3& normal,
+                              const glm::vec3& towards, int rays, transport::Random& random) const {
+  // What leaves a facet goes on from where it is, not from the one point of the sphere that faces as it does.
+  const glm::vec3 aside = place - space_.grains()[grain].radius * normal;
   const Optics& optics = heap_.grains.kinds[space_.grains()[grain].kind];
   const float mu = std::clamp(glm::dot(normal, towards), 0.0F, 1.0F);
   const TurnedFrame frame(normal, -towards);
@@ -120,12 +120,11 @@ glm::vec3 Gather::look_at_all(std::uint32_t grain, const glm::vec3& normal, cons
         walk(optics, Sense::from_viewer, mu, random, optics.transparent() ? Scattered(ask) : Scattered());
     for (Asking& of : asking) {
       if (outcome && !optics.transparent()) of.ask_surface(frame * outcome->normal, outcome->weight);
-      sum += of.found(space_, grain);
+      sum += of.found(space_, grain, aside);
     }
     if (!outcome) continue;
-    sum += sent_to(
-        {space_.place(space_.grains()[grain], frame * outcome->normal), frame * outcome->direction, outcome->weight},
-        random, true);
+    const glm::vec3 leaves_at = space_.place(space_.grains()[grain], frame * outcome->normal) + aside;
+    sum += sent_to({leaves_at, frame * outcome->direction, outcome->weight}, random, true);
   }
   return glm::max(sum / static_cast<float>(rays) + seen_through(grain, normal, towards, random), 0.0F);
 }

@@ -26,13 +26,13 @@ class Gather {
   glm::vec3 look(std::uint32_t grain, const glm::vec3& normal, const glm::vec3& towards, int rays,
                  transport::Random& random) const;
 
-  /// Whether look_at_all() knows this grain: its surface there is the sphere's, and what lights do in it is found by
-  /// asking for them on the way, which no surface that refracts allows. `place`: from the grain's middle.
-  bool sees_all(std::uint32_t grain, const glm::vec3& place, const glm::vec3& normal) const;
+  /// Whether look_at_all() knows this grain: what lights do in it is found by asking for them on the way, which no
+  /// surface that refracts allows. The whole grain or none of it: a part by each would show an edge between them.
+  bool sees_all(std::uint32_t grain) const;
 
-  /// The same with what comes straight from lights.
-  glm::vec3 look_at_all(std::uint32_t grain, const glm::vec3& normal, const glm::vec3& towards, int rays,
-                        transport::Random& random) const;
+  /// The same with what comes straight from lights. `place`: of the surface that is seen, from the grain's middle.
+  glm::vec3 look_at_all(std::uint32_t grain, const glm::vec3& place, const glm::vec3& normal, const glm::vec3& towards,
+                        int rays, transport::Random& random) const;
 
  private:
   glm::vec3 sent_to(Ray ray, transport::Random& random, bool open) const;

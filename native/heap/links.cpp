@@ -183,6 +183,11 @@ void Links::gather(const Field& sent, Field& answer, const transport::Effort& ef
   });
 }
 
+glm::vec3 look_through(const glm::vec3& normal, const glm::vec3& towards) {
+  const float mu = std::max(glm::dot(normal, towards), 0.0F);
+  return glm::normalize((2.0F * mu + 1.0F) * towards - normal);
+}
+
 Links find_behind(const Space& space, int rays, const transport::Effort& effort) {
   const std::size_t count = space.grains().size();
   std::vector<std::vector<Link>> found(space.size());
@@ -203,7 +208,7 @@ Links find_behind(const Space& space, int rays, const transport::Effort& effort)
         Ray ray{space.place(grain, normal + 2.0F * mu * inwards), inwards, table.crossing(mu)};
         all += ray.weight;
         if (const std::optional<Source> source = space.follow(ray, random))
-          found[i].push_back(link_to(*source, ray.weight, normal));
+          found[i].push_back(link_to(*source, ray.weight, look_through(normal, -inwards)));
       }
       for (Link& link : found[i])
         for (int channel = 0; channel < 3; ++channel)

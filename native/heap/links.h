@@ -44,8 +44,13 @@ struct Rays {
 Links find_links(const Space& space, const Rays& rays, const glm::vec3& radiance, WorldLit& lit,
                  const transport::Effort& effort);
 
-/// The light that is seen straight through transparent grains, mean over the directions in which it leaves: what others
-/// send, 0 where no grain stands behind.
+/// By what four numbers know a look straight through a ball, at a normal and from a direction: halfway between that
+/// direction and the place, seen from behind, where the look leaves the ball; of all looks spread evenly. As
+/// shaders/heap/light_from_grains.glsl has it.
+glm::vec3 look_through(const glm::vec3& normal, const glm::vec3& towards);
+
+/// The light that is seen straight through transparent grains, by look_through(): what others send, 0 where no grain
+/// stands behind.
 Links find_behind(const Space& space, int rays, const transport::Effort& effort);
 
 }  // namespace mesograin::heap

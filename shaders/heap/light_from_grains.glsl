@@ -7,9 +7,10 @@
 #include "render/bindings.glsl"
 
 #ifdef EXCHANGE
-// Of each object: red, green and blue of what it answers, and of what is seen straight through it (xyz: the slope over the normal, w: the mean
-// over all normals); x: where its kind is, y: which wall it is, if any, z: its radius. Of each kind: mean free paths across its radius, and
-// whether it is known where light comes in (models/entries.glsl); the lobe of its answer at the middles of intervals of the cosine; those entries.
+// Of each object: red, green and blue of what it answers, and of what is seen straight through it (xyz: the slope over the normal or the look,
+// w: the mean over all of them); x: where its kind is, y: which wall it is, if any, z: its radius. Of each kind: mean free paths across its
+// radius, and whether it is known where light comes in (models/entries.glsl); the lobe of its answer at the middles of intervals of the cosine;
+// those entries.
 layout(std430, binding = HEAP_LIGHT_BINDING) readonly buffer HeapLight { vec4 heap_light[]; };
 
 const int OBJECT_NUMBERS = 7;
@@ -53,6 +54,8 @@ vec3 light_from_grains(int object, vec3 place, vec3 normal, vec3 to_viewer) {
   vec3 lobe = mix(heap_light[kind + 1 + below].rgb, heap_light[kind + 2 + below].rgb, node - float(below));
   if (wall >= 0) return lobe * light_of_wall(wall, place, normal);
   vec3 crossing = exp(-2.0 * mu * heap_light[kind].rgb);
-  return lobe * light_at_normal(first, seen_place(kind, normal, to_viewer, mu)) + crossing * light_at_normal(first + 3, normal);
+  // As heap::look_through.
+  vec3 through = normalize((2.0 * mu + 1.0) * to_viewer - normal);
+  return lobe * light_at_normal(first, seen_place(kind, normal, to_viewer, mu)) + crossing * light_at_normal(first + 3, through);
 }
 #endif

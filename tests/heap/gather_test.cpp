@@ -6,6 +6,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "heap/links.h"
 #include "heap/spread.h"
 
 namespace mesograin::heap {
@@ -63,7 +64,7 @@ TEST(Gather, IsInTheMeanWhatTheFourNumbersAre) {
         found += gather.look(grain, normal, towards, 4, random).r / looks;
         const GrainTable& table = *light->kinds[0].from_light;
         expected += (table.lobe_at(mu).r * light->answer[grain].at(normal).r +
-                     table.crossing(mu).r * light->behind[grain].at(normal).r) /
+                     table.crossing(mu).r * light->behind[grain].at(look_through(normal, towards)).r) /
                     looks;
       }
       EXPECT_NEAR(found, expected, 0.04 * expected) << grain;
@@ -87,6 +88,19 @@ TEST(Gather, ShowsThroughAClearGrainWhatIsBehindIt) {
               0.0F, 1e-4F);
 }
 
+// What stands behind a grain is behind its rim, too, from where it is looked at.
+TEST(Gather, IsToldByTheLookWhatIsBehindAGrain) {
+  Heap heap;
+  heap.grains.kinds = {medium(1e-6, 0.0), lambert(0.5)};
+  heap.grains.grains = {{glm::vec3(0.0F), 1.0F, 0}, {glm::vec3(0.0F, 0.0F, -5.0F), 3.0F, 1}};
+  heap.lights.emplace_back(scene::DirectionalLight{{0.0, 0.0, 1.0}, glm::dvec3(3.0)});
+  const Coefficients behind = solved(heap)->behind[0];
+  const glm::vec3 up(0.0F, 0.0F, 1.0F);
+  const auto seen_at = [&](const glm::vec3& normal) { return behind.at(look_through(normal, up)).r; };
+  EXPECT_GT(seen_at(glm::normalize(glm::vec3(1.0F, 0.0F, 0.2F))), 0.5F * seen_at(up));
+  EXPECT_LT(behind.at(look_through(-up, -up)).r, 0.1F * seen_at(up));
+}
+
 // White grains in even light look like the light, by the mean of each grain's looks to one percent.
 TEST(Gather, OfAllLightLosesNone) {
   Heap heap = lattice(medium(20.0, 1.0));
@@ -104,21 +118,32 @@ TEST(Gather, OfAllLightLosesNone) {
       // Not so near the rim that much is seen straight through.
       const float mu = std::sqrt(0.1F + 0.9F * point[2]);
       const glm::vec3 towards = TurnedFrame(normal, point[3]) * glm::vec3(std::sqrt(1.0F - mu * mu), 0.0F, mu);
-      ASSERT_TRUE(gather.sees_all(grain, normal, normal));
-      sum += gather.look_at_all(grain, normal, towards, 1, random).g / looks;
+      ASSERT_TRUE(gather.sees_all(grain));
+      sum += gather.look_at_all(grain, heap.grains.grains[grain].radius * normal, normal, towards, 1, random).g / looks;
     }
     EXPECT_NEAR(sum, 1.0, 0.01) << grain;
   }
 }
 
-TEST(Gather, LeavesToTheModelWhatIsNoBallOrRefracts) {
+// A facet that lies in another grain's shadow is dark, though the point of the sphere that faces as it does is lit.
+TEST(Gather, ShadowsAPlaceWhereItIs) {
+  Heap heap;
+  heap.grains.kinds = {medium(50.0, 0.9)};
+  heap.grains.grains = {{glm::vec3(0.0F), 1.0F, 0}, {glm::vec3(0.8F, 0.0F, 3.0F), 0.4F, 0}};
+  heap.lights.emplace_back(scene::DirectionalLight{{0.0, 0.0, 1.0}, glm::dvec3(3.0)});
+  const Gather gather(heap, solved(heap));
+  transport::Random random(3, 0);
+  const glm::vec3 up(0.0F, 0.0F, 1.0F);
+  const auto seen_at = [&](const glm::vec3& place) { return gather.look_at_all(0, place, up, up, 256, random).r; };
+  EXPECT_LT(seen_at({0.8F, 0.0F, 0.9F}), 0.1F * seen_at({-0.5F, 0.0F, 0.9F}));
+}
+
+TEST(Gather, LeavesToTheModelWhatRefracts) {
   Heap heap = lattice(medium(1.0, 0.9));
-  const glm::vec3 normal(0.0F, 0.0F, 1.0F);
   for (const bool refracts : {false, true}) {
     if (refracts) heap.grains.kinds[0].surface = Surface::dielectric;
     const Gather gather(heap, std::make_shared<const HeapLight>(solve_exchange(heap, coarse, {}, {})));
-    EXPECT_EQ(gather.sees_all(0, normal, normal), !refracts);
-    EXPECT_FALSE(gather.sees_all(0, glm::vec3(0.0F, 0.3F, 0.8F), normal));
+    EXPECT_EQ(gather.sees_all(0), !refracts);
   }
 }
 

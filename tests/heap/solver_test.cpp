@@ -136,10 +136,15 @@ TEST(Solver, KeepsWhatItFoundBeforeItWasStopped) {
 }
 
 TEST(Solver, HasFewerRaysWhereGrainsAreMany) {
-  EXPECT_EQ(quality_for(100'000).rays, Quality().rays);
+  for (const int grains : {10'000, 100'000}) EXPECT_EQ(quality_for(grains).rays, Quality().rays);
   for (const std::size_t grains : {std::size_t{0}, std::size_t{1}, std::size_t{100'000'000}}) {
     EXPECT_GE(quality_for(grains).rays, coarse.rays);
-    EXPECT_LE(quality_for(grains).rays, Quality().rays);
+    EXPECT_LE(quality_for(grains).rays, 4 * Quality().rays);
+  }
+  EXPECT_EQ(quality_for(1000).rays, 4 * Quality().rays);
+  for (const int grains : {700, 2600, 5100, 9000}) {
+    EXPECT_LE(grains * quality_for(grains).rays, 10'000 * Quality().rays);
+    EXPECT_LE(grains * quality_for(grains).seen_rays, 10'000 * Quality().seen_rays);
   }
   EXPECT_LE(quality_for(1'000'000).rays * sizeof(Link), 600U);
 }

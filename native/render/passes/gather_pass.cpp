@@ -35,9 +35,13 @@ bool GatherPass::run(const Sample& sample, SurfacePass& surfaces) {
       const glm::vec3 place = glm::vec3(sample.content.receiver(number).ball) + glm::vec3(seen.positions[i]);
       const glm::vec3 towards = glm::normalize(glm::vec3(seen.viewer) - seen.viewer.w * place);
       transport::Random random(seed, i);
-      const bool all = gather->sees_all(*grain, glm::vec3(seen.positions[i]), glm::vec3(facing));
-      pixels_[i] = all ? glm::vec4(gather->look_at_all(*grain, glm::vec3(facing), towards, rays_a_sample, random), 2.0F)
-                       : glm::vec4(gather->look(*grain, glm::vec3(facing), towards, rays_a_sample, random), 1.0F);
+      const glm::vec3 normal(facing);
+      if (gather->sees_all(*grain)) {
+        const glm::vec3 from_middle(seen.positions[i]);
+        pixels_[i] = glm::vec4(gather->look_at_all(*grain, from_middle, normal, towards, rays_a_sample, random), 2.0F);
+      } else {
+        pixels_[i] = glm::vec4(gather->look(*grain, normal, towards, rays_a_sample, random), 1.0F);
+      }
     }
   });
   if (!whole) return false;
