@@ -1,6 +1,7 @@
 // Packs stored transport into texels.
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/matrix.hpp>
 #include <utility>
 
@@ -8,6 +9,7 @@
 #include "models/dielectric_inputs.h"
 #include "models/inputs_of_models.h"
 #include "models/prototype_inputs.h"
+#include "physics/physics.h"
 #include "transport/octahedron.h"
 #include "transport/stored_transport.h"
 
@@ -17,6 +19,9 @@ namespace {
 using transport::StoredTransport;
 
 constexpr int terms_a_texel = 4;
+
+// What is divided by is not 0.
+constexpr double least_albedo = 1e-9;
 
 // Mean free paths across a grain that nothing to be seen crosses unscattered.
 constexpr double most_clear = 6.0;
@@ -30,6 +35,22 @@ transport::StoredMedium stored_medium(const scene::Material& material) {
     medium.albedo[channel] = sigma_s[channel] > 0.0 ? sigma_s[channel] / medium.sigma_t[channel] : 0.0;
   medium.eta = material.boundary == scene::Boundary::dielectric ? material.eta : 1.0;
   return medium;
+}
+
+// Above this g similarity is more wrong than walks cost: see docs/shapes.md.
+constexpr double most_similar_g = 0.1;
+
+bool is_walked(const scene::Material& material) { return material.g > most_similar_g; }
+
+// Of the medium itself, per unit of the body.
+void add_forward(const scene::Material& material, const StoredTransport& stored, MaterialInputs& inputs) {
+  const glm::dvec3 similar_albedo = stored_medium(material).albedo;
+  inputs.uniforms["forward.sigma_s"] = glm::vec3(stored.unit * material.scale * material.sigma_s);
+  inputs.uniforms["forward.sigma_a"] = glm::vec3(stored.unit * material.scale * material.sigma_a);
+  inputs.uniforms["forward.similar_albedo"] = glm::vec3(glm::max(similar_albedo, least_albedo));
+  const double g = std::min(material.g, physics::HENYEY_GREENSTEIN_LARGEST_G);
+  inputs.uniforms["forward.g"] = static_cast<float>(g);
+  inputs.uniforms["forward.one_minus_g"] = static_cast<float>(1.0 - g);
 }
 
 // A block of nodes for each texel's terms (a grey medium) or for each term, one behind the other along z.
@@ -113,6 +134,7 @@ MaterialInputs transport_inputs(const scene::Material& material, double /*grain_
   if (medium.eta != 1.0) inputs.defines.emplace_back("REFRACTION");
   if (medium.grey()) inputs.defines.emplace_back("GREY");
   inputs.uniforms["stored.eta"] = static_cast<float>(medium.eta);
+  if (is_walked(material)) inputs.defines.emplace_back("WALKED");
   add_dielectric(material, inputs);
   return inputs;
 }
@@ -124,7 +146,9 @@ transport::Order transport_order(const scene::Material& material, scene::MeshPoi
 MaterialInputs prototype_inputs(const scene::Material& material, const StoredTransport& stored) {
   MaterialInputs inputs = material_inputs(material);
   const glm::dvec3 sigma_t = stored.unit * stored_medium(material).sigma_t;
-  if (stored.mean_chord * std::min({sigma_t.r, sigma_t.g, sigma_t.b}) < most_clear)
+  const glm::dvec3 unscattered =
+      is_walked(material) ? stored.unit * material.scale * (material.sigma_a + material.sigma_s) : sigma_t;
+  if (stored.mean_chord * std::min({unscattered.r, unscattered.g, unscattered.b}) < most_clear)
     inputs.defines.emplace_back("CLEAR");
   if (stored.terms > (stored.channels == 1 ? 16 : 8)) inputs.defines.emplace_back("MANY_TERMS");
   inputs.uniforms["stored.x_axis"] = stored.axes[0];
@@ -135,6 +159,7 @@ MaterialInputs prototype_inputs(const scene::Material& material, const StoredTra
   inputs.uniforms["stored.last_node"] = glm::vec3(stored.size - 1);
   inputs.uniforms["stored.units"] = static_cast<float>(1.0 / stored.unit);
   inputs.uniforms["stored.sigma_t"] = glm::vec3(sigma_t);
+  if (is_walked(material)) add_forward(material, stored, inputs);
   inputs.tables["lobes"] = lobes_table(stored);
   inputs.volumes["sources"] = sources_volume(stored);
   inputs.volumes["distances"] = {stored.size.x, stored.size.y, stored.size.z, 1, stored.distances};

@@ -97,11 +97,10 @@ Advice advise(const Material& material, const Shape& shape) {
       if (const double error = error_at(table, radius); error <= automatic::tolerance)
         return measured(model, error, round ? "a sphere" : "a grain too thick for transport", radius);
   if (shape.closed && material.g > automatic::most_g)
-    return {
-        Model::model_3, automatic::forwards_error,
-        fmt::format("{}: light scatters forwards (g {:.2g}), which transport does not show; measured {:.2g} % off on a "
-                    "grain of sand at g 0.85, radius 3 mean free paths.",
-                    named(Model::model_3), material.g, automatic::forwards_error)};
+    return {Model::transport, automatic::forwards_error,
+            fmt::format("{}: light scatters forwards (g {:.2g}); measured {:.2g} % off on a grain of sand at g 0.85, "
+                        "radius 3 mean free paths.",
+                        named(Model::transport), material.g, automatic::forwards_error)};
   if (shape.closed) return measured(Model::transport, automatic::transport_error, "cube, flake and rice", radius);
   return {
       Model::model_3, automatic::model_3_error,

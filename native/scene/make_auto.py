@@ -43,7 +43,7 @@ inline constexpr double roundest_other = {float(auto["roundest_other"])!r};
 inline constexpr double most_transported = {float(auto["most_transported"])!r};
 inline constexpr double transport_error = {float(auto["angular"]["transport"])!r};
 inline constexpr double most_g = {float(auto["forwards"]["most_g"])!r};
-inline constexpr double forwards_error = {float(auto["forwards"]["model_3"])!r};
+inline constexpr double forwards_error = {float(auto["forwards"]["transport"])!r};
 inline constexpr double model_3_error = {float(auto["angular"]["model_3"])!r};
 {tables}/// The cheapest first.
 inline constexpr std::array<OfRound, {len(auto["round"])}> of_round{{{{

@@ -1,16 +1,20 @@
 // The model `transport`: what light does inside this very mesh, found beforehand by rays in it and stored as the source function at nodes of a
 // grid, for light from anywhere. The view ray is followed through the grain, and once more from where it is reflected inside.
-// Not physical: a rough surface is smooth from inside; light that has left does not come back; scattering is isotropic, by similarity.
+// Not physical: a rough surface is smooth from inside; light that has left does not come back; scattering is isotropic, by similarity, but where
+// it is walked.
 //
 // What is chosen at compile time (models::transport_inputs), besides what dielectric.glsl names:
 //   CLEAR                so much crosses the grain unscattered that it is seen
+//   WALKED               light scatters forwards: what similarity does not tell is found by walks
 //   MANY_TERMS           a half more of them: the grain is not thick
 //   GREY                 red, green and blue are the same medium: a texel of `sources` holds four terms, else one in three colours
 #include "models/dielectric.glsl"
 #include "models/interface.glsl"
+#include "models/pixel_random.glsl"
 #include "physics/prelude.glsl"
 #include "physics/elementary.glsl"
 #include "physics/fresnel.glsl"
+#include "physics/henyey_greenstein.glsl"
 #include "scene/world.glsl"
 
 struct Stored {
@@ -109,9 +113,11 @@ float way_to_box(vec3 place, vec3 direction) {
   return max(min(ways.x, min(ways.y, ways.z)), 0.0);
 }
 
-// How far it is through the grain, by steps as long as the surface is away.
-float way_through(vec3 place, vec3 direction) {
-  float furthest = way_to_box(place, direction);  // beyond it the grid tells nothing
+const float FAR = 1e6;
+
+// How far it is through the grain, or `longest` if that is less, by steps as long as the surface is away.
+float way_through(vec3 place, vec3 direction, float longest) {
+  float furthest = min(way_to_box(place, direction), longest);  // beyond the box the grid tells nothing
   vec3 spacing = 1.0 / stored.nodes_a_unit;
   float shortest = 0.3 * min(spacing.x, min(spacing.y, spacing.z));
   float way = shortest;
@@ -176,7 +182,7 @@ Spectrum radiance_inside(vec3 place, vec3 direction) {
   Spectrum sum = Spectrum(0.0);
   Spectrum left = Spectrum(1.0);
   for (int i = 0; i < MOST_WAYS; ++i) {
-    float way = way_through(place, direction);
+    float way = way_through(place, direction, FAR);
     Marched marched = march(place, direction, way, i == 0 ? 6 : 3);
     sum += left * marched.radiance;
 #ifdef REFRACTION
@@ -196,6 +202,10 @@ Spectrum radiance_inside(vec3 place, vec3 direction) {
   return sum;
 }
 
+#ifdef WALKED
+#include "models/forward_walk.glsl"
+#endif
+
 mat3 grain_to_body() {
 #ifdef INSTANCED
   mat3 grain_to_prototype = transpose(grain_axes);
@@ -207,7 +217,11 @@ vec3 evaluate_model(SurfacePoint point, Outwards outwards, LightSample light) {
   mat3 to_body = grain_to_body();
   look_up_lobes(to_body * light.to_light);
   vec3 inwards = (outwards.mu * point.normal - point.to_viewer) / stored.eta - outwards.mu_refracted * point.normal;
+#ifdef WALKED
+  Spectrum inside = walked_radiance(to_body * point.on_triangle * stored.units, normalize(to_body * inwards), to_body * light.to_light, light.index);
+#else
   Spectrum inside = radiance_inside(to_body * point.on_triangle * stored.units, normalize(to_body * inwards));
+#endif
   vec3 radiance = light.irradiance * (outwards.transmittance / (stored.eta * stored.eta) * inside);
 #ifdef SPECULAR
   radiance += specular_reflection(point, outwards, light);
@@ -227,8 +241,12 @@ vec3 crossing_light(SurfacePoint point, Outwards outwards) {
   vec3 left = vec3(outwards.transmittance);
   vec3 sum = vec3(0.0);
   for (int i = 0; i < MOST_WAYS; ++i) {
-    float way = way_through(place, direction);
+    float way = way_through(place, direction, FAR);
+#ifdef WALKED
+    vec3 passed = exp(-(forward.sigma_s + forward.sigma_a) * way);
+#else
     vec3 passed = exp(-stored.sigma_t * way);
+#endif
     left *= passed;
     place += way * direction;
     vec3 normal = outwards_at(place);

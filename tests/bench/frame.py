@@ -1,6 +1,6 @@
 """What each model's shade pass costs relative to lambert's: ratios within one run, frames of all models interleaved.
 
-    frame.py BUILD_FOLDER [--frames N] [--json FILE]
+    frame.py BUILD_FOLDER [--frames N] [--g G] [--json FILE]
 
 The scene: a sphere of 128x64 faces that fills 70 % of a 400x400 picture's width, two directional lights.
 """
@@ -35,8 +35,8 @@ def sphere():
     return normals * numpy.float32(RADIUS), normals, triangles.astype(numpy.uint32)
 
 
-def make_views(native):
-    """{model: a view of the sphere}, for every model that this build draws."""
+def make_views(native, g):
+    """{model: a view of the sphere}, for every model that this build draws; g: of the medium."""
     mesh = native.Mesh(*sphere())
     half_angle = math.atan(WIDTH_FILLED * math.tan(math.radians(FIELD_OF_VIEW / 2.0)))
     position = (RADIUS / math.sin(half_angle), 0.0, 0.0)
@@ -47,7 +47,7 @@ def make_views(native):
     for model in (entry["name"] for entry in native.schema()["models"]):
         view = native.View(SIZE, SIZE)
         try:
-            material = native.Material(model=model, **PARAMETERS)
+            material = native.Material(model=model, g=g, **PARAMETERS)
             instances = [native.Instance(mesh, material, numpy.eye(4))]
             view.set_scene(native.Scene(instances=instances, lights=lights))
             view.set_camera(camera)
@@ -73,12 +73,14 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("build", help="the folder of the native module")
     parser.add_argument("--frames", type=int, default=100, help="frames of each model (default: 100)")
+    parser.add_argument("--g", type=float, default=0.0, help="of the medium (default: 0)")
     parser.add_argument("--json", type=pathlib.Path, metavar="FILE", help="also writes the result there")
     options = parser.parse_args()
     sys.path.insert(0, options.build)
     import mesograin_native as native
 
-    medians = {model: statistics.median(times) for model, times in measure(make_views(native), options.frames).items()}
+    times = measure(make_views(native, options.g), options.frames)
+    medians = {model: statistics.median(each) for model, each in times.items()}
     device = native.device_info()["renderer"]
     print(f"Shade pass, {SIZE}x{SIZE}, two lights, median of {options.frames} frames, on {device}")
     print(f"{'model':<12}{'milliseconds':>14}{'x lambert':>12}")

@@ -69,6 +69,11 @@ std::vector<scene::Material> every_choice() {
             material.profile = static_cast<scene::Profile>(profile);
             material.roughness = roughness;
             materials.push_back(material);
+            if (material.model == scene::Model::transport && roughness == 0.0) {
+              material.g = 0.5;
+              materials.push_back(material);
+              material.g = 0.0;
+            }
             if (material.model != scene::Model::model_3 && material.model != scene::Model::transport) continue;
             material.sigma_s = {1.0, 2.0, 3.0};  // a coloured one is another program than a grey one
             materials.push_back(material);

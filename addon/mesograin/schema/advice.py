@@ -4,7 +4,7 @@
 ROUND: of round grains, by radius in mean free paths. Model 1: exitance, mean over ten materials and three indices;
 model 2: pictures, mean over eta 1.3 and 1.5, three albedos and three sides. ANGULAR: of others, the mean over a cube, a
 flake and rice at a radius of 3, eta 1.3, albedo 0.9, three sides. FORWARDS: where g is more than most_g, of a grain of
-sand at g 0.85.
+sand by `transport` at g 0.85.
 """
 
 from dataclasses import dataclass

@@ -1,0 +1,180 @@
+// Where a medium scatters forwards: a walk from the viewer into the grain with each sample, lit at each scattering by the light that nothing
+// has scattered yet, refracted as it enters. Walks grow coarser by and by, and the stored source function ends them.
+// Not physical: where refraction gathers light from several places on the surface, one of them is found; what the surface reflected inside before
+// its first scattering comes from a sun that is some degrees wide; light that has left does not come back.
+//
+// Pasted into transport.glsl, whose grid it reads.
+
+struct Forward {
+  vec3 sigma_s;  // the medium's own, not the similar one's; per unit of the body
+  vec3 sigma_a;
+  vec3 similar_albedo;
+  float g;
+  float one_minus_g;
+};
+uniform Forward forward;
+
+const int EXACT_SCATTERINGS = 4;  // from then on two of them with one medium, then two with one that scatters less often
+const float LEAST_KEPT = 0.1;     // of the first direction, by the mean cosine: then the stored source function tells the rest
+const int MOST_STEPS = 40;
+const float LEAST_FLIGHT = 1e-7;       // in mean free paths
+const float LEAST_EXTINCTION = 1e-12;  // a channel of less flies through
+const int FIRST_TRIES = 2;             // to find where light came in; for what is scattered next, it is looked for near there
+const float LEAST_WIDTH = 0.2;         // of a bundle of light, over what it was as it entered: a narrower one is seen by few places
+const float SUN_SHARPNESS = 50.0;      // of the lobe exp(sharpness (cosine - 1)) that reflected light comes from
+
+vec3 perpendicular(vec3 direction) {
+  return normalize(abs(direction.z) < 0.7 ? vec3(direction.y, -direction.x, 0.0) : vec3(0.0, direction.z, -direction.y));
+}
+
+// The direction after a scattering (the phase function's inverted distribution: Witt, "Multiple scattering in reflection nebulae", 1977, eq. 19).
+vec3 scattered(vec3 direction, float g, float one_minus_g, vec2 random) {
+  float ratio = one_minus_g * (1.0 + g) / (one_minus_g + 2.0 * g * random.x);
+  float cosine = clamp((1.0 + g * g - ratio * ratio) / (2.0 * g), -1.0, 1.0);
+  float sine = sqrt((1.0 - cosine) * (1.0 + cosine));
+  float azimuth = 2.0 * PI * random.y;
+  vec3 first = perpendicular(direction);
+  return normalize(cosine * direction + sine * (cos(azimuth) * first + sin(azimuth) * cross(direction, first)));
+}
+
+// Light on its way from the surface to a place inside, unscattered.
+struct Unscattered {
+  vec3 back;         // towards where it came in
+  float way;         // from there
+  float irradiance;  // on a plane that faces it, were nothing lost on the way; of parallel light of irradiance 1
+};
+
+#ifdef REFRACTION
+// Towards where light comes from that was refracted at a surface of this normal; grazing light where the surface faces away.
+vec3 back_to_entry(vec3 to_light, vec3 normal) {
+  float cosine = dot(normal, to_light);
+  vec3 aside = to_light - cosine * normal;
+  if (cosine < 0.0) aside = normalize(aside);
+  return normalize(aside / stored.eta + refracted_cosine(max(cosine, 0.0), stored.eta) * normal);
+}
+
+// `back`: about where it comes from. The light that comes in at the other end of that line passes beside the place; how far, and how that changes
+// with where it comes in, tells where light comes in that does not (a step of Newton's method).
+Unscattered unscattered_at(vec3 place, vec3 to_light, vec3 back, int tries) {
+  float way;
+  vec3 entry;
+  vec3 normal;
+  for (int i = 0; i < tries; ++i) {
+    way = way_through(place, back, FAR);
+    entry = place + way * back;
+    normal = outwards_at(entry);
+    back = back_to_entry(to_light, normal);
+  }
+  float refracted = max(dot(normal, back), 0.1);
+  vec3 first = perpendicular(back);
+  vec3 second = cross(back, first);
+  vec3 along_first = first - dot(normal, first) / refracted * back;
+  vec3 along_second = second - dot(normal, second) / refracted * back;
+  float aside = 0.5 * min(1.0 / stored.nodes_a_unit.x, min(1.0 / stored.nodes_a_unit.y, 1.0 / stored.nodes_a_unit.z));
+  vec3 normal_first = outwards_at(entry + aside * along_first);
+  vec3 normal_second = outwards_at(entry + aside * along_second);
+  vec3 turn_first = (back_to_entry(to_light, normal_first) - back) / aside;
+  vec3 turn_second = (back_to_entry(to_light, normal_second) - back) / aside;
+  mat2 spread = mat2(1.0) - way * mat2(dot(turn_first, first), dot(turn_first, second), dot(turn_second, first), dot(turn_second, second));
+  float wide = determinant(spread);
+  if (abs(wide) < LEAST_WIDTH) wide = wide < 0.0 ? -LEAST_WIDTH : LEAST_WIDTH;
+  vec3 missed = place - entry + way * back;
+  vec2 beside = vec2(dot(missed, first), dot(missed, second));
+  vec2 move = vec2(spread[1][1] * beside.x - spread[1][0] * beside.y, spread[0][0] * beside.y - spread[0][1] * beside.x) / wide;
+  move *= min(1.0, aside / max(length(move), 1e-9));  // the surface may bend otherwise farther off
+  back = normalize(back + move.x * turn_first + move.y * turn_second);
+  way = length(entry + move.x * along_first + move.y * along_second - place);
+  normal = normalize(normal + (move.x * (normal_first - normal) + move.y * (normal_second - normal)) / aside);
+  float cosine = dot(normal, to_light);
+  if (cosine <= 0.0) return Unscattered(back, way, 0.0);
+  refracted = refracted_cosine(cosine, stored.eta);
+  return Unscattered(back, way, fresnel_transmittance(cosine, refracted, stored.eta) * cosine / (refracted * abs(wide)));
+}
+#else
+Unscattered unscattered_at(vec3 place, vec3 to_light, vec3 back, int tries) { return Unscattered(to_light, way_through(place, to_light, FAR), 1.0); }
+#endif
+
+Spectrum walked_radiance(vec3 place, vec3 direction, vec3 to_light, int light) {
+  uvec4 seed = uvec4(uvec2(gl_FragCoord.xy), uint(sample_index), uint(light));
+  Spectrum sum = Spectrum(0.0);
+  Spectrum left = Spectrum(1.0);
+  float g = forward.g;
+  float one_minus_g = forward.one_minus_g;
+  Spectrum sigma_s = SPECTRUM(forward.sigma_s);
+  Spectrum sigma_a = SPECTRUM(forward.sigma_a);
+  int scatterings = 0;
+  float kept = 1.0;
+  bool mirrored = false;
+#ifdef REFRACTION
+  vec3 here = outwards_at(place);
+  vec3 back = dot(here, to_light) > 0.0 ? back_to_entry(to_light, here) : to_light;
+#else
+  vec3 back = to_light;
+#endif
+  for (int i = 0; i < MOST_STEPS; ++i) {
+    vec4 random = vec4(pcg4d(seed + uvec4(0u, 0u, 0u, uint(i + 1) << 8u)) >> 8u) * (1.0 / 16777216.0);
+    if (i == 0) random.xy = low_discrepancy_beside_pixel(uint(sample_index), pcg4d(uvec4(seed.xy, 5u, seed.w)).xy);
+    Spectrum sigma_t = sigma_s + sigma_a;
+#ifdef GREY
+    float flown_at = sigma_t;
+#else
+    // As one of the channels, drawn for each step, would fly: all count by how likely they would, together, have done so.
+    random.w *= 3.0;
+    float flown_at = sigma_t[int(random.w)];
+    random.w = fract(random.w);
+#endif
+    float flight = max(-log(1.0 - random.x), LEAST_FLIGHT) / max(flown_at, LEAST_EXTINCTION);
+    float way = way_through(place, direction, flight);
+    place += way * direction;
+#ifndef GREY
+    vec3 passed = exp(-sigma_t * way);
+#endif
+    if (way >= flight) {
+#ifdef GREY
+      left *= sigma_s / sigma_t;
+#else
+      left *= 3.0 * sigma_s * passed / dot(sigma_t, passed);
+#endif
+      if (kept < LEAST_KEPT) {
+        sum += left * source_at(place) / SPECTRUM(forward.similar_albedo);
+        break;
+      }
+      ++scatterings;
+      mirrored = false;
+      bool coarser = scatterings >= EXACT_SCATTERINGS && scatterings % 2 == 0;
+      if (coarser) {
+        // What comes from there on is told of the medium that is similar in its first moment (van de Hulst 1980, section 14.1.3).
+        sigma_s /= 1.0 + g;
+      }
+      Unscattered unscattered = unscattered_at(place, to_light, back, scatterings == 1 ? FIRST_TRIES : 1);
+      back = unscattered.back;
+      sum += left * exp(-(sigma_s + sigma_a) * unscattered.way) *
+             (unscattered.irradiance * henyey_greenstein(1.0 - dot(back, direction), g, one_minus_g));
+      direction = scattered(direction, g, one_minus_g, random.yz);
+      kept *= g;
+      if (coarser) {
+        one_minus_g *= 1.0 + g;
+        g *= g;
+      }
+      continue;
+    }
+#ifdef REFRACTION
+#ifndef GREY
+    left *= 3.0 * passed / (passed.r + passed.g + passed.b);
+#endif
+    vec3 normal = outwards_at(place);
+    float cosine = dot(normal, direction);
+    float again = fresnel_reflectance(min(cosine, 1.0), 1.0 / stored.eta);
+    if (mirrored && scatterings > 0 && again < 1.0) {
+      vec3 outside = refract(direction, -normal, stored.eta);
+      sum += left * ((1.0 - again) * stored.eta * stored.eta * SUN_SHARPNESS / (2.0 * PI) * exp(SUN_SHARPNESS * (dot(outside, to_light) - 1.0)));
+    }
+    if (cosine <= 0.0 || random.w >= again) break;
+    direction = direction - 2.0 * cosine * normal;
+    mirrored = true;
+#else
+    break;
+#endif
+  }
+  return sum;
+}
