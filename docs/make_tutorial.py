@@ -28,7 +28,8 @@ def make_it_sugar():
     bevel.width, bevel.segments = 0.15, 4
     for polygon in cube.data.polygons:
         polygon.use_smooth = True
-    cube.data.use_auto_smooth = True
+    if hasattr(cube.data, "use_auto_smooth"):  # without it Blender keeps what is flat so by itself
+        cube.data.use_auto_smooth = True
 
 
 def choose_the_model():
@@ -54,12 +55,14 @@ def tweak():
 
 def pour_sand():
     """Another file: a handful of sand on a ground, under a sun."""
+    from mesograin import compat  # which Blender finds once the add-on is enabled
+
     begin()
     scene = bpy.context.scene
     bpy.data.objects.remove(bpy.data.objects["Cube"])
     bpy.ops.mesh.primitive_plane_add(size=20.0)
     ground = bpy.data.materials.new("Ground")
-    ground.use_nodes = True
+    compat.use_nodes(ground)
     bpy.context.object.data.materials.append(ground)
     bpy.ops.mesograin.add_pile(kind="sand", count=300, shapes=3, size=0.2, seed=1)
     scene.mesograin.millimetres_per_unit = 2.0

@@ -110,6 +110,16 @@ def use_nodes(datablock):
         datablock.use_nodes = True
 
 
+def names_of_index_passes():
+    """What Blender calls the passes of object and material indices; from Blender 5 on as its panels do."""
+    import bpy
+
+    # That shows in no property; scenes' compositing groups came with the same version.
+    if "compositing_node_group" in bpy.types.Scene.bl_rna.properties:
+        return "Object Index", "Material Index"
+    return "IndexOB", "IndexMA"
+
+
 def has_printed_statistics():
     """Whether a Blender without a window prints how far a render is; from Blender 5 on it tells its handlers alone."""
     import bpy

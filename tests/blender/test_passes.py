@@ -146,7 +146,7 @@ def test_indices_and_mattes_are_those_of_cycles(layers, tmp_path):
     scene.cycles.samples, scene.cycles.use_denoising, scene.cycles.use_adaptive_sampling = 64, False, False
     scene.cycles.pixel_filter_type = "BOX"
     theirs = layers()
-    for name, numbers in (("IndexOB", {0, 3, 4}), ("IndexMA", {0, 30, 40})):
+    for name, numbers in zip(compat.names_of_index_passes(), ({0, 3, 4}, {0, 30, 40})):
         assert set(np.unique(ours[name])) == numbers
         assert (ours[name] == theirs[name]).mean() > 0.93, name  # Cycles' are those of a sample somewhere in the pixel
     for kind in ("CryptoObject", "CryptoMaterial"):

@@ -3,6 +3,7 @@
 import os
 
 import bpy
+from mesograin import compat
 from mesograin.engine import status
 from mesograin.schema import models
 from mesograin.ui.bake_panel.session import session as baking
@@ -11,13 +12,17 @@ from mesograin.ui.compare_panel.session import session as comparing
 THEME = os.environ.get("MESOGRAIN_THEME", "dark")
 
 
-def prepare(window):
-    """The sphere, active; gives the Properties editor's area."""
+def prepare(window, viewport=False):
+    """The sphere, active, beside a viewport or what is drawn faster; gives the Properties editor's area."""
+    main = max(window._window().screen.areas, key=lambda area: area.width * area.height)
+    main.type = "VIEW_3D"
     area = yield from window.open("sphere", samples=1)
     use_theme()
     area.spaces.active.shading.type = "SOLID"
     with window.override(area):
         area.spaces.active.show_region_header = True
+    if not viewport:
+        main.type = "TEXT_EDITOR"
     bpy.context.view_layer.objects.active = bpy.data.objects["Sphere"]
     bpy.data.materials["Translucent"].mesograin.model = "model_2"
     yield from window.seconds(0.5)
@@ -62,7 +67,7 @@ def check_materials(window):
     material.mesograin_look.way = "coefficients"
     yield from keep(window, properties, "material_complaint")
     plain = bpy.data.materials.new("Plain")
-    plain.use_nodes = True
+    compat.use_nodes(plain)
     bpy.data.objects["Sphere"].active_material = plain
     yield from keep(window, properties, "material_plain")
 
@@ -89,7 +94,7 @@ def check_lights_and_camera(window):
 
 
 def check_what_is_left_out(window):
-    properties = yield from prepare(window)
+    properties = yield from prepare(window, viewport=True)
     area = window.area_of_type("VIEW_3D")
     bare = bpy.data.objects.new("Bare", bpy.data.objects["Sphere"].data.copy())
     bare.data.materials.clear()
@@ -114,14 +119,14 @@ def menu(window, area, name, call, what):
 
 
 def check_menus(window):
-    yield from prepare(window)
+    yield from prepare(window, viewport=True)
     area = window.area_of_type("VIEW_3D")
     for name in ("presets", "conversion", "add"):
         yield from menu(window, area, f"menu_{name}", bpy.ops.wm.call_menu, f"MESOGRAIN_MT_{name}")
 
 
 def check_tools(window):
-    yield from prepare(window)
+    yield from prepare(window, viewport=True)
     area = window.area_of_type("VIEW_3D")
     for letter in "SP":  # sand, a pile
         with window.override(area):
@@ -132,7 +137,7 @@ def check_tools(window):
 
 
 def check_comparison_and_bake(window):
-    properties = yield from prepare(window)
+    properties = yield from prepare(window, viewport=True)
     scene = bpy.context.scene
     scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = 96, 64, 100
     compared, baked = scene.mesograin_compare, scene.mesograin_bake
@@ -161,7 +166,7 @@ def check_comparison_and_bake(window):
 
 
 def check_preferences(window):
-    yield from prepare(window)
+    yield from prepare(window, viewport=True)
     area = window.area_of_type("VIEW_3D")
     bpy.context.preferences.active_section = "ADDONS"
     bpy.context.window_manager.addon_search = "Mesograin"

@@ -6,6 +6,7 @@ import typing
 import bpy
 import numpy as np
 
+from .. import compat
 from . import identities
 
 NOWHERE = 1e10
@@ -29,8 +30,9 @@ class Pass(typing.NamedTuple):
 DEPTH = Pass("Depth", "use_pass_z", "Z", "VALUE")
 POSITION = Pass("Position", "use_pass_position", "XYZ", "VECTOR")
 NORMAL = Pass("Normal", "use_pass_normal", "XYZ", "VECTOR")
-OBJECT_INDEX = Pass("IndexOB", "use_pass_object_index", "X", "VALUE", "Object Index")
-MATERIAL_INDEX = Pass("IndexMA", "use_pass_material_index", "X", "VALUE", "Material Index")
+_INDEX_NAMES = compat.names_of_index_passes()
+OBJECT_INDEX = Pass(_INDEX_NAMES[0], "use_pass_object_index", "X", "VALUE", "Object Index")
+MATERIAL_INDEX = Pass(_INDEX_NAMES[1], "use_pass_material_index", "X", "VALUE", "Material Index")
 SAMPLE_COUNT = Pass("Debug Sample Count", "cycles.pass_debug_sample_count", "X", "VALUE", "Sample Count")
 PASSES = (DEPTH, POSITION, NORMAL, OBJECT_INDEX, MATERIAL_INDEX, SAMPLE_COUNT)
 SURFACES, INDICES = (DEPTH, POSITION, NORMAL), (OBJECT_INDEX, MATERIAL_INDEX)

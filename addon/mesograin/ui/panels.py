@@ -186,8 +186,17 @@ class MESOGRAIN_PT_light(MesograinPanel, bpy.types.Panel):
         layout.use_property_split = True
         layout.use_property_decorate = True
         layout.prop(light, "type")
+        if hasattr(light, "use_temperature"):
+            row = layout.row(heading="Temperature")
+            row.prop(light, "use_temperature", text="")
+            number = row.row()
+            number.active = light.use_temperature
+            number.prop(light, "temperature", text="")
         layout.prop(light, "color")
         layout.prop(light, "energy", text="Irradiance" if light.type == "SUN" else "Power")
+        for name in ("exposure", "normalize"):
+            if hasattr(light, name):
+                layout.prop(light, name)
         for name, text in LIGHT_PROPERTIES[light.type].items():
             if hasattr(light, name):
                 layout.prop(light, name, **({"text": text} if text else {}))
