@@ -114,6 +114,13 @@ def test_what_is_no_grain_says_so_and_stays(native, kind, words):
     assert tuple(material.mesograin.sigma_s) == before
 
 
+def test_rough_glass_keeps_what_meets_a_second_facet(native):
+    material = grain("dielectric", roughness=0.25)
+    conversion.to_cycles(material, 1.0)
+    [glass] = [node for node in material.node_tree.nodes if node.type == "BSDF_GLASS"]
+    assert glass.distribution == "MULTI_GGX"
+
+
 def test_operators_convert_the_active_material(native):
     bpy.ops.mesh.primitive_uv_sphere_add()
     material = grain("index_matched")

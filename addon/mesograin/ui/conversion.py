@@ -28,6 +28,13 @@ def kind_of(grain):
     return by_boundary.get(grain.boundary, "subsurface")
 
 
+def _facets(glass):
+    """The distribution of a rough Glass BSDF. Plain GGX loses what meets a second facet, which in a heap of sugar, whose
+    light meets hundreds of surfaces, is a quarter of all light."""
+    known = {item.identifier for item in glass.bl_rna.properties["distribution"].enum_items}
+    return "MULTI_GGX" if "MULTI_GGX" in known else "GGX"
+
+
 def to_cycles(material, millimetres_per_unit):
     """Replaces a material's Cycles nodes by those that mean the same as its grain; returns what is lost."""
     grain = material.mesograin
@@ -38,7 +45,7 @@ def to_cycles(material, millimetres_per_unit):
     if kind == "volume_dielectric" and grain.roughness > 0.0:
         for node in material.node_tree.nodes:
             if node.type == "BSDF_GLASS":
-                node.distribution = "GGX"
+                node.distribution = _facets(node)
                 node.inputs["Roughness"].default_value = grain.roughness**0.5
     if kind == "volume_dielectric":
         lost.append("light through glass, which Cycles finds only by caustics: use wide lights")
