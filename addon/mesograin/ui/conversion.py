@@ -29,8 +29,8 @@ def kind_of(grain):
 
 
 def _facets(glass):
-    """The distribution of a rough Glass BSDF. Plain GGX loses what meets a second facet, which in a heap of sugar, whose
-    light meets hundreds of surfaces, is a quarter of all light."""
+    """The distribution of a rough Glass BSDF. Plain GGX loses what meets a second facet: in a heap of sugar, whose
+    light meets hundreds of surfaces, a quarter of all light."""
     known = {item.identifier for item in glass.bl_rna.properties["distribution"].enum_items}
     return "MULTI_GGX" if "MULTI_GGX" in known else "GGX"
 
