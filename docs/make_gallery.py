@@ -1,0 +1,361 @@
+# Makes docs/images/gallery_*.jpg and their lines of docs/gallery.md: heaps as artists pour them, by both engines:
+#   blender -b --factory-startup --python-exit-code 1 --python docs/make_gallery.py [-- ARGUMENT ...]
+# Arguments: names of heaps (default: all); --save DIR: the scenes as .blend files, instead of the pictures;
+# --keep DIR: the pictures as EXR, too, of which Cycles' are not rendered again.
+import dataclasses
+import json
+import math
+import pathlib
+import sys
+import tempfile
+import time
+
+import bpy
+import numpy as np
+from mathutils import Matrix, Vector
+
+DOCS = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(DOCS.parent / "addon"))
+
+SIZE = (240, 180)
+BLOCK = 10
+OUR_SAMPLES = 8
+SEEDS = (1, 2)
+
+
+@dataclasses.dataclass(frozen=True)
+class Heap:
+    """One picture. grains: (kind of shape, preset, changes of it) of each shape; count of grains and their radius in
+    mm. ground: its colour. light: a function of a scene. samples: of Cycles' for each of SEEDS."""
+
+    name: str
+    sentence: str
+    grains: tuple
+    count: int
+    radius: float
+    ground: tuple
+    light: object
+    samples: int
+    roundness: float = 0.3
+    segments: int = 10
+
+    @property
+    def reference(self):
+        """What Cycles' grains are made of."""
+        refracts = any(changes.get("boundary") != "index_matched" and preset != "snow" for _, preset, changes in
+                       self.grains if changes.get("model") != "lambert")
+        return "glass with a volume" if refracts else "index-matched volume"
+
+
+# Light
+
+def sun(irradiance, colour, height, around, wide):
+    """height above the horizon, around it, and width: degrees."""
+    light = bpy.data.lights.new("Sun", "SUN")
+    light.energy, light.color, light.angle = irradiance, colour, math.radians(wide)
+    rise, turn = math.radians(height), math.radians(around)
+    towards = Vector((math.cos(rise) * math.cos(turn), math.cos(rise) * math.sin(turn), math.sin(rise)))
+    placed = bpy.data.objects.new("Sun", light)
+    placed.matrix_world = towards.to_track_quat("Z", "Y").to_matrix().to_4x4()
+    bpy.context.scene.collection.objects.link(placed)
+
+
+def background():
+    """The node of a new world, and its tree."""
+    world = bpy.context.scene.world = bpy.data.worlds.new("Sky")
+    world.use_nodes = True
+    tree = world.node_tree
+    return next(node for node in tree.nodes if node.type == "BACKGROUND"), tree
+
+
+def sky(colour):
+    background()[0].inputs["Color"].default_value = (*colour, 1.0)
+
+
+def noon():
+    """A sun as wide as it is, and a blue sky."""
+    sun(3.2, (1.0, 0.95, 0.88), 48.0, -35.0, 0.53)
+    sky((0.28, 0.38, 0.55))
+
+
+def evening():
+    sun(3.0, (1.0, 0.78, 0.55), 17.0, -15.0, 0.53)
+    sky((0.25, 0.33, 0.5))
+
+
+def soft():
+    """A sun behind a thin cloud, 40 degrees wide, and a bright sky: what Cycles finds through glass."""
+    sun(2.6, (1.0, 0.96, 0.9), 50.0, -40.0, 40.0)
+    sky((0.42, 0.48, 0.56))
+
+
+def window():
+    """An image of a room: a bright window, a dim lamp, a dark floor."""
+    width, height = 256, 128
+    turn, rise = np.meshgrid((np.arange(width) + 0.5) / width * 360.0 - 180.0,
+                             (np.arange(height) + 0.5) / height * 180.0 - 90.0)
+    image = np.where(rise[..., None] > 0.0, np.array((0.24, 0.22, 0.2)), np.array((0.1, 0.08, 0.06)))
+    panes = (np.abs(turn + 60.0) < 28.0) & (np.abs(rise - 42.0) < 20.0)
+    bars = (np.abs(turn + 60.0) < 2.0) | (np.abs(rise - 42.0) < 2.0)
+    image = np.where((panes & ~bars)[..., None], np.array((6.5, 7.0, 7.8)), image)
+    lamp = np.exp(-(((turn - 110.0) / 14.0) ** 2 + ((rise - 30.0) / 12.0) ** 2))
+    image = image + lamp[..., None] * np.array((5.0, 3.4, 1.8))
+    pixels = np.ones((height, width, 4), dtype=np.float32)
+    pixels[..., :3] = image
+    made = bpy.data.images.new("Room", width, height, float_buffer=True)
+    made.pixels.foreach_set(pixels.ravel())
+    made.pack()
+    node, tree = background()
+    texture = tree.nodes.new("ShaderNodeTexEnvironment")
+    texture.image = made
+    tree.links.new(texture.outputs["Color"], node.inputs["Color"])
+
+
+MATCHED = {"boundary": "index_matched"}
+WET = {"eta": 1.544 / 1.333, "roughness": 0.05}
+
+HEAPS = (
+    Heap("sand", "dry quartz sand at noon", 3 * (("sand", "sand", MATCHED),), 400, 0.5, (0.42, 0.36, 0.3), noon, 8),
+    Heap("dune", "the same in the evening", 3 * (("sand", "sand", MATCHED),), 400, 0.5, (0.42, 0.36, 0.3), evening, 8),
+    Heap("beach", "sand of many minerals: quartz, feldspar, olivine, magnetite, shell",
+         (("sand", "sand", MATCHED), ("sand", "sand", {**MATCHED, "sigma_a": (0.03, 0.08, 0.16)}),
+          ("sand", "sand", {**MATCHED, "sigma_a": (0.08, 0.45, 0.9), "sigma_s": (1.4, 1.4, 1.4)}),
+          ("sand", "sand", {**MATCHED, "sigma_a": (0.5, 0.16, 0.7)}),
+          ("sand", "sand", {"model": "lambert", "reflectance": (0.05, 0.045, 0.045)}),
+          ("sand", "rice", {**MATCHED, "sigma_s": (4.0, 4.0, 4.0)})), 400, 0.5, (0.42, 0.36, 0.3), noon, 8),
+    Heap("snow", "clumps of snow under a low sun", 3 * (("rounded_snow", "snow", {}),), 300, 6.0, (0.25, 0.25, 0.26),
+         evening, 8),
+    Heap("dry_sand", "the sand with its surface, under a thin cloud", 3 * (("sand", "sand", {}),), 400, 0.5,
+         (0.42, 0.36, 0.3), soft, 8),
+    Heap("wet_sand", "the same, wet", 3 * (("sand", "sand", WET),), 400, 0.5, (0.25, 0.21, 0.17), soft, 8),
+    Heap("salt", "table salt under a thin cloud", 3 * (("salt", "salt", {}),), 400, 0.25, (0.1, 0.12, 0.16), soft, 8,
+         roundness=0.15),
+    Heap("sugar", "sugar by a window", 3 * (("sugar", "sugar", {}),), 300, 0.4, (0.2, 0.11, 0.06), window, 8),
+)
+
+
+# Scenes
+
+def ground_material(colour):
+    material = bpy.data.materials.new("Ground")
+    material.use_nodes = True
+    nodes = material.node_tree.nodes
+    nodes.clear()
+    output, surface = nodes.new("ShaderNodeOutputMaterial"), nodes.new("ShaderNodeBsdfDiffuse")
+    surface.inputs["Color"].default_value = (*colour, 1.0)
+    material.node_tree.links.new(surface.outputs[0], output.inputs["Surface"])
+    return material
+
+
+def grain_material(preset, changes, millimetres_per_unit):
+    """A grain, and Cycles' nodes that mean the same."""
+    from mesograin.schema import models, presets
+    from mesograin.ui import conversion
+    from mesograin.ui.presets import apply
+
+    material = bpy.data.materials.new(preset.capitalize())
+    material.mesograin.model = models.PREFERRED
+    apply(presets.BY_IDENTIFIER[preset], material.mesograin)
+    for name, value in changes.items():
+        setattr(material.mesograin, name, value)
+    conversion.to_cycles(material, millimetres_per_unit)
+    return material
+
+
+def pour(heap):
+    """The scene of a Heap: a Blender unit is ten radii of a grain."""
+    from mesograin.grains import objects, pile
+
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
+    bpy.context.preferences.filepaths.save_version = 0
+    scene = bpy.context.scene
+    scene.render.resolution_x, scene.render.resolution_y = SIZE
+    scene.render.resolution_percentage = 100
+    scene.view_settings.view_transform = "Standard"
+    size = 0.1
+    scene.mesograin.millimetres_per_unit = heap.radius / size
+    scene.mesograin.samples = OUR_SAMPLES
+    shapes, known = [], {}
+    for number, (kind, preset, changes) in enumerate(heap.grains):
+        data = objects.mesh(kind, seed=number, segments=heap.segments, roundness=heap.roundness)
+        key = (preset, str(changes))
+        known[key] = known.get(key) or grain_material(preset, changes, scene.mesograin.millimetres_per_unit)
+        data.materials.append(known[key])
+        shapes.append(bpy.data.objects.new(data.name, data))
+    placings = pile.settle(heap.count, size, shapes=len(shapes), seed=1)
+    scene.collection.objects.link(objects.add_pile(placings, shapes, "Heap"))
+    half = 40.0
+    data = bpy.data.meshes.new("Ground")
+    data.from_pydata([(-half, -half, 0.0), (half, -half, 0.0), (half, half, 0.0), (-half, half, 0.0)], [],
+                     [(0, 1, 2, 3)])
+    data.materials.append(ground_material(heap.ground))
+    scene.collection.objects.link(bpy.data.objects.new("Ground", data))
+    heap.light()
+    reach = float(np.percentile(np.hypot(*placings.middles[:, :2].T), 90.0))
+    top = float(placings.middles[:, 2].max())
+    look_at(reach, top)
+
+
+def look_at(reach, top):
+    """The pile fills the picture."""
+    camera = bpy.data.cameras.new("Camera")
+    camera.lens = 70.0
+    at = Vector((0.0, 0.0, 0.42 * top))
+    away = Vector((0.0, -math.cos(math.radians(32.0)), math.sin(math.radians(32.0))))
+    place = at + 3.4 * reach * away
+    made = bpy.data.objects.new("Camera", camera)
+    made.matrix_world = Matrix.Translation(place) @ away.to_track_quat("Z", "Y").to_matrix().to_4x4()
+    bpy.context.scene.collection.objects.link(made)
+    bpy.context.scene.camera = made
+
+
+# Pictures
+
+def processor_seconds():
+    """Of all threads, so that other work on the machine counts little."""
+    return time.process_time()
+
+
+def render(path):
+    """((h, w, 3) linear, row 0 at the bottom; seconds of the processor), of the scene as its engine draws it."""
+    scene = bpy.context.scene
+    settings = scene.render.image_settings
+    settings.file_format, settings.color_mode, settings.color_depth = "OPEN_EXR", "RGBA", "32"
+    scene.render.filepath = str(path)
+    before = processor_seconds()
+    bpy.ops.render.render(write_still=True)
+    return pixels_of(path), processor_seconds() - before
+
+
+def pixels_of(path):
+    image = bpy.data.images.load(str(path))
+    image.colorspace_settings.name = "Non-Color"
+    pixels = np.empty(SIZE[0] * SIZE[1] * image.channels, dtype=np.float32)
+    image.pixels.foreach_get(pixels)
+    bpy.data.images.remove(image)
+    return pixels.reshape(SIZE[1], SIZE[0], -1)
+
+
+def ours(exchange, folder):
+    scene = bpy.context.scene
+    scene.render.engine, scene.mesograin.exchange = "MESOGRAIN", exchange
+    return render(folder / f"{exchange}.exr")
+
+
+def grains_alone(folder):
+    """How much of each pixel grains cover."""
+    scene, ground = bpy.context.scene, bpy.data.objects["Ground"]
+    ground.hide_render, scene.render.film_transparent, scene.mesograin.samples = True, True, 4
+    pixels, _ = ours("off", folder)
+    ground.hide_render, scene.render.film_transparent, scene.mesograin.samples = False, False, OUR_SAMPLES
+    return pixels[..., 3]
+
+
+def theirs(heap, folder):
+    """(one picture for each of SEEDS, seconds of the processor for all)."""
+    from mesograin.cycles import kinds, settings
+
+    scene = bpy.context.scene
+    took = folder / "cycles.json"
+    if took.exists():
+        return [pixels_of(folder / f"cycles_{seed}.exr")[..., :3] for seed in SEEDS], json.loads(took.read_text())
+    pictures, seconds = [], 0.0
+    for seed in SEEDS:
+        chosen = settings.settings(kinds.KINDS["volume_dielectric"], heap.samples, seed, SIZE)
+        chosen["render"]["film_transparent"] = False
+        del chosen["image_settings"], chosen["view_settings"]
+        settings.apply(scene, chosen)
+        picture, more = render(folder / f"cycles_{seed}.exr")
+        pictures.append(picture[..., :3])
+        seconds += more
+    took.write_text(json.dumps(seconds))
+    return pictures, seconds
+
+
+# Numbers
+
+def blocks(picture):
+    """Means of blocks of a picture, row by row."""
+    return picture.astype(np.float64).reshape(SIZE[1] // BLOCK, BLOCK, SIZE[0] // BLOCK, BLOCK, -1).mean(axis=(1, 3))
+
+
+def numbers(picture, references, covered):
+    """(ratio of totals, relative L1 in blocks, that of the noise of the references' mean), where grains are."""
+    where = blocks(covered[..., None])[..., 0] > 0.5
+    found, first, second = (blocks(each[..., :3])[where] for each in (picture, *references))
+    right = 0.5 * (first + second)
+    return (found.sum() / right.sum(), np.abs(found - right).sum() / right.sum(),
+            0.5 * np.abs(first - second).sum() / right.sum())
+
+
+def shown(picture, exposure):
+    """sRGB, 0 to 1."""
+    linear = np.clip(picture[..., :3] * exposure, 0.0, 1.0)
+    return np.where(linear < 0.0031308, 12.92 * linear, 1.055 * linear ** (1.0 / 2.4) - 0.055)
+
+
+def save_beside(name, pictures):
+    gap = np.ones((SIZE[1], 6, 3), dtype=np.float32)
+    joined = np.concatenate([part for picture in pictures for part in (picture, gap)][:-1], axis=1)
+    height, width = joined.shape[:2]
+    image = bpy.data.images.new(name, width, height)
+    image.colorspace_settings.name = "Non-Color"
+    image.pixels.foreach_set(np.concatenate((joined, np.ones((height, width, 1))), axis=-1).astype(np.float32).ravel())
+    image.filepath_raw, image.file_format = str(DOCS / "images" / f"gallery_{name}.jpg"), "JPEG"
+    bpy.context.scene.render.image_settings.quality = 85
+    image.save()
+
+
+def take(heap, folder):
+    """The two lines of docs/gallery.md of a Heap: numbers and pictures."""
+    pour(heap)
+    folder.mkdir(parents=True, exist_ok=True)
+    pictures = {exchange: ours(exchange, folder) for exchange in ("heaps", "gathered")}
+    covered = grains_alone(folder)
+    references, seconds = theirs(heap, folder)
+    mean = np.mean(references, axis=0)
+    exposure = 0.85 / np.percentile(mean[covered > 0.5].mean(axis=-1), 97.0)
+    save_beside(heap.name, [shown(picture, exposure) for picture in (*(each for each, _ in pictures.values()), mean)])
+    cells = []
+    for picture, took in pictures.values():
+        total, off, noise = numbers(picture, references, covered)
+        cells += [f"{took:.0f}", f"{total:.2f}", f"{100.0 * off:.1f} %"]
+    return (f"| {heap.sentence}; {heap.count} grains, {heap.reference} | {' | '.join(cells)} | {seconds:.0f} |"
+            f" {100.0 * noise:.1f} % |\n| ![](images/gallery_{heap.name}.jpg) ||||||||\n")
+
+
+def write_lines(heap, lines):
+    """In place of those that docs/gallery.md has of a Heap, or at the end of its table."""
+    page = DOCS / "gallery.md"
+    kept = page.read_text(encoding="utf-8").splitlines(keepends=True)
+    old = next((row for row, line in enumerate(kept) if f"images/gallery_{heap.name}.jpg" in line), None)
+    if old is not None:
+        kept[old - 1:old + 1] = [lines]
+    else:
+        last = max(row for row, line in enumerate(kept) if line.startswith("|"))
+        kept.insert(last + 1, lines)
+    page.write_text("".join(kept), encoding="utf-8")
+
+
+def main():
+    import addon_utils
+
+    addon_utils.enable("mesograin", default_set=True)
+    words = sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else []
+    save = pathlib.Path(words[words.index("--save") + 1]) if "--save" in words else None
+    keep = pathlib.Path(words[words.index("--keep") + 1]) if "--keep" in words else None
+    asked = [word for word in words if word in {heap.name for heap in HEAPS}]
+    for heap in HEAPS:
+        if asked and heap.name not in asked:
+            continue
+        if save:
+            pour(heap)
+            bpy.ops.wm.save_as_mainfile(filepath=str(save / f"{heap.name}.blend"), compress=True)
+        elif keep:
+            write_lines(heap, take(heap, keep / heap.name))
+        else:
+            with tempfile.TemporaryDirectory() as folder:
+                write_lines(heap, take(heap, pathlib.Path(folder)))
+
+
+main()
