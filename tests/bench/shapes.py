@@ -5,7 +5,8 @@
 
 FOLDER holds a manifest.json: a camera, and for each image its EXR file, its mesh (an OBJ file, or "sphere" and its
 radius), medium and light. Figures are of blocks of 8x8 pixels: relative_l1 is sum|picture - truth| / sum truth, total
-is sum picture / sum truth; noise is what the truth's own noise adds to relative_l1, where its file tells. The truth
+is sum picture / sum truth; noise is what the truth's own noise adds to relative_l1, where its file tells; of_front is
+sum|picture - truth| over what the truth of the same grain lit from the front sums to, where FOLDER has that. The truth
 holds light that was scattered at least once, no specular reflection.
 """
 import argparse
@@ -29,6 +30,16 @@ def compare(picture, truth):
     """Figures of one picture, given both in radiance, premultiplied by coverage."""
     drawn, true = blocks(picture), blocks(truth)
     return {"relative_l1": float(numpy.abs(drawn - true).sum() / true.sum()), "total": float(drawn.sum() / true.sum())}
+
+
+def of_front(shapes, image):
+    """By what a relative L1 of this image is multiplied to be one of the brightness from the front; None if unknown."""
+    same = ("mesh", "eta", "g", "sigma_s", "sigma_a", "resolution", "irradiance")
+    for other in shapes.images:
+        if light_of(other) == "front" and all(other[key] == image[key] for key in same) and \
+                other.get("channel") == image.get("channel"):
+            return float(shapes.truth(image).sum() / shapes.truth(other).sum())
+    return None
 
 
 class Shapes:
@@ -97,9 +108,12 @@ def measure(shapes, images, models, taps, samples, pictures=None):
             drawn = shapes.draw(image, model, taps, samples)[..., "RGB".index(image.get("channel", "R"))]
             if pictures:
                 shapes.keep(pictures / f"{pathlib.Path(image['file']).stem}_{model}.exr", drawn)
+            figures = compare(drawn, truth)
+            if (share := of_front(shapes, image)) is not None:
+                figures["of_front"] = share * figures["relative_l1"]
             yield {"file": image["file"], "shape": pathlib.Path(image["mesh"]).stem, "eta": image["eta"],
                    "radius": image["radius_in_mean_free_paths"], "light": light_of(image),
-                   "albedo": albedo(image), "g": image["g"], "model": model, **compare(drawn, truth),
+                   "albedo": albedo(image), "g": image["g"], "model": model, **figures,
                    **({} if noise is None else {"noise": share_of_noise(noise, truth)})}
 
 
@@ -120,7 +134,9 @@ def table(rows):
     for row in rows:
         case = cases[row["shape"], row["eta"], row["g"], round(row["albedo"], 6), row["radius"]]
         noise = f" (noise {100.0 * row['noise']:.1f})" if "noise" in row else ""
-        case[row["model"], row["light"]] = f"{100.0 * row['relative_l1']:.1f} / {row['total']:.2f}{noise}"
+        told = row["light"] == "back" and "of_front" in row
+        front = f" = {100.0 * row['of_front']:.1f} of front" if told else ""
+        case[row["model"], row["light"]] = f"{100.0 * row['relative_l1']:.1f} / {row['total']:.2f}{front}{noise}"
     for (shape, eta, g, of_channel, radius), case in sorted(cases.items()):
         figures = " | ".join(case.get(column, "") for column in columns)
         yield f"| {shape} | {eta:g} | {g:g} | {of_channel:g} | {radius:g} | {figures} |"
