@@ -15,6 +15,7 @@ from mesograin.command_line.parser import Parser  # noqa: E402
 from mesograin.studies.animation import arguments as animate_arguments  # noqa: E402
 from mesograin.studies.baking import arguments as bake_arguments  # noqa: E402
 from mesograin.studies.comparison import arguments as compare_arguments  # noqa: E402
+from mesograin.studies.match import arguments as match_arguments  # noqa: E402
 from mesograin.studies.sweep import arguments as sweep_arguments  # noqa: E402
 from mesograin.studies.trade import arguments as trade_arguments  # noqa: E402
 
@@ -184,6 +185,23 @@ class Bake(Command):
         return place.in_blender("bake", "addon/mesograin/studies/baking/command.py", *words)
 
 
+class Match(Command):
+    name, sentence = "match", "find the coefficients whose picture is nearest to a given one"
+
+    def parser(self):
+        return match_arguments.build()
+
+    def check(self, words):
+        chosen = match_arguments.parse(words)[0]
+        return ["any_python" if match_arguments.is_json(chosen) else "blender", "lists report", "product product"]
+
+    def run(self, words, place):
+        folder = "addon/mesograin/studies/match"
+        if match_arguments.is_json(match_arguments.parse(words)[0]):
+            return [place.python, SOURCE / folder / "json_command.py", *words]
+        return place.in_blender("match", f"{folder}/command.py", *words)
+
+
 class Test(Command):
     name, sentence = "test", "run the tests"
     about = ("Runs the tests; the last line printed is their sum, `N passed, M failed`.\n\n" +
@@ -337,7 +355,7 @@ RENDER = Render()
 COMMANDS = {command.name: command for command in (
     InBlender("compare", "render every model and Cycles, measure, write a report", "comparison", compare_arguments),
     InBlender("trade", "measure error against time, for every model and for Cycles", "trade", trade_arguments),
-    Sweep(), Animate(), RENDER, Bake(), Test(), Bench(), Build(), Package(), Install())}
+    Sweep(), Animate(), RENDER, Bake(), Match(), Test(), Bench(), Build(), Package(), Install())}
 
 
 def _referee(words):

@@ -48,6 +48,12 @@ scene::Mesh make_mesh(const Array<float>& positions, const std::optional<Array<f
           uvs ? to_vectors<glm::vec2>(*uvs, "uvs") : std::vector<glm::vec2>{}};
 }
 
+// Python's meshes cannot be changed either.
+template <typename Drawn>
+std::shared_ptr<scene::Mesh> mesh_of(const Drawn& drawn) {
+  return std::const_pointer_cast<scene::Mesh>(drawn.mesh);
+}
+
 void bind_mesh_and_instance(py::module_& module) {
   py::class_<scene::Mesh, std::shared_ptr<scene::Mesh>>(
       module, "Mesh", "A triangle mesh. Its arrays are copied and never change, so it is sent to the device only once.")
@@ -68,6 +74,7 @@ void bind_mesh_and_instance(py::module_& module) {
            }),
            py::arg("mesh").none(false), py::arg("material"), py::arg("transform") = py::none(),
            "transform: (4, 4) float64, object to world; None is the identity.")
+      .def_property_readonly("mesh", &mesh_of<scene::Instance>)
       .def_readonly("material", &scene::Instance::material)
       .def_property_readonly("transform", [](const scene::Instance& i) { return to_array(i.object_to_world); });
 }
@@ -163,6 +170,7 @@ void bind_instance_array(py::module_& module) {
             return other;
           },
           py::arg("material"), "The same instances of another material; nothing is copied.")
+      .def_property_readonly("mesh", &mesh_of<scene::InstanceArray>)
       .def_property_readonly("factors", &from_factors)
       .def_readonly("material", &scene::InstanceArray::material)
       .def_property_readonly("transforms", &to_array_of_matrices)

@@ -12,6 +12,7 @@ from mesograin.schema import models, parameters
 from mesograin.ui import panels
 from mesograin.ui.bake_panel import panel as bake_panel
 from mesograin.ui.compare_panel import panel as compare_panel
+from mesograin.ui.match_panel import panel as match_panel
 from mesograin.ui.side_task import results
 
 # Pixels at a UI scale of 1, in a Properties editor of Blender's default layout on a screen 1500 wide, 260 across: what
@@ -87,7 +88,7 @@ def cut_off(drawn):
 
 
 @pytest.mark.parametrize("panel", [panels.MESOGRAIN_PT_sampling, panels.MESOGRAIN_PT_passes,
-                                   bake_panel.MESOGRAIN_PT_bake])
+                                   bake_panel.MESOGRAIN_PT_bake, match_panel.MESOGRAIN_PT_match])
 def test_no_label_of_the_render_settings_is_cut_off(panel):
     bpy.context.scene.mesograin_bake.compare = True
     drawn = draw(panel)

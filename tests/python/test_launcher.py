@@ -11,7 +11,7 @@ import zipfile
 import pytest
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
-COMMANDS = ("compare", "trade", "sweep", "render", "bake", "test", "bench", "build", "package", "install")
+COMMANDS = ("compare", "trade", "sweep", "render", "bake", "match", "test", "bench", "build", "package", "install")
 
 
 def launcher(*arguments, folder=SOURCE, **environment):
@@ -56,6 +56,7 @@ def test_help_needs_no_build(tmp_path):
     (("render",), 2, "a scene and an output are needed"),
     (("bake",), 2, "required: SCENE.blend, -o/--output"),
     (("bake", "no such.blend", "-o", "a.exr"), 2, "there is no scene 'no such.blend'"),
+    (("match", "no such.json", "a.exr"), 2, "there is no scene 'no such.json'"),
     (("build", "--blender", "/no/such/blender"), 3, "There is no Blender at '/no/such/blender'"),
     (("build", "--blender", "/bin/true"), 3, "did not say which Python it embeds"),
 ])

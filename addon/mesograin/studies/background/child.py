@@ -108,7 +108,14 @@ def bake(channel, **arguments):
     beside.bake(**arguments, on_step=channel.step, on_sentence=channel.sentence)
 
 
-WORKS = {"compare": compare, "bake": bake}
+def match(channel, **arguments):
+    """Of coefficients to a picture; the arguments are those of `match.run.match_image`."""
+    from mesograin.studies.match import run
+
+    run.match_image(**arguments, on_step=channel.step, on_sentence=channel.sentence)
+
+
+WORKS = {"compare": compare, "bake": bake, "match": match}
 
 
 if __name__ == "__main__":

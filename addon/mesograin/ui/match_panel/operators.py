@@ -1,0 +1,70 @@
+# What the buttons of the Match to Picture panel do.
+import bpy
+
+from ..active_material import OnActiveMaterial
+from ..side_task.operators import CancelOperator, ShowPictureOperator, StartOperator
+from .session import session
+
+
+class MESOGRAIN_OT_match(StartOperator, bpy.types.Operator):
+    bl_idname = "mesograin.match"
+    bl_label = "Match to Picture"
+    bl_description = ("Find, beside this Blender, the coefficients of this material by which the scene looks most like "
+                      "the picture; the material stays as it is until Apply")
+    session = session
+
+    @classmethod
+    def poll(cls, context):
+        return getattr(context, "material", None) is not None and super().poll(context)
+
+    def execute(self, context):
+        if bpy.app.background:
+            self.report({"ERROR"}, "Without a window, call ./mesograin match.")
+            return {"CANCELLED"}
+        return super().execute(context)
+
+
+class MESOGRAIN_OT_cancel_match(CancelOperator, bpy.types.Operator):
+    bl_idname = "mesograin.cancel_match"
+    bl_description = "End the match at once; what was drawn is remembered, and the next one goes on from there"
+    session = session
+
+
+class MESOGRAIN_OT_show_match(ShowPictureOperator, bpy.types.Operator):
+    bl_idname = "mesograin.show_match"
+    session = session
+
+    @classmethod
+    def description(cls, _context, properties):
+        told = {"model": "What was found, by Mesograin", "error": "What was found less the picture",
+                "reference": "What was to be matched, as small as it was compared"}
+        return f"{told.get(properties.picture, '')}; shown in an Image Editor"
+
+    def entry(self):
+        return session.entry, session.task.out
+
+
+class MESOGRAIN_OT_apply_match(OnActiveMaterial, bpy.types.Operator):
+    bl_idname = "mesograin.apply_match"
+    bl_label = "Apply to Material"
+    bl_description = "Give the matched material the coefficients that were found, with a scale of 1"
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, _context):
+        return session.results is not None and not session.running
+
+    def execute(self, _context):
+        found = session.results
+        material = bpy.data.materials.get(found["material"])
+        if material is None:
+            self.report({"ERROR"}, f"There is no material '{found['material']}' any more.")
+            return {"CANCELLED"}
+        grain = material.mesograin
+        for name in ("sigma_a", "sigma_s", "g", "scale"):
+            setattr(grain, name, found[name])
+        return {"FINISHED"}
+
+
+register, unregister = bpy.utils.register_classes_factory(
+    (MESOGRAIN_OT_match, MESOGRAIN_OT_cancel_match, MESOGRAIN_OT_show_match, MESOGRAIN_OT_apply_match))

@@ -1,0 +1,93 @@
+# The Match to Picture panel, among a material's properties.
+import bpy
+
+from ...schema import models
+from ...studies.background import job as jobs
+from ...studies.match import files
+from .. import panels
+from ..side_task import panel as side_task
+from ..side_task import pictures
+from . import operators
+from .session import session
+
+TITLES = {"sigma_s": "sigma_s, 1/mm", "sigma_a": "sigma_a, 1/mm", "mean_free_path": "Free Path, mm", "g": "g",
+          "exposure": "Exposure"}
+
+
+def draw_settings(layout, context):
+    asked = context.scene.mesograin_match
+    layout.template_ID(asked, "image", open="image.open")
+    layout.row().prop(asked, "parameters", expand=True)
+    column = layout.column()
+    column.use_property_split = True
+    column.use_property_decorate = False
+    column.prop(asked, "reference")
+    column.column(heading="Exposure").prop(asked, "free_exposure", text="Unknown")
+    column.prop(asked, "size")
+    column.prop(asked, "out")
+
+
+def draw_job(layout, context):
+    """The button, or how far the job is; then what went wrong or was left out."""
+    job = session.task
+    detail = f"{job.step.number} of about {job.step.count}: {job.step.what}" if job is not None and job.step else ""
+    side_task.draw_task(layout, context, session, operators.MESOGRAIN_OT_match, operators.MESOGRAIN_OT_cancel_match,
+                        "Blender is starting", detail, icon="EYEDROPPER")
+    if not session.error and job is not None and job.state == jobs.CANCELLED:
+        layout.label(text="Cancelled; the next goes on from here.", icon="INFO")
+    for sentence in job.sentences if job is not None else ():
+        panels.draw_sentence(layout, context, sentence)
+
+
+def draw_results(layout, context):
+    found = session.results
+    if found is None:
+        return
+    box = layout.box()
+    box.label(text=f"{found['material']}, by {models.MODELS[found['model']].label}")
+    for name, title in TITLES.items():
+        if name in found["intervals"]:
+            column = box.column(align=True)
+            column.label(text=title)
+            row = column.row(align=True)
+            for entry in found["intervals"][name]:
+                row.label(text=_short(name, entry))
+    unknown = files.undetermined(found["intervals"])
+    if unknown:
+        words = "; ".join(f"{name} of {', '.join(channels)}" if len(found["intervals"][name]) == 3 else name
+                          for name, channels in unknown.items())
+        panels.draw_sentence(box, context, f"The picture does not determine {words}.", icon="QUESTION")
+    panels.draw_sentence(box, context, f"{found['metrics']['relative_l1_blocks']:.1%} off in blocks, after"
+                         f" {found['renders']} pictures.", icon="INFO")
+    row = box.row(align=True)
+    for picture in pictures.pictures_of(session.entry):
+        row.operator(operators.MESOGRAIN_OT_show_match.bl_idname, text=pictures.BUTTONS[picture][0]).picture = picture
+    layout.operator(operators.MESOGRAIN_OT_apply_match.bl_idname, icon="CHECKMARK")
+
+
+def _short(name, entry):
+    """'2.3 ± 4 %', '0.1 ?'; of g, '0.8 ± 0.05'."""
+    if not entry["determined"]:
+        return f"{entry['value']:.3g} ?"
+    if name == "g":
+        return f"{entry['value']:.2f} ± {0.5 * (entry['high'] - entry['low']):.2f}"
+    return f"{entry['value']:.3g} ± {100.0 * (entry['high'] / entry['value'] - 1.0):.0f} %"
+
+
+class MESOGRAIN_PT_match(panels.MesograinPanel, bpy.types.Panel):
+    bl_label = "Match to Picture"
+    bl_context = "material"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context):
+        return (context.material is not None and super().poll(context)
+                and models.CHOICES[context.material.mesograin.model].translucent)
+
+    def draw(self, context):
+        side_task.draw_settings(self.layout, context, session, draw_settings)
+        draw_job(self.layout, context)
+        draw_results(self.layout, context)
+
+
+register, unregister = bpy.utils.register_classes_factory((MESOGRAIN_PT_match,))
