@@ -36,6 +36,7 @@ BENCHMARKS = {
     "accuracy": "how far each model's sphere is from photon Monte Carlo; about twelve minutes",
     "relightable": "how far a relightable bake is from bakes for each light, by its number of components",
     "shapes": "how far pictures of grains of any shape are from photon Monte Carlo, such as tests/data/shapes holds",
+    "match": "how near a match comes to the coefficients of Cycles' pictures: a sphere, sand, a heap",
     "transport": "how long the model transport takes to answer for a new mesh, and after a slider",
     "false_alarms": "how often the significance test calls renders different that differ in their seed alone",
 }
@@ -279,7 +280,7 @@ class Bench(Command):
     def run(self, words, place):
         name, options = self._chosen(words)
         script = f"tests/bench/{name}.py"
-        if name == "false_alarms":
+        if name in ("false_alarms", "match"):
             return place.in_blender("bench", script, *options)
         return [place.python, SOURCE / script, place.build, *options]
 

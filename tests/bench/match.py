@@ -77,7 +77,7 @@ def prepare(case, size):
     return depsgraph(), material
 
 
-def measure(case, models, size, samples, keep=None):
+def measure(case, models, size, samples, corrections, keep=None):
     """Dicts: one for each model."""
     from mesograin import native_module
     from mesograin.cycles import reference
@@ -95,7 +95,8 @@ def measure(case, models, size, samples, keep=None):
         whole = target.linear(case, truth)
         subject, small, _, _ = of_blender.subject(bpy.context.evaluated_depsgraph_get(), None, whole, size, 32,
                                                   REFERENCE)
-        request = search.Request(("sigma_a", "sigma_s"), model)
+        trace = of_blender.tracer(bpy.context.evaluated_depsgraph_get(), whole, small, 1, REFERENCE, samples)
+        request = search.Request(("sigma_a", "sigma_s"), model, corrections=corrections, trace=trace)
         progress = Progress()
         progress.plan(search.steps(request, search.guess(subject)))
         started = time.process_time()
@@ -138,8 +139,9 @@ def main():
     parser = argparse.ArgumentParser(prog="./mesograin bench match", description=__doc__)
     parser.add_argument("--cases", nargs="+", choices=CASES, default=list(CASES))
     parser.add_argument("--models", nargs="+", default=["transport", "model_3"])
-    parser.add_argument("--samples", type=int, default=256, help="of Cycles, each pixel (default: 256)")
-    parser.add_argument("--size", type=int, default=128, help="pixels a side (default: 128)")
+    parser.add_argument("--samples", type=int, default=128, help="of Cycles, each pixel (default: 128)")
+    parser.add_argument("--corrections", type=int, default=0, help="by Cycles, of the model (default: 0)")
+    parser.add_argument("--size", type=int, default=96, help="pixels a side (default: 96)")
     parser.add_argument("--json", type=pathlib.Path, metavar="FILE", help="also writes the numbers there")
     parser.add_argument("--keep", type=pathlib.Path, metavar="FOLDER", help="also keeps the pictures there")
     options = parser.parse_args(sys.argv[sys.argv.index("--") + 1:])
@@ -153,7 +155,8 @@ def main():
     print(HEADER, flush=True)
     rows = []
     for case in options.cases:
-        for measured in measure(case, options.models, options.size, options.samples, options.keep):
+        for measured in measure(case, options.models, options.size, options.samples, options.corrections,
+                                options.keep):
             rows.append(measured)
             print(row(measured), flush=True)
     if options.json:

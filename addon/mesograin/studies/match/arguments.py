@@ -7,7 +7,8 @@ from pathlib import Path
 from ...command_line import parser as shared
 from ...command_line.values import positive
 from ..comparison import mask_names
-from .choices import COEFFICIENTS, EXPOSURES, MODELS, PARAMETERS, REFERENCES, Asked
+from .choices import (COEFFICIENTS, CORRECTIONS, EXPOSURES, MODELS, MOST_CORRECTIONS, PARAMETERS, REFERENCES,
+                      Asked)
 
 
 def build():
@@ -49,6 +50,11 @@ def build():
                         help=f"longer side of what is drawn and compared, in pixels (default: {Asked.size})")
     parser.add_argument("--samples", type=positive, default=Asked.samples, metavar="N",
                         help=f"of each pixel of each picture (default: {Asked.samples})")
+    parser.add_argument("--corrections", type=_count, default=None, metavar="N",
+                        help="how often, at most, Cycles renders what was found, to correct our model by what it is off"
+                        f" there; needs --reference (default: {CORRECTIONS} with it)")
+    parser.add_argument("--traced-samples", type=positive, default=Asked.traced_samples, metavar="N",
+                        help=f"of each pixel of these (default: {Asked.traced_samples})")
     parser.add_argument("--out", type=Path, default=Path("match"), metavar="DIR",
                         help="folder for match.json and the pictures (default: match)")
     return parser
@@ -70,6 +76,10 @@ def parse(words):
         others = [path for path in (chosen.picture, *masks) if path.suffix.lower() != ".exr"]
         if others:
             parser.error(f"with a scene in JSON pictures are EXR files; '{others[0]}' came")
+    if chosen.corrections and chosen.reference is None:
+        parser.error("--corrections needs --reference, by which Cycles is to render")
+    if chosen.corrections is None:
+        chosen.corrections = CORRECTIONS if chosen.reference else 0
     asked = {**vars(chosen), "masks": tuple(chosen.masks)}
     return asked.pop("scene"), asked.pop("picture"), Asked(**asked)
 
@@ -84,6 +94,12 @@ def _parameters(text):
     if not all(name in PARAMETERS for name in names):
         raise argparse.ArgumentTypeError(f"names of {', '.join(PARAMETERS)} with commas are needed, '{text}' came")
     return names
+
+
+def _count(text):
+    if not text.isdigit() or int(text) > MOST_CORRECTIONS:
+        raise argparse.ArgumentTypeError(f"a whole number from 0 to {MOST_CORRECTIONS} is needed, '{text}' came")
+    return int(text)
 
 
 def _mask(text):

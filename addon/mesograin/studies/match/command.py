@@ -16,14 +16,14 @@ def _run(chosen, words):
 
     from mesograin.studies.comparison.progress import Progress
     from mesograin.studies.comparison.results import OutputError
-    from mesograin.studies.match import files, of_blender, run, subject, target
+    from mesograin.studies.match import files, of_blender, run, target
 
     try:
         whole = of_blender.load(picture)
     except target.TargetError as error:
         raise CommandError(error) from error
     progress = Progress()
-    with told(progress, OutputError, (native.Error, subject.SubjectError, target.TargetError)):
+    with told(progress, OutputError, (native.Error, *run.SENTENCES)):
         results = run.match(asked, whole, progress, shlex.join(["./mesograin", "match", *words]))
     print(files.sentence(results))
     print(f"Results: {(Path(asked.out) / files.RESULTS).absolute()}", flush=True)

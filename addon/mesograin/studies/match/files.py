@@ -18,6 +18,8 @@ DEFINITIONS = {
     " scene itself is not in it. determined: the ends of the interval are less than a factor of 3 apart (g: 0.5)",
     "exposure": "factor by which the scene's light was multiplied to be as bright as the picture; 1 if it was known",
     "metrics": "of the picture drawn against the target, over the mask (docs/metrics.md)",
+    "corrected_blocks": "relative L1 in blocks of the picture times what Cycles' picture of the last coefficients was"
+    " brighter there: what is left unexplained; null without corrections",
     "mean_free_path": "reduced: 1 / (sigma_a + (1 - g) sigma_s)",
 }
 
@@ -46,6 +48,8 @@ def describe(found, unit, per_unit, settings, **origin):
         "exposure": found.exposure,
         "intervals": {name: intervals(name, entries) for name, entries in found.intervals.items()},
         "converged": found.converged,
+        "corrections": found.corrections,
+        "corrected_blocks": found.corrected,
         "renders": found.renders,
         "remembered": found.remembered,
         "iterations": found.iterations,
@@ -91,6 +95,8 @@ def sentence(results):
              if name in results["intervals"]]
     off = results["metrics"]["relative_l1_blocks"]
     words = f"{', '.join(told)}; the picture is {off:.1%} off in blocks after {results['renders']} renders"
+    if results["corrections"]:
+        words += f", and {results['corrected_blocks']:.1%} with what Cycles says that our model is off"
     unknown = [f"{name} of {', '.join(channels)}" if len(results["intervals"][name]) == 3 else name
                for name, channels in undetermined(results["intervals"]).items()]
     if unknown:

@@ -16,8 +16,10 @@ CHANNELS = 3
 
 BALANCES = (-7.0, 14.0)
 """Least and most of log(sigma_s' / sigma_a): a grain all black, and one that absorbs a millionth."""
+THICKEST = 50.0
+"""Mean free paths in a grain's radius, from where on more look the same; and radii in one, where it is clear."""
 REACH = 8.0
-"""How far a log may go from where it starts: a factor of 3000."""
+"""How far the log of a single coefficient may go from where it starts: a factor of 3000."""
 MOST_G = 0.95
 STEP_G = 0.03
 STEP = 0.03
@@ -59,11 +61,12 @@ class Medium:
             steps[CHANNELS * len(self._each)] = STEP_G
         return steps
 
-    def limits(self, start):
-        """(least, most) of each unknown, for a search from `start`."""
+    def limits(self, start, size):
+        """(least, most) of each unknown, for a search from `start` in grains of this size."""
         least, most = start - REACH, start + REACH
         if len(self._each) == 2:
             least[0:CHANNELS * 2:2], most[0:CHANNELS * 2:2] = BALANCES
+            least[1:CHANNELS * 2:2], most[1:CHANNELS * 2:2] = numpy.log([size / THICKEST, size * THICKEST])
         if "g" in self._shared:
             place = CHANNELS * len(self._each)
             least[place], most[place] = -MOST_G, MOST_G

@@ -8,7 +8,7 @@ import bpy
 import numpy
 
 from ... import native_module
-from ...cycles import kinds, nodes
+from ...cycles import kinds, nodes, reference
 from ...scene import export, lights, meshes
 from ...schema.models import AUTO, TRANSLUCENT
 from . import target as targets
@@ -18,6 +18,8 @@ PROPORTIONS = 0.01
 """By which a picture's may differ from the scene's."""
 CODED, LINEAR = ("sRGB",), ("Non-Color", "Raw", "Linear", "Linear Rec.709", "scene_linear")
 OPAQUE = 0.99
+TRACED_SEEDS = (4,)
+"""Other than those of references, whose noise a match would take for agreement."""
 
 
 def target(image):
@@ -69,11 +71,11 @@ def mask(path, size):
     return targets.bright(load(path), size)
 
 
-def subject(depsgraph, material, whole, longest, samples, reference=None):
+def subject(depsgraph, material, whole, longest, samples, kind=None):
     """(subject.Subject, target.Target, factor, warnings) of what a depsgraph shows of a material.
 
     material: its name, or None where there is but one grain's. whole: the target.Target, which is made as small as what
-    is drawn. longest: side, in pixels. reference: of cycles.kinds.KINDS, where Cycles rendered the picture with a
+    is drawn. longest: side, in pixels. kind: of cycles.kinds.KINDS, where Cycles rendered the picture with a
     material of its kind, or None where the picture shows what the material says. Raises SubjectError or native.Error.
     """
     native = native_module.get()
@@ -81,9 +83,9 @@ def subject(depsgraph, material, whole, longest, samples, reference=None):
     scene = export.read_scene(depsgraph, meshes.MeshCache())
     name = _choose(scene, material)
     base = dict(export.material_values(bpy.data.materials.get(name), scene.millimetres_per_unit).values)
-    if reference is not None:
-        base.update(kinds.our_side(reference, nodes.features()))
-        scene = _widen(scene, kinds.KINDS[reference].least_sun)
+    if kind is not None:
+        base.update(kinds.our_side(kind, nodes.features()))
+        scene = _widen(scene, kinds.KINDS[kind].least_sun)
     small, factor = whole.reduced(longest)
     kept = tuple(factor * side for side in small.size)
     camera = cut(native, export.camera_from_scene(depsgraph, *whole.size), whole.size, kept)
@@ -92,6 +94,28 @@ def subject(depsgraph, material, whole, longest, samples, reference=None):
     arrays = {number: None for number, drawn in enumerate(scene.heaps) if drawn.material.name == name}
     return (Subject(native, scene.to_native(), instances, arrays, base, camera, small.size, samples, name), small,
             factor, scene.warnings)
+
+
+def tracer(depsgraph, whole, small, factor, kind, samples):
+    """A function of {'sigma_a', 'sigma_s', 'g'} and of one that is told how far it is: the picture of what a depsgraph
+    shows, by Cycles with a material of a kind of cycles.kinds.KINDS, as large as `small`, a target.Target that was made
+    of `whole` by `factor`. Raises SubjectError where Cycles cannot be asked that."""
+    scene = export.read_scene(depsgraph, meshes.MeshCache(), varied=False)
+    if len(scene.materials) > 1:
+        raise SubjectError("Cycles corrects a match only where all is of one material; the scene shows"
+                           f" {', '.join(sorted(material.name for material in scene.materials))}: hide the others, or"
+                           " match without corrections.")
+    if tuple(factor * side for side in small.size) != whole.size:
+        raise SubjectError(f"Cycles corrects a match only where the picture's sides are multiples of {factor};"
+                           f" {whole.name} is {whole.size[0]} x {whole.size[1]}: choose another size, or match without"
+                           " corrections.")
+
+    def trace(coefficients, tell):
+        traced = reference.render(depsgraph, kind, small.size, samples=samples, seeds=TRACED_SEEDS,
+                                  overrides={**coefficients, "scale": 1.0}, on_progress=tell)
+        return traced.mean
+
+    return trace
 
 
 def grains(scene):

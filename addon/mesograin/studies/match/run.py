@@ -7,7 +7,8 @@ from pathlib import Path
 import bpy
 
 from ... import native_module
-from ...cycles.shot import PROVENANCE
+from ...cycles.shot import PROVENANCE, ReferenceError
+from ...cycles.stage import StageError
 from ...report import colours
 from ...scene import as_rendered
 from ..comparison import origin
@@ -18,6 +19,10 @@ from .subject import SubjectError
 from .target import TargetError
 
 
+SENTENCES = (OutputError, SubjectError, TargetError, ReferenceError, StageError)
+"""What says by itself what is wrong, beside native.Error."""
+
+
 class MatchError(RuntimeError):
     """Nothing could be matched; one sentence."""
 
@@ -26,20 +31,24 @@ def match(asked, whole, progress, command, memory=None):
     """Matches Blender's current scene, as it renders, to a target.Target; returns the dict of match.json.
 
     asked: choices.Asked. memory: folder of what renders came to, None for `asked.out`. Raises OutputError,
-    native.Error, SubjectError, TargetError or progress.Cancelled.
+    native.Error, SubjectError, TargetError, ReferenceError, StageError or progress.Cancelled.
     """
     native = native_module.get()
     output = Output(asked.out)
     with as_rendered.depsgraph(bpy.context) as depsgraph:
         matched, small, factor, warnings = of_blender.subject(
             depsgraph, asked.material, whole, asked.size, asked.samples, asked.reference)
-    for warning in warnings:
-        progress.say(warning)
-    request = search.Request(
-        asked.parameters, asked.model or matched.values["model"], asked.exposure == "free",
-        keeping.keep(asked.masks, whole, small, factor, of_blender.mask), Path(memory or asked.out) / files.RENDERS)
-    progress.plan(search.steps(request, search.guess(matched)))
-    found = search.search(native, matched, small, request, progress)
+        for warning in warnings:
+            progress.say(warning)
+        trace = None
+        if asked.corrections:
+            trace = of_blender.tracer(depsgraph, whole, small, factor, asked.reference, asked.traced_samples)
+        request = search.Request(
+            asked.parameters, asked.model or matched.values["model"], asked.exposure == "free",
+            keeping.keep(asked.masks, whole, small, factor, of_blender.mask),
+            Path(memory or asked.out) / files.RENDERS, asked.corrections, trace)
+        progress.plan(search.steps(request, search.guess(matched)))
+        found = search.search(native, matched, small, request, progress)
     for warning in found.warnings:
         progress.say(warning)
     results = files.describe(found, "mm", bpy.context.scene.mesograin.millimetres_per_unit, asked.settings(),
@@ -59,5 +68,5 @@ def match_image(image, out, memory, on_step, on_sentence, **asked):
     try:
         match(choices.Asked(out=Path(out), **asked), of_blender.target(bpy.data.images[image]),
               Calls(on_step, on_sentence), "Match to Picture", memory)
-    except (OutputError, SubjectError, TargetError, native_module.get().Error) as error:
+    except (*SENTENCES, native_module.get().Error) as error:
         raise MatchError(str(error)) from error

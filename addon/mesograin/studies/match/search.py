@@ -27,26 +27,34 @@ COLOURS = (0.005, 0.98)
 RIM = 2
 """Pixels by which what shows the grains is shrunk."""
 LEAST_BLOCKS = 4
+ENOUGH = 0.02
+"""A correction that moves no unknown by more is the last one."""
+TRACED = "traced"
 
 
 @dataclass(frozen=True)
 class Request:
     """parameters: of choices.PARAMETERS. model: of schema.models, or `auto`. exposure: whether the picture's brightness
-    is free. keep: (h, w) bool of the target's size, what may count of it, or None. path: of memory.Memory, or None."""
+    is free. keep: (h, w) bool of the target's size, what may count of it, or None. path: of memory.Memory, or None.
+    corrections: how often the model is corrected by `trace`, which is asked for the picture of {'sigma_a', 'sigma_s',
+    'g'} by whoever made the target, (h, w, 3 or 4), and tells how far it is by a function of a share."""
 
     parameters: tuple
     model: str
     exposure: bool = False
     keep: numpy.ndarray = None
     path: object = None
+    corrections: int = 0
+    trace: object = None
 
 
 @dataclass
 class Found:
     """coefficients: {'sigma_a', 'sigma_s', 'g'} per unit of length of the scene, for a `scale` of 1. exposure: by which
     the scene's light is to be multiplied. intervals: {name: [certainty.interval of each channel, or of all]}. picture:
-    (h, w, 4), with that exposure; target: (h, w, 3); mask: (h, w) bool; metrics: of native.compare. renders: how many
-    there were; remembered: of these, how many were known from before. converged: whether the search came to its end.
+    (h, w, 4), with that exposure; target: (h, w, 3); mask: (h, w) bool; metrics: of native.compare. corrections: how
+    many there were; corrected: what the corrected means in blocks are off, None without. renders: how many there were;
+    remembered: of these, how many were known from before. converged: whether the search came to its end.
     """
 
     model: str
@@ -57,6 +65,8 @@ class Found:
     target: numpy.ndarray
     mask: numpy.ndarray
     metrics: dict
+    corrections: int
+    corrected: float
     renders: int
     remembered: int
     iterations: int
@@ -77,6 +87,14 @@ def steps(request, guess):
         rough = 2 * len(SHARES) + 3 * (len(request.parameters) + 1)
         yield from ((f"rough picture {number + 1}", "rough", guess) for number in range(rough))
     yield from ((f"picture {number + 1}", "fine", 3.0 * guess) for number in range(fine_steps(request)))
+    for number in range(request.corrections):
+        yield from corrected_steps(request, number, guess)
+
+
+def corrected_steps(request, number, guess):
+    """What a correction will begin."""
+    yield f"Cycles' picture {number + 1}", TRACED, 60.0 * guess
+    yield from (("corrected picture", "fine", 3.0 * guess) for _ in range(2 * (len(request.parameters) + 1)))
 
 
 def guess(subject):
@@ -118,15 +136,37 @@ class _Search:
                                " coefficients from: use a larger picture, or move the camera nearer.")
         self._memory = Memory(request.path, self._fingerprint())
         self._renders = self._known = 0
+        self._corrections = 0
+        self._factors = 1.0  # by which means in blocks are multiplied
 
     def run(self):
         rough = ROUGH_MODEL if self._model != ROUGH_MODEL else self._model
         state = self._start(rough)
         if rough != self._model:
             state = self._fit(rough, state, ROUGH_ITERATIONS).state
-            self._progress.skip_to_last(min(self._progress.steps_left, fine_steps(self._request)))
+            corrected = sum(len(list(corrected_steps(self._request, number, 0.0)))
+                            for number in range(self._request.corrections))
+            self._progress.skip_to_last(min(self._progress.steps_left, fine_steps(self._request) + corrected))
         fit = self._fit(self._model, state, MOST_ITERATIONS)
+        for number in range(self._request.corrections):
+            before = fit.state
+            self._corrections += 1
+            fit = self._corrected(before, number)
+            if numpy.abs(fit.state - before).max() < ENOUGH:
+                break
         return self._found(fit)
+
+    def _corrected(self, state, number):
+        """The Fit by a model that is multiplied, block by block, by what it is off at `state` (output space mapping:
+        Bandler et al., "Space mapping: the state of the art", 2004, section V): it lends no more than its derivatives.
+        """
+        per_correction = len(list(corrected_steps(self._request, number, 0.0)))
+        later = per_correction * (self._request.corrections - number)
+        self._progress.skip_to_last(min(self._progress.steps_left, later))
+        truth = self._means(TRACED, state)
+        own = self._means(self._model, state)
+        self._factors = truth / numpy.maximum(own, 1e-6 * own.max(axis=1, keepdims=True))
+        return self._fit(self._model, state, MOST_ITERATIONS)
 
     def _choose(self):
         """(h, w) bool: pixels that show what is matched, and nothing else, in both pictures."""
@@ -159,14 +199,16 @@ class _Search:
             self._known += 1
             return means
         self._begin(model)
-        means = self._blocks.of(self._subject.picture(model, coefficients))
+        means = self._blocks.of(self._request.trace(coefficients, self._progress.update) if model == TRACED else
+                                self._subject.picture(model, coefficients))
         self._progress.end()
         self._memory.add(key, means)
         return means
 
     def _begin(self, model):
         if not self._progress.steps_left:
-            self._progress.insert([(f"picture {self._renders}", "fine" if model == self._model else "rough", 1.0)])
+            kind = model if model == TRACED else "fine" if model == self._model else "rough"
+            self._progress.insert([(f"picture {self._renders}", kind, 1.0)])
         self._progress.begin()
 
     def _start(self, model):
@@ -214,14 +256,14 @@ class _Search:
             key = json.dumps(self._medium.coefficients(state))
             if key not in seen:  # the exposure alone needs no new picture
                 seen[key] = self._means(model, state)
-            return self._blocks.residuals(seen[key] * self._medium.exposure(state))
+            return self._blocks.residuals(seen[key] * self._factors * self._medium.exposure(state))
 
         return residuals
 
     def _fit(self, model, state, iterations):
         medium = self._medium
-        return least_squares.minimise(self._residuals(model), state, medium.pattern, medium.steps, medium.limits(state),
-                                      iterations)
+        return least_squares.minimise(self._residuals(model), state, medium.pattern, medium.steps,
+                                      medium.limits(state, self._size), iterations)
 
     def _found(self, fit):
         medium, native = self._medium, self._native
@@ -235,5 +277,12 @@ class _Search:
         return Found(
             model=self._model, coefficients=coefficients, exposure=exposure, intervals=intervals, picture=picture,
             target=self._target.pixels, mask=self._mask,
-            metrics=native.compare(picture, self._target.pixels, mask=self._mask), renders=self._renders,
+            metrics=native.compare(picture, self._target.pixels, mask=self._mask), corrections=self._corrections,
+            corrected=self._off(fit.residuals) if self._corrections else None, renders=self._renders,
             remembered=self._known, iterations=fit.iterations, converged=fit.converged, warnings=self._subject.warnings)
+
+    def _off(self, residuals):
+        """Relative L1 of means in blocks (docs/metrics.md)."""
+        blocks = self._blocks
+        return float((numpy.abs(residuals / blocks.weights) @ blocks.counts).sum() /
+                     (blocks.means @ blocks.counts).sum())

@@ -1,4 +1,6 @@
 # The Match to Picture panel, among a material's properties.
+import math
+
 import bpy
 
 from ...schema import models
@@ -7,10 +9,10 @@ from ...studies.match import files
 from .. import panels
 from ..side_task import panel as side_task
 from ..side_task import pictures
-from . import operators
+from . import operators, properties
 from .session import session
 
-TITLES = {"sigma_s": "sigma_s, 1/mm", "sigma_a": "sigma_a, 1/mm", "mean_free_path": "Free Path, mm", "g": "g",
+TITLES = {"sigma_s": "sigma_s 1/mm", "sigma_a": "sigma_a 1/mm", "mean_free_path": "Path mm", "g": "g",
           "exposure": "Exposure"}
 
 
@@ -22,6 +24,8 @@ def draw_settings(layout, context):
     column.use_property_split = True
     column.use_property_decorate = False
     column.prop(asked, "reference")
+    if asked.reference != properties.AS_MATERIAL:
+        column.prop(asked, "corrections", text="Checks")
     column.column(heading="Exposure").prop(asked, "free_exposure", text="Unknown")
     column.prop(asked, "size")
     column.prop(asked, "out")
@@ -47,11 +51,11 @@ def draw_results(layout, context):
     box.label(text=f"{found['material']}, by {models.MODELS[found['model']].label}")
     for name, title in TITLES.items():
         if name in found["intervals"]:
-            column = box.column(align=True)
-            column.label(text=title)
-            row = column.row(align=True)
+            halves = box.split(factor=0.5)
+            halves.label(text=title)
+            column = halves.column(align=True)
             for entry in found["intervals"][name]:
-                row.label(text=_short(name, entry))
+                column.label(text=_short(name, entry))
     unknown = files.undetermined(found["intervals"])
     if unknown:
         words = "; ".join(f"{name} of {', '.join(channels)}" if len(found["intervals"][name]) == 3 else name
@@ -71,7 +75,7 @@ def _short(name, entry):
         return f"{entry['value']:.3g} ?"
     if name == "g":
         return f"{entry['value']:.2f} ± {0.5 * (entry['high'] - entry['low']):.2f}"
-    return f"{entry['value']:.3g} ± {100.0 * (entry['high'] / entry['value'] - 1.0):.0f} %"
+    return f"{entry['value']:.3g} ± {math.ceil(100.0 * (entry['high'] / entry['value'] - 1.0))} %"
 
 
 class MESOGRAIN_PT_match(panels.MesograinPanel, bpy.types.Panel):

@@ -27,9 +27,12 @@ class MatchProperties(bpy.types.PropertyGroup):
     # Their numbers are those of the table, so that files keep their choice when there are more.
     reference: EnumProperty(
         name="Made by", default=AS_MATERIAL, description="What the picture is of",
-        items=((AS_MATERIAL, "The Material's Grain", "A grain with the boundary that the material says", 0), *(
+        items=((AS_MATERIAL, "This Grain", "A grain with the boundary that the material says", 0), *(
             (name, kinds.KINDS[name].label, f"Cycles rendered it with {kinds.KINDS[name].title}", number)
             for number, name in enumerate(kinds.KINDS, 1) if name in choices.REFERENCES)))
+    corrections: IntProperty(
+        name="Cycles Checks", default=choices.CORRECTIONS, min=0, max=choices.MOST_CORRECTIONS,
+        description="How often, at most, Cycles renders what was found, to correct our model by what it is off there")
     free_exposure: BoolProperty(
         name="Exposure Unknown", default=False,
         description="The picture is as bright as the scene up to a factor, which is found, too: for photographs")
@@ -48,6 +51,7 @@ def arguments(scene):
         "image": asked.image.name,
         "parameters": [name for name in choices.PARAMETERS if name in asked.parameters],
         "reference": None if asked.reference == AS_MATERIAL else asked.reference,
+        "corrections": 0 if asked.reference == AS_MATERIAL else asked.corrections,
         "exposure": "free" if asked.free_exposure else "known",
         "size": asked.size,
     }
