@@ -81,8 +81,10 @@ def measure(case, models, size, samples, corrections, keep=None):
     """Dicts: one for each model."""
     from mesograin import native_module
     from mesograin.cycles import reference
+    from mesograin.report import colours
+    from mesograin.studies.comparison import results
     from mesograin.studies.comparison.progress import Progress
-    from mesograin.studies.match import of_blender, search, target
+    from mesograin.studies.match import files, of_blender, search, target
 
     evaluated, material = prepare(case, size)
     started = time.monotonic()
@@ -103,9 +105,9 @@ def measure(case, models, size, samples, corrections, keep=None):
         found = search.search(native_module.get(), subject, small, request, progress)
         progress.close()
         if keep:
-            keep.mkdir(parents=True, exist_ok=True)
-            for name, pixels in ((f"{case}_cycles", truth), (f"{case}_{model}", found.picture)):
-                native_module.get().write_exr(str(keep / f"{name}.exr"), pixels)
+            stops = colours.exposure_for(found.target, found.mask)
+            results.Output(keep).write_png(f"match_{case}_{model}.png",
+                                           files.beside(found, lambda pixels: colours.expose(pixels, stops)))
         yield {"case": case, "model": model, "cycles_seconds": rendered, "cpu_seconds": time.process_time() - started,
                "renders": found.renders, "converged": found.converged,
                "blocks": found.metrics["relative_l1_blocks"],
@@ -143,7 +145,8 @@ def main():
     parser.add_argument("--corrections", type=int, default=0, help="by Cycles, of the model (default: 0)")
     parser.add_argument("--size", type=int, default=96, help="pixels a side (default: 96)")
     parser.add_argument("--json", type=pathlib.Path, metavar="FILE", help="also writes the numbers there")
-    parser.add_argument("--keep", type=pathlib.Path, metavar="FOLDER", help="also keeps the pictures there")
+    parser.add_argument("--keep", type=pathlib.Path, metavar="FOLDER",
+                        help="also keeps pictures there, Cycles' beside ours")
     options = parser.parse_args(sys.argv[sys.argv.index("--") + 1:])
     import addon_utils
 
