@@ -122,6 +122,13 @@ def test_of_light_that_scatters_forwards_another_error_is_told():
     assert advised_for(3.0, is_round=False).error == advice.ANGULAR["transport"]
 
 
+def test_a_clear_grain_is_glass():
+    medium = native.Material(sigma_s=(0.0, 0.0, 0.0), sigma_a=(0.1, 0.2, 0.3))
+    for radius in (0.1, 3.0, 100.0):
+        assert advised_for(radius, medium=medium).model == "transport"
+    assert advised_for(3.0, closed=False, medium=medium).model != "transport"
+
+
 def test_a_radius_is_in_mean_free_paths_of_the_middle_channel():
     # Reduced extinctions of 0.2, 2 and 20: the middle one counts.
     medium = native.Material(sigma_s=(0.1, 1.0, 10.0), sigma_a=(0.05, 0.5, 5.0), g=0.5, scale=2.0)
