@@ -66,16 +66,39 @@ struct ToMesh {
   }
 };
 
-// Rays of a packet of eight arrive eight at a time.
+// Rays of a packet of eight arrive eight at a time. `valid`: those that may meet this instance; they are turned into
+// its mesh's axes. False if there are none.
+bool enter(const PlacedGroup& group, unsigned instance, const float* own, const int* arrived, const RTCRay8& rays,
+           int* valid, RTCRay8& inside) {
+  const std::uint32_t number = group.first_number + instance;
+  bool any = false;
+  for (unsigned i = 0; i < rays_in_packet; ++i) {
+    valid[i] = rays.id[i] == number && !(own[i] > 0.0F) ? 0 : arrived[i];
+    any = any || valid[i] != 0;
+  }
+  if (!any) return false;
+  ToMesh(group.rows + 3 * std::size_t{instance}).turn(rays, inside);
+  for (unsigned i = 0; i < rays_in_packet; ++i)
+    if (rays.id[i] == number) inside.tnear[i] = own[i];
+  return true;
+}
+
+const float* own_of(const RTCIntersectFunctionNArguments* arguments) {
+  return reinterpret_cast<const embree::Context*>(arguments->context)->own;
+}
+
+const float* own_of(const RTCOccludedFunctionNArguments* arguments) {
+  return reinterpret_cast<const embree::Context*>(arguments->context)->own;
+}
+
 void intersect_instance(const RTCIntersectFunctionNArguments* arguments) {
   const auto& group = *static_cast<const PlacedGroup*>(arguments->geometryUserPtr);
   RTCRayHit8& rays = *reinterpret_cast<RTCRayHit8*>(arguments->rayhit);
+  alignas(32) int valid[rays_in_packet];
   RTCRayHit8 inside;
-  ToMesh(group.rows + 3 * std::size_t{arguments->primID}).turn(rays.ray, inside.ray);
+  if (!enter(group, arguments->primID, own_of(arguments), arguments->valid, rays.ray, valid, inside.ray)) return;
   for (unsigned& geometry : inside.hit.geomID) geometry = RTC_INVALID_GEOMETRY_ID;
   embree::Context context;
-  alignas(32) int valid[rays_in_packet];
-  for (unsigned i = 0; i < rays_in_packet; ++i) valid[i] = arguments->valid[i];
   embree::intersect(valid, to_scene(group.mesh->scene()), context, inside);
   for (unsigned i = 0; i < rays_in_packet; ++i) {
     if (valid[i] == 0 || inside.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
@@ -90,20 +113,10 @@ void intersect_instance(const RTCIntersectFunctionNArguments* arguments) {
 
 void occlude_instance(const RTCOccludedFunctionNArguments* arguments) {
   const auto& group = *static_cast<const PlacedGroup*>(arguments->geometryUserPtr);
-  const std::uint32_t number = group.first_number + arguments->primID;
   RTCRay8& rays = *reinterpret_cast<RTCRay8*>(arguments->ray);
-  const float* own = reinterpret_cast<const embree::Context*>(arguments->context)->own;
   alignas(32) int valid[rays_in_packet];
   RTCRay8 inside;
-  bool any = false;
-  for (unsigned i = 0; i < rays_in_packet; ++i) {
-    valid[i] = rays.id[i] == number && !(own[i] > 0.0F) ? 0 : arguments->valid[i];
-    any = any || valid[i] != 0;
-  }
-  if (!any) return;
-  ToMesh(group.rows + 3 * std::size_t{arguments->primID}).turn(rays, inside);
-  for (unsigned i = 0; i < rays_in_packet; ++i)
-    if (rays.id[i] == number) inside.tnear[i] = own[i];
+  if (!enter(group, arguments->primID, own_of(arguments), arguments->valid, rays, valid, inside)) return;
   embree::Context context;
   embree::occlude(valid, to_scene(group.mesh->scene()), context, inside);
   for (unsigned i = 0; i < rays_in_packet; ++i)
@@ -157,6 +170,7 @@ void PlacedTree::first_hits(Packet& packet, Hits& hits) const {
   fill(packet, rays.ray, valid);
   for (unsigned& geometry : rays.hit.geomID) geometry = RTC_INVALID_GEOMETRY_ID;
   embree::Context context;
+  context.own = packet.own;
   embree::intersect(valid, to_scene(scene_), context, rays);
   for (unsigned i = 0; i < rays_in_packet; ++i) {
     if (valid[i] == 0 || rays.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;

@@ -6,7 +6,8 @@ namespace mesograin::models {
 MaterialInputs conductor_inputs(const scene::Material& material, double /*grain_radius*/) {
   MaterialInputs inputs;
   inputs.facets = true;
-  if (material.masking == scene::Masking::separable) inputs.defines = {"MASKING_SEPARABLE"};
+  inputs.defines = {"FACETS_ALONE"};
+  if (material.masking == scene::Masking::separable) inputs.defines.emplace_back("MASKING_SEPARABLE");
   inputs.uniforms["material.reflectance"] = glm::vec3(material.reflectance);
   inputs.uniforms["material.roughness"] = static_cast<float>(material.roughness);
   return inputs;

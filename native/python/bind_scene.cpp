@@ -40,6 +40,13 @@ Array<double> to_array(const glm::dmat4& matrix) {
   return array;
 }
 
+template <typename Number, typename Vector>
+Array<Number> to_rows(const std::vector<Vector>& vectors) {
+  Array<Number> array({static_cast<py::ssize_t>(vectors.size()), static_cast<py::ssize_t>(Vector::length())});
+  std::copy(vectors.begin(), vectors.end(), reinterpret_cast<Vector*>(array.mutable_data()));
+  return array;
+}
+
 scene::Mesh make_mesh(const Array<float>& positions, const std::optional<Array<float>>& normals,
                       const Array<std::uint32_t>& indices, const std::optional<Array<float>>& uvs) {
   return {to_vectors<glm::vec3>(positions, "positions"),
@@ -64,7 +71,14 @@ void bind_mesh_and_instance(py::module_& module) {
           "counter-clockwise seen from outside; uvs (n, 2) float32 or None. Raises Error for arrays that make no mesh.")
       .def_property_readonly("vertex_count", [](const scene::Mesh& mesh) { return mesh.positions().size(); })
       .def_property_readonly("has_uvs", [](const scene::Mesh& mesh) { return !mesh.uvs().empty(); })
-      .def_property_readonly("triangle_count", [](const scene::Mesh& mesh) { return mesh.triangles().size(); });
+      .def_property_readonly("triangle_count", [](const scene::Mesh& mesh) { return mesh.triangles().size(); })
+      .def(
+          "arrays",
+          [](const scene::Mesh& mesh) {
+            return py::make_tuple(to_rows<float>(mesh.positions()), to_rows<float>(mesh.uvs()),
+                                  to_rows<std::uint32_t>(mesh.triangles()));
+          },
+          "Copies of its positions (n, 3), UVs (n, 2), or (0, 2) if it has none, and indices (t, 3).");
 
   py::class_<scene::Instance>(module, "Instance", "A mesh with its material at its place in the world.")
       .def(py::init([](std::shared_ptr<scene::Mesh> mesh, const scene::Material& material,

@@ -18,6 +18,9 @@ class CastContent {
   /// Of instances of arrays alone; null if there are none.
   const casting::PlacedTree* instances() const { return instances_; }
 
+  /// Three of a draw's transform, as Instances::rows.
+  const glm::vec4* rows(std::size_t draw) const { return &rows_[3 * draw]; }
+
   /// As those of casting::PlacedTree, of everything. Draws have the numbers by which shadows know them.
   void first_hits(casting::Packet& packet, casting::Hits& hits) const;
   void find_occluded(casting::Packet& packet) const;

@@ -7,6 +7,7 @@
 #include <functional>
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 #include <optional>
 #include <vector>
@@ -28,7 +29,13 @@ struct SeenSurfaces {
   const std::vector<glm::vec4>& positions;
   const std::vector<glm::vec4>& normals;
   glm::ivec2 size;
-  glm::vec4 viewer;  ///< as in lit_point.glsl, from the anchor
+  glm::vec4 viewer;                               ///< as in lit_point.glsl, from the anchor
+  const std::vector<glm::vec4>* looks = nullptr;  ///< where another surface mirrors them, along which: a pixel each
+
+  /// Of one pixel.
+  glm::vec4 viewer_of(std::size_t pixel) const {
+    return looks != nullptr ? glm::vec4(-glm::vec3((*looks)[pixel]), 0.0F) : viewer;
+  }
 };
 
 class CastShadows {
@@ -37,18 +44,10 @@ class CastShadows {
   bool cast(const CastContent& cast, const Content& content, const SeenSurfaces& seen,
             const std::vector<ShadowEye>& eyes, const GoOn& go_on);
 
-  /// Casts a ray from each pixel along its own way; of length 0 where none is wanted. It is light 0.
-  bool cast(const CastContent& cast, const Content& content, const SeenSurfaces& seen,
-            const std::vector<glm::vec4>& ways, const GoOn& go_on);
-
   /// Makes them what shaders/scene/shadows.glsl reads.
   void bind(const gl::Program& program) const;
 
  private:
-  template <typename WayOf>
-  bool cast_rounds(const CastContent& cast, const Content& content, const SeenSurfaces& seen, std::size_t rounds,
-                   const GoOn& go_on, const WayOf& way_of);
-
   std::vector<std::uint32_t> reached_;  // a bit a light
   std::optional<gl::Texture> device_;
 };

@@ -48,6 +48,20 @@ class Content {
   /// Of everything but the ground: a single draw that cannot shade itself and is larger than any other.
   const Bounds& over_ground() const { return over_ground_; }
 
+  /// How many things are shaded apart: groups of instances, then draws.
+  std::size_t units() const { return (instances_ ? instances_->groups().size() : 0) + draws_.size(); }
+
+  /// Null if it is a group of instances.
+  const Draw* draw(std::size_t unit) const {
+    const std::size_t groups = units() - draws_.size();
+    return unit < groups ? nullptr : &draws_[unit - groups];
+  }
+
+  const DeviceMaterial& material(std::size_t unit) const {
+    const Draw* single = draw(unit);
+    return single != nullptr ? *single->material : *instances_->groups()[unit].material;
+  }
+
   /// The number by which shaders know a draw; instances of arrays come first.
   std::size_t number(std::size_t draw) const { return (instances_ ? instances_->count() : 0) + draw; }
 

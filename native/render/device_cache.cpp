@@ -252,6 +252,7 @@ const gl::Program& DeviceCache::shading(const DeviceMaterial& material, const Sh
   if (material.light_maps()) defines.emplace_back("LIGHT_MAPS");
   if (scene::traits_of(material.model()).mesh) defines.emplace_back("WHOLE_GRAIN");
   if (shading.instanced) defines.emplace_back("INSTANCED");
+  if (shading.mirrored) defines.emplace_back("MIRRORED");
   if (shading.shadows != Shadows::none) defines.emplace_back("SHADOWS");
   if (shading.shadows == Shadows::cast) defines.emplace_back("CAST_SHADOWS");
   if (shading.exchange) defines.emplace_back("EXCHANGE");

@@ -32,11 +32,12 @@ enum class Shadows {
 struct Shading {
   bool unwrapped = false;  ///< at its UVs; else as the camera sees it
   bool instanced = false;  ///< one of an array of instances
+  bool mirrored = false;   ///< seen in another surface
   Shadows shadows = Shadows::none;
   bool exchange = false;         ///< light goes from grain to grain
   bool gathered = false;         ///< and was gathered for each pixel
   bool world = false;            ///< there is a world to be seen through it
-  bool mirrors_world = false;    ///< or in its facets
+  bool mirrors_world = false;    ///< or in its facets, and what stands before it
   bool lights_at_place = false;  ///< the place that is shaded draws its own directions of lights that have a place
 };
 

@@ -105,7 +105,7 @@ Sample Frame::begin_sample(const GoOn& go_on) {
   const std::vector<Draw>& draws = content_->draws();
   const bool own_maps =
       std::any_of(draws.begin(), draws.end(), [](const Draw& draw) { return draw.light_maps != nullptr; });
-  const Mirrors mirrors = lighting_.world().shines() && !unwrapping_ ? arrays_.mirrors(*content_) : Mirrors::none;
+  const Mirrors mirrors = unwrapping_ ? Mirrors::none : arrays_.mirrors(*content_, lighting_.world().shines());
   if (mirrors == Mirrors::hindered && !targets_->mirror) targets_->mirror.emplace(targets_->sample, targets_->depth);
   return {.cache = cache_,
           .content = *content_,
@@ -134,7 +134,7 @@ bool Frame::add_sample(const GoOn& go_on) {
   timers_.shade.start();
   if (!(unwrapping_ ? draw_unwrapped(sample) : draw_seen(sample))) return false;
   timers_.shade.stop();
-  if (!mirror_.run(sample, arrays_, surfaces_)) return false;
+  if (!mirror_.run(sample, arrays_, surfaces_, shadows_, shade_)) return false;
   timers_.accumulate.start();
   accumulate_.run(*targets_, samples_ == 0);
   timers_.accumulate.stop();
@@ -144,9 +144,7 @@ bool Frame::add_sample(const GoOn& go_on) {
 }
 
 bool Frame::draw_seen(const Sample& sample) {
-  const Instances* instances = content_->instances();
-  const std::size_t units = (instances != nullptr ? instances->groups().size() : 0) + content_->draws().size();
-  for (std::size_t first = 0; first < units || first == 0; first += most_in_stencil) {
+  for (std::size_t first = 0; first < content_->units() || first == 0; first += most_in_stencil) {
     if (!surfaces_.run(sample, arrays_, first)) return false;
     if (first == 0) {
       if (!update_shadows(sample) || !gather_.run(sample, surfaces_)) return false;

@@ -116,11 +116,11 @@ bool Instances::shades_itself(const InstanceGroup& group) const {
   return !group.material->light_maps() && !prototypes_[group.prototype].convex;
 }
 
-bool Instances::shades_itself(std::size_t instance) const {
+const InstanceGroup& Instances::group_of(std::size_t instance) const {
   const auto after =
       std::upper_bound(groups_.begin(), groups_.end(), instance,
                        [](std::size_t number, const InstanceGroup& group) { return number < group.first; });
-  return shades_itself(*std::prev(after));
+  return *std::prev(after);
 }
 
 const casting::PlacedTree& Instances::tree(DeviceCache& cache) {

@@ -85,9 +85,12 @@ class Instances {
   /// Three rows of its transform: object to anchor's space, the middle of the bounds at the origin.
   const glm::vec4* rows(std::size_t instance) const { return &rows_[3 * instance]; }
 
+  /// The group that an instance is one of.
+  const InstanceGroup& group_of(std::size_t instance) const;
+
   /// Whether, for all that the model knows, a part of an instance may stand in another's light.
   bool shades_itself(const InstanceGroup& group) const;
-  bool shades_itself(std::size_t instance) const;
+  bool shades_itself(std::size_t instance) const { return shades_itself(group_of(instance)); }
 
   /// Of all, from the anchor.
   const Bounds& bounds() const { return bounds_; }

@@ -1,6 +1,9 @@
 // Low-discrepancy points choose a direction of every light for each sample.
 #include "render/lighting.h"
 
+#include <algorithm>
+#include <glm/geometric.hpp>
+
 #include "lights/device_light.h"
 #include "render/sequence.h"
 
@@ -34,6 +37,16 @@ void Lighting::set(const scene::Scene& scene) {
   world_image_.emplace(GL_RGB32F, world_.image->width(), world_.image->height());
   world_image_->upload(GL_RGB, GL_FLOAT, world_.image->texels().data());
   world_image_->sample_linearly(true);
+}
+
+bool Lighting::is_light(const glm::dvec3& middle, double radius, const glm::dvec3& radiance) const {
+  // A light lies a little before its face, and single precision has rounded either.
+  constexpr double near = 1e-2, alike = 1e-5;
+  return std::any_of(local_.begin(), local_.end(), [&](const scene::Light& light) {
+    const auto* area = std::get_if<scene::AreaLight>(&light);
+    return area != nullptr && glm::distance(area->position, middle) <= (1.0 + near) * radius &&
+           glm::distance(area->radiance, radiance) <= alike * glm::length(radiance);
+  });
 }
 
 SampledLights Lighting::sample(std::uint32_t index, std::uint32_t seed, int world_directions) const {

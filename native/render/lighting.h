@@ -44,6 +44,9 @@ class Lighting {
   /// Whether any light has a place.
   bool any_local() const { return !local_.empty(); }
 
+  /// Whether a surface of this radiance, within a ball, is an area light as well: its light on others is the light's.
+  bool is_light(const glm::dvec3& middle, double radius, const glm::dvec3& radiance) const;
+
   /// `world_directions`: of how many directions the world's light is the mean.
   SampledLights sample(std::uint32_t index, std::uint32_t seed, int world_directions) const;
 

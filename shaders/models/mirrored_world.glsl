@@ -1,9 +1,9 @@
-// The world, mirrored in a surface of facets: directions that are drawn for all pixels together and one that each pixel draws for itself,
+// What a surface of facets mirrors. Of the world: directions that are drawn for all pixels together and one that each pixel draws for itself,
 // weighted by how likely each was to be drawn (Veach and Guibas, "Optimally Combining Sampling Techniques for Monte Carlo Rendering", 1995,
-// the balance heuristic). The former find what is bright, the latter what a smooth surface shows.
+// the balance heuristic). The former find what is bright, the latter what a smooth surface shows. Of other objects: the latter alone.
 //
 // What is chosen at compile time:
-//   MIRRORS_WORLD        the surface has facets, and there is a world
+//   MIRRORS_WORLD        the surface has facets, and there is a world, or something that may stand before it
 #include "models/interface.glsl"
 #include "models/pixel_random.glsl"
 #include "physics/prelude.glsl"
@@ -25,7 +25,8 @@ float share_of_light(SurfacePoint point, LightSample light, float mu_o) {
 }
 
 struct Mirrored {
-  vec3 radiance;  // if nothing stands in the way
+  vec3 radiance;  // of the world, if nothing stands in the way
+  vec3 passed;    // what the radiance of an object that does is multiplied by
   vec3 from;      // unit length
 };
 
@@ -34,7 +35,7 @@ Mirrored mirrored_world(SurfacePoint point, float mu_o) {
   vec2 random = low_discrepancy_beside_pixel(uint(sample_index), pcg4d(uvec4(uvec2(gl_FragCoord.xy), 4u, 0u)).xy);
   vec3 facet = ggx_visible_facet(point.normal, point.to_viewer, alpha, random);
   float mu_h = clamp(dot(facet, point.to_viewer), 0.0, 1.0);
-  Mirrored mirrored = Mirrored(vec3(0.0), normalize(2.0 * mu_h * facet - point.to_viewer));
+  Mirrored mirrored = Mirrored(vec3(0.0), vec3(0.0), normalize(2.0 * mu_h * facet - point.to_viewer));
   float mu_i = dot(point.normal, mirrored.from);
   if (mu_i <= 0.0) return mirrored;
 #ifdef MASKING_SEPARABLE
@@ -46,7 +47,8 @@ Mirrored mirrored_world(SurfacePoint point, float mu_o) {
   // BRDF times cosine over density: the distribution cancels.
   float passed = 2.0 * visibility * mu_i * (mu_o + ggx_smith_root(mu_o, alpha));
   float share = own / (own + drawn_density_of_world(mirrored.from));
-  mirrored.radiance = share * passed * facet_reflectance(mu_h) * seen_of_world(mirrored.from);
+  mirrored.passed = passed * facet_reflectance(mu_h);
+  mirrored.radiance = share * mirrored.passed * seen_of_world(mirrored.from);
   return mirrored;
 }
 #endif

@@ -7,7 +7,10 @@
 //   CLEAR, WORLD         the model knows what crosses the grain unscattered, and there is a world to be seen through it
 //   WHOLE_GRAIN          the model knows what light does in all of the grain, but not where it enters
 //   EMITS                the surface sends out light of its own
-//   MIRRORS_WORLD        the surface has facets, and there is a world; where anything may stand in the way, it is for a later pass to add
+//   MIRRORS_WORLD        the surface has facets, and there is something to be mirrored; where anything may stand in the way, it is for a later
+//                        pass to add
+//   FACETS_ALONE         the surface is of facets alone
+//   MIRRORED             the viewer is another surface, a pixel each
 
 #include "physics/prelude.glsl"
 #include "render/bindings.glsl"
@@ -34,7 +37,14 @@ uniform int distant_light_count;  // those have their shadows first
 // xyz: the direction towards the viewer if w is 0; if w is 1 the pinhole, in grain space, or for instances from the place amid the scene.
 uniform vec4 viewer;
 
+#ifdef MIRRORED
+uniform sampler2D mirror_looks;  // xyz: along which each pixel's mirror looks, of unit length
+#endif
+
 vec3 direction_to_viewer(vec3 position) {
+#ifdef MIRRORED
+  return -texelFetch(mirror_looks, ivec2(gl_FragCoord.xy), 0).xyz;
+#endif
 #ifdef INSTANCED
   position += grain_place;
 #endif
@@ -128,7 +138,7 @@ vec3 lit_point(SurfacePoint point) {
   if (all.w > 1.5) return all.rgb;
 #endif
   Outwards outwards = look_outwards(point);
-#ifdef EXCHANGE
+#if defined(EXCHANGE) && !(defined(FACETS_ALONE) && defined(MIRRORS_WORLD))
   vec3 sum = light_from_grains(grain_instance, grain_place + grain_unit * point.on_triangle, point.normal, point.to_viewer);
 #else
   vec3 sum = vec3(0.0);

@@ -1,8 +1,10 @@
 // What surfaces of facets mirror of the world, where nothing stands in the way.
-#include "scene/shadows.glsl"
-
 uniform sampler2D mirrored_radiance;
+uniform sampler2D surface_normal;  // of what does; w: 0 where nothing does
 
 out vec4 radiance;
 
-void main() { radiance = vec4(texelFetch(mirrored_radiance, ivec2(gl_FragCoord.xy), 0).rgb * light_reaches_pixel(0), 0.0); }
+void main() {
+  ivec2 pixel = ivec2(gl_FragCoord.xy);
+  radiance = vec4(texelFetch(surface_normal, pixel, 0).w == 0.0 ? texelFetch(mirrored_radiance, pixel, 0).rgb : vec3(0.0), 0.0);
+}

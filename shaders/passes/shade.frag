@@ -1,4 +1,8 @@
-// A pixel of the grain as the camera sees it: light on what surface.frag found there.
+// A pixel of the grain as the camera sees it: light on what surface.frag found there. Or as another surface mirrors it: light on what a ray met
+// on its way from there.
+//
+// What else is chosen at compile time:
+//   MIRRORED             it is seen in another surface
 
 #include "passes/lit_point.glsl"
 
@@ -12,6 +16,10 @@ layout(location = 0) out vec4 radiance;
 #if defined(MIRRORS_WORLD) && defined(SHADOWS)
 layout(location = 1) out vec4 mirrored_radiance;  // of the world, if nothing stands in the way
 layout(location = 2) out vec4 mirrored_from;      // w: 1 where there is any
+layout(location = 3) out vec4 mirrored_passed;    // what an object's radiance is multiplied by
+#endif
+#ifdef MIRRORED
+uniform sampler2D mirror_passes;  // as mirrored_passed
 #endif
 
 void main() {
@@ -45,10 +53,15 @@ void main() {
   put_on(point);
 #endif
 
+#ifdef MIRRORED
+  radiance = vec4(lit_point(point) * texelFetch(mirror_passes, ivec2(gl_FragCoord.xy), 0).rgb, 0.0);
+#else
   radiance = vec4(lit_point(point), 1.0);
+#endif
 #if defined(MIRRORS_WORLD) && defined(SHADOWS)
-  bool any_mirrored = max(mirrored.radiance.r, max(mirrored.radiance.g, mirrored.radiance.b)) > 0.0;
+  bool any_mirrored = max(mirrored.passed.r, max(mirrored.passed.g, mirrored.passed.b)) > 0.0;
   mirrored_radiance = vec4(mirrored.radiance, 0.0);
+  mirrored_passed = vec4(mirrored.passed, 0.0);
   mirrored_from = vec4(mirrored.from, any_mirrored ? 1.0 : 0.0);
 #endif
 }

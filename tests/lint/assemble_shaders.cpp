@@ -91,6 +91,7 @@ void write_shading(Writer& writer) {
   const std::vector<std::vector<std::string>> shadings = {{"INSTANCED"},
                                                           {"SHADOWS"},
                                                           cast,
+                                                          {"MIRRORED", "INSTANCED", "SHADOWS", "LIGHTS_AT_PLACE"},
                                                           {"EXCHANGE"},
                                                           {"EXCHANGE", "GATHERED"},
                                                           {"LIGHTS_AT_PLACE"},
@@ -181,8 +182,7 @@ void write_finishes(Writer& writer) {
 void write_passes(Writer& writer) {
   for (const std::string pass : {"accumulate", "background", "resolve"})
     writer.write(pass, ShaderSource({"passes/full_screen.vert"}, {}), ShaderSource({"passes/" + pass + ".frag"}, {}));
-  writer.write("mirror", ShaderSource({"passes/full_screen.vert"}, {}),
-               ShaderSource({"passes/mirror.frag"}, {"CAST_SHADOWS"}));
+  writer.write("mirror", ShaderSource({"passes/full_screen.vert"}, {}), ShaderSource({"passes/mirror.frag"}, {}));
   writer.write("count", ShaderSource({"passes/bake.vert"}, {}), ShaderSource({"passes/count.frag"}, {}));
   for (const std::string pass : {"surface", "shadow"})
     for (const std::string instanced : {"", "instanced_"})

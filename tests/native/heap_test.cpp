@@ -155,6 +155,7 @@ scene::Scene small_heap(const scene::MeshPointer& mesh, scene::Model model) {
   }
   scene::Material material;
   material.model = model;
+  material.specular = false;  // grains mirror each other where rays are cast alone
   scene::PointLight lamp;
   lamp.position = {-5.0, 4.0, 9.0};
   lamp.radiant_intensity = glm::dvec3(150.0);

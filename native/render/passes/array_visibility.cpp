@@ -30,9 +30,9 @@ bool ArrayVisibility::casts(const Content& content) const {
          (!gl::ContextThread::instance().device_info().hardware && casting::available());
 }
 
-Mirrors ArrayVisibility::mirrors(const Content& content) const {
+Mirrors ArrayVisibility::mirrors(const Content& content, bool world) const {
   if (!content.facets()) return Mirrors::none;
-  if (!content.shadows()) return Mirrors::unhindered;
+  if (!content.shadows()) return world ? Mirrors::unhindered : Mirrors::none;
   // A tree of arrays that the device draws is not worth its memory.
   return casts(content) || (content.instances() == nullptr && casting::available()) ? Mirrors::hindered : Mirrors::none;
 }

@@ -27,8 +27,8 @@ class ArrayVisibility {
   /// Whether rays are cast for this content.
   bool casts(const Content& content) const;
 
-  /// What surfaces of facets can do to find what of the world reaches them.
-  Mirrors mirrors(const Content& content) const;
+  /// What surfaces of facets can do to find what they mirror. `world`: there is one to be mirrored.
+  Mirrors mirrors(const Content& content, bool world) const;
 
   /// Makes ready what the passes of this sample need of the arrays.
   void prepare(const Sample& sample);

@@ -1,4 +1,4 @@
-// Adds what surfaces of facets mirror of the world, where nothing stands in the way.
+// Adds what surfaces of facets mirror: the world, or what stands before it, which is shaded as if it were seen.
 #pragma once
 
 #include <glm/vec4.hpp>
@@ -6,9 +6,11 @@
 
 #include "gl/program.h"
 #include "gl/vertex_array.h"
-#include "render/cast_shadows.h"
+#include "render/cast_mirrors.h"
 #include "render/passes/array_visibility.h"
 #include "render/passes/sample.h"
+#include "render/passes/shade_pass.h"
+#include "render/passes/shadow_pass.h"
 #include "render/passes/surface_pass.h"
 
 namespace mesograin::render {
@@ -17,20 +19,23 @@ class MirrorPass {
  public:
   MirrorPass();
 
-  /// After everything seen is shaded. False if ended.
-  bool run(const Sample& sample, const ArrayVisibility& arrays, SurfacePass& surfaces);
+  /// After everything seen is shaded; what was found of surfaces is gone then. False if ended.
+  bool run(const Sample& sample, const ArrayVisibility& arrays, SurfacePass& surfaces, ShadowPass& shadows,
+           ShadePass& shade);
 
   /// Whether the last sample needed it.
   bool ran() const { return ran_; }
 
-  /// That the last run took of this side.
+  /// That the last run took, of this side and the device.
   double milliseconds() const { return milliseconds_; }
 
  private:
+  void add_world(const Sample& sample);
+
   gl::Program program_;
   gl::FullScreenTriangle full_screen_;
-  CastShadows cast_;
-  std::vector<glm::vec4> from_;
+  CastMirrors cast_;
+  std::vector<glm::vec4> looks_;
   bool ran_ = false;
   double milliseconds_ = 0.0;
 };

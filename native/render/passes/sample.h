@@ -25,11 +25,11 @@ struct Unwrapping {
   ViewFrom view_from;
 };
 
-/// Whether surfaces of facets look for the world themselves.
+/// Whether surfaces of facets look themselves for what they mirror.
 enum class Mirrors {
   none,
-  unhindered,  ///< nothing can stand in the way
-  hindered,    ///< rays find what does
+  unhindered,  ///< the world: nothing can stand in the way
+  hindered,    ///< rays find what does, and that is mirrored
 };
 
 struct Sample {

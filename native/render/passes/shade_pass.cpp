@@ -44,6 +44,18 @@ void confine_to(const Sample& sample, const Draw& draw) {
   glScissor(first.x, first.y, std::max(end.x - first.x, 0), std::max(end.y - first.y, 0));
 }
 
+void begin_shading() {
+  glEnable(GL_STENCIL_TEST);
+  glStencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
+  glEnable(GL_SCISSOR_TEST);
+  glFrontFace(GL_CCW);
+}
+
+void end_shading() {
+  glDisable(GL_SCISSOR_TEST);
+  glDisable(GL_STENCIL_TEST);
+}
+
 }  // namespace
 
 ShadePass::ShadePass()
@@ -75,36 +87,62 @@ void ShadePass::draw_background(const Sample& sample) {
 
 void ShadePass::shade_seen(const Sample& sample, const ShadowPass& shadows, const GatherPass& gathered,
                            std::size_t first) {
+  begin_shading();
   glDisable(GL_BLEND);
-  glEnable(GL_STENCIL_TEST);
-  glStencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
-  glEnable(GL_SCISSOR_TEST);
-  glFrontFace(GL_CCW);
-  const Instances* instances = sample.content.instances();
-  const std::size_t groups = instances != nullptr ? instances->groups().size() : 0;
-  const std::vector<Draw>& draws = sample.content.draws();
-  for (std::size_t i = first; i < std::min(first + most_in_stencil, groups + draws.size()); ++i) {
-    const bool instanced = i < groups;
-    const DeviceMaterial& material = instanced ? *instances->groups()[i].material : *draws[i - groups].material;
-    const gl::Program& program = prepare(sample, shadows, gathered.ran(), material, instanced);
+  for (std::size_t unit = first; unit < std::min(first + most_in_stencil, sample.content.units()); ++unit) {
+    const DeviceMaterial& material = sample.content.material(unit);
+    const gl::Program& program = prepare(sample, material,
+                                         {.instanced = sample.content.draw(unit) == nullptr,
+                                          .shadows = shadows.kind(sample.content),
+                                          .gathered = gathered.ran(),
+                                          .mirrors_world = sample.mirrors != Mirrors::none});
+    shadows.bind(program);
+    gathered.bind(program);
     const bool mirrors = sample.mirrors == Mirrors::hindered && material.facets();
     (mirrors ? sample.targets.mirror->shade : sample.targets.shade).bind();
-    gathered.bind(program);
-    if (instanced) {
-      set_group(sample, program, instances->groups()[i]);
+    if (const Draw* draw = sample.content.draw(unit))
+      confine_to(sample, *draw);
+    else
       glScissor(0, 0, sample.size.x, sample.size.y);
-    } else {
-      set_draw(sample, program, draws[i - groups]);
-      confine_to(sample, draws[i - groups]);
-    }
-    program.set("surface_position", sample.targets.position);
-    program.set("surface_normal", sample.targets.normal);
-    if (sample.targets.coordinates) program.offer("surface_coordinates", *sample.targets.coordinates);
-    glStencilFunc(GL_EQUAL, static_cast<GLint>(i - first + 1), most_in_stencil);
-    full_screen_.draw();
+    shade_unit(sample, program, unit, stencil_mark(unit, first));
   }
-  glDisable(GL_SCISSOR_TEST);
-  glDisable(GL_STENCIL_TEST);
+  end_shading();
+}
+
+void ShadePass::shade_mirrored(const Sample& sample, const ShadowPass& shadows, const std::vector<PixelBox>& boxes,
+                               std::size_t first) {
+  begin_shading();
+  glDisable(GL_DEPTH_TEST);
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_ONE, GL_ONE);
+  sample.targets.shade.bind();
+  for (std::size_t unit = first; unit < std::min(first + most_in_stencil, boxes.size()); ++unit) {
+    const PixelBox& box = boxes[unit];
+    if (box.first == box.end) continue;
+    const DeviceMaterial& material = sample.content.material(unit);
+    const gl::Program& program = prepare(sample, material,
+                                         {.instanced = sample.content.draw(unit) == nullptr,
+                                          .mirrored = true,
+                                          .shadows = shadows.kind_mirrored(sample.content, material)});
+    shadows.bind_mirrored(program, material);
+    program.set("mirror_looks", sample.targets.mirror->looks);
+    program.set("mirror_passes", sample.targets.mirror->passed);
+    glScissor(box.first.x, box.first.y, box.end.x - box.first.x, box.end.y - box.first.y);
+    shade_unit(sample, program, unit, stencil_mark(unit, first));
+  }
+  end_shading();
+}
+
+void ShadePass::shade_unit(const Sample& sample, const gl::Program& program, std::size_t unit, int mark) {
+  if (const Draw* draw = sample.content.draw(unit))
+    set_draw(sample, program, *draw);
+  else
+    set_group(sample, program, sample.content.instances()->groups()[unit]);
+  program.set("surface_position", sample.targets.position);
+  program.set("surface_normal", sample.targets.normal);
+  if (sample.targets.coordinates) program.offer("surface_coordinates", *sample.targets.coordinates);
+  glStencilFunc(GL_EQUAL, mark, most_in_stencil);
+  full_screen_.draw();
 }
 
 void ShadePass::shade_unwrapped(const Sample& sample, const ShadowPass& shadows) {
@@ -112,7 +150,9 @@ void ShadePass::shade_unwrapped(const Sample& sample, const ShadowPass& shadows)
   glDepthFunc(GL_LESS);
   for (const std::size_t baked : sample.unwrapping->draws) {
     const Draw& draw = sample.content.draws()[baked];
-    const gl::Program& program = prepare(sample, shadows, false, *draw.material, false);
+    const gl::Program& program =
+        prepare(sample, *draw.material, {.unwrapped = true, .shadows = shadows.kind(sample.content)});
+    shadows.bind(program);
     set_draw(sample, program, draw);
     const glm::dmat4 object_to_grain = draw.object_to_grain();
     program.set("jitter", sample.jitter);
@@ -125,26 +165,19 @@ void ShadePass::shade_unwrapped(const Sample& sample, const ShadowPass& shadows)
   glDisable(GL_DEPTH_TEST);
 }
 
-const gl::Program& ShadePass::prepare(const Sample& sample, const ShadowPass& shadows, bool gathered,
-                                      const DeviceMaterial& material, bool instanced) {
+const gl::Program& ShadePass::prepare(const Sample& sample, const DeviceMaterial& material, Shading shading) {
   const bool world = sample.lighting.world().shines();
-  const gl::Program& program =
-      sample.cache.shading(material, {.unwrapped = sample.unwrapping != nullptr,
-                                      .instanced = instanced,
-                                      .shadows = shadows.kind(sample.content),
-                                      .exchange = sample.exchange.any(),
-                                      .gathered = gathered,
-                                      .world = world,
-                                      .mirrors_world = sample.mirrors != Mirrors::none,
-                                      .lights_at_place = sample.lights_at_place(material, instanced)});
+  shading.exchange = sample.exchange.any();
+  shading.world = world;
+  shading.lights_at_place = sample.lights_at_place(material, shading.instanced);
+  const gl::Program& program = sample.cache.shading(material, shading);
   material.bind(program);
-  if (world) {
+  if (world || shading.mirrors_world) {
     set_world(program, sample.lighting);
     program.set("world_density", static_cast<float>(sample.lights.world_density));
   }
   program.offer("sample_index", static_cast<int>(sample.index));
   program.offer("taps", taps_);
-  shadows.bind(program);
   if (sample.exchange.any()) sample.exchange.bind();
   return program;
 }

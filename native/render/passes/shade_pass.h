@@ -8,6 +8,7 @@
 #include "gl/buffer.h"
 #include "gl/program.h"
 #include "gl/vertex_array.h"
+#include "render/hit_surface.h"
 #include "render/passes/gather_pass.h"
 #include "render/passes/sample.h"
 #include "render/passes/shadow_pass.h"
@@ -27,15 +28,22 @@ class ShadePass {
   /// Those groups and draws that the stencil tells apart, after run() of SurfacePass for the same `first`.
   void shade_seen(const Sample& sample, const ShadowPass& shadows, const GatherPass& gathered, std::size_t first);
 
+  /// What other surfaces mirror of those units that the stencil tells apart, each within its box, after run_mirrored()
+  /// of ShadowPass: it is added.
+  void shade_mirrored(const Sample& sample, const ShadowPass& shadows, const std::vector<PixelBox>& boxes,
+                      std::size_t first);
+
   /// The instances that are baked, where their UVs lie.
   void shade_unwrapped(const Sample& sample, const ShadowPass& shadows);
 
  private:
   void draw_background(const Sample& sample);
 
-  /// The material's program, with everything that does not depend on what is shaded.
-  const gl::Program& prepare(const Sample& sample, const ShadowPass& shadows, bool gathered,
-                             const DeviceMaterial& material, bool instanced);
+  /// The material's program, with everything that depends on neither shadows nor what is shaded.
+  const gl::Program& prepare(const Sample& sample, const DeviceMaterial& material, Shading shading);
+
+  /// Draws one unit's pixels.
+  void shade_unit(const Sample& sample, const gl::Program& program, std::size_t unit, int mark);
   void set_draw(const Sample& sample, const gl::Program& program, const Draw& draw);
   void set_group(const Sample& sample, const gl::Program& program, const InstanceGroup& group);
 

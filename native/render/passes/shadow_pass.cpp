@@ -19,8 +19,8 @@ bool is_opaque(const DeviceMaterial& material) {
 }
 
 // Whether it is enough to know for each pixel which lights of this sample reach it.
-bool known_by_pixel(const Sample& sample, std::size_t lights) {
-  if (sample.unwrapping != nullptr || !sample.cast || lights > most_cast_lights) return false;
+bool known_by_pixel(const Sample& sample) {
+  if (sample.unwrapping != nullptr || !sample.cast) return false;
   const std::vector<Draw>& draws = sample.content.draws();
   const std::vector<InstanceGroup>& groups = sample.content.instances()->groups();
   return std::all_of(draws.begin(), draws.end(), [](const Draw& draw) { return is_opaque(*draw.material); }) &&
@@ -43,7 +43,8 @@ Receivers receivers_of(const Sample& sample) {
 
 bool ShadowPass::run(const Sample& sample, const ArrayVisibility& arrays, SurfacePass& surfaces) {
   const std::vector<ShadowEye> eyes = sample.lighting.eyes(sample.lights, sample.content.anchor());
-  by_pixel_ = known_by_pixel(sample, eyes.size());
+  few_ = eyes.size() <= most_cast_lights;
+  by_pixel_ = few_ && known_by_pixel(sample);
   ran_ = sample.content.shadows() && !eyes.empty();
   if (!ran_) return true;
   const auto start = std::chrono::steady_clock::now();
@@ -97,6 +98,22 @@ void ShadowPass::bind(const gl::Program& program) const {
     cast_.bind(program);
   else
     maps_.bind(program);
+}
+
+bool ShadowPass::run_mirrored(const Sample& sample, const ArrayVisibility& arrays, const SeenSurfaces& seen) {
+  const std::vector<ShadowEye> eyes = sample.lighting.eyes(sample.lights, sample.content.anchor());
+  return !ran_ || !few_ || mirrored_.cast(arrays.tree(), sample.content, seen, eyes, sample.go_on);
+}
+
+Shadows ShadowPass::kind_mirrored(const Content& content, const DeviceMaterial& material) const {
+  return content.shadows() && few_ && is_opaque(material) ? Shadows::cast : kind(content);
+}
+
+void ShadowPass::bind_mirrored(const gl::Program& program, const DeviceMaterial& material) const {
+  if (ran_ && few_ && is_opaque(material))
+    mirrored_.bind(program);
+  else
+    bind(program);
 }
 
 void ShadowPass::forget_content() {

@@ -19,6 +19,9 @@ class ShadowPass {
   /// After the surfaces are found. False if ended.
   bool run(const Sample& sample, const ArrayVisibility& arrays, SurfacePass& surfaces);
 
+  /// After run(), of what other surfaces mirror. False if ended.
+  bool run_mirrored(const Sample& sample, const ArrayVisibility& arrays, const SeenSurfaces& seen);
+
   /// How programs of this sample's content learn of them.
   Shadows kind(const Content& content) const {
     return !content.shadows() ? Shadows::none : by_pixel_ ? Shadows::cast : Shadows::maps;
@@ -26,6 +29,11 @@ class ShadowPass {
 
   /// Makes them what shaders/scene/shadows.glsl reads, if there are any in this sample.
   void bind(const gl::Program& program) const;
+
+  /// The same for what other surfaces mirror: of what is opaque, rays find what stands in the light; in what is
+  /// translucent it is known as far as the shadow maps reach, which are drawn around what is seen.
+  Shadows kind_mirrored(const Content& content, const DeviceMaterial& material) const;
+  void bind_mirrored(const gl::Program& program, const DeviceMaterial& material) const;
 
   /// Whether the last run had any light to ask for.
   bool ran() const { return ran_; }
@@ -53,7 +61,9 @@ class ShadowPass {
   std::vector<Casters> casters_;
   ShadowMaps maps_;
   CastShadows cast_;
+  CastShadows mirrored_;
   bool by_pixel_ = false;
+  bool few_ = false;  // lights: each may have a bit
   bool ran_ = false;
   double milliseconds_ = 0.0;
 };

@@ -16,8 +16,7 @@ bool SurfacePass::run(const Sample& sample, const ArrayVisibility& arrays, std::
     if (first == 0 && !cast_.cast(arrays.tree(), sample.content, anchor_to_clip(sample.content, sample.camera),
                                   sample.jitter, sample.size, sample.go_on))
       return false;
-    cast_.upload(targets.position, targets.normal, targets.depth, first);
-    if (targets.coordinates) cast_.upload_coordinates(*targets.coordinates);
+    cast_.found().upload(targets, first);
   }
   targets.surfaces.bind();
   glDisable(GL_BLEND);
@@ -32,7 +31,8 @@ bool SurfacePass::run(const Sample& sample, const ArrayVisibility& arrays, std::
 
 SeenSurfaces SurfacePass::seen(const Sample& sample) {
   const glm::vec4 viewer = sample.viewer(sample.content.anchor());
-  if (sample.cast && sample.content.draws().empty()) return {cast_.positions(), cast_.normals(), sample.size, viewer};
+  if (sample.cast && sample.content.draws().empty())
+    return {cast_.found().positions(), cast_.found().normals(), sample.size, viewer};
   const std::size_t pixels = static_cast<std::size_t>(sample.size.x) * static_cast<std::size_t>(sample.size.y);
   read_positions_.resize(pixels);
   read_normals_.resize(pixels);

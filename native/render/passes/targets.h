@@ -8,16 +8,18 @@
 
 namespace mesograin::render {
 
-/// Where surfaces of facets draw what they mirror of the world if nothing stands in the way.
+/// Where surfaces of facets draw what they mirror.
 struct MirrorTargets {
   /// Beside the colour and the depth, which must outlive it.
   MirrorTargets(const gl::Texture& colour, const gl::Texture& depth)
       : radiance(GL_RGBA32F, colour.width(), colour.height()),
-        from(GL_RGBA32F, colour.width(), colour.height()),
-        shade({&colour, &radiance, &from}, &depth) {}
+        looks(GL_RGBA32F, colour.width(), colour.height()),
+        passed(GL_RGBA32F, colour.width(), colour.height()),
+        shade({&colour, &radiance, &looks, &passed}, &depth) {}
 
-  gl::Texture radiance;
-  gl::Texture from;  ///< w: 1 where there is any
+  gl::Texture radiance;  ///< of the world, if nothing stands in the way
+  gl::Texture looks;     ///< along which, unit length; w: 1 where there is any
+  gl::Texture passed;    ///< by what the radiance of an object is multiplied that does
   gl::Framebuffer shade;
 };
 

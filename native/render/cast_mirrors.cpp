@@ -1,0 +1,107 @@
+// Rays of neighbouring pixels go together.
+#include "render/cast_mirrors.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/cast_work.h"
+#include "render/lit_place.h"
+
+namespace mesograin::render {
+namespace {
+
+constexpr int across = 4, high = 2;
+static_assert(across * high == static_cast<int>(casting::rays_in_packet));
+
+bool has_part(const Exchange::Role& role) { return role.grain || role.wall; }
+
+// What light goes on between grains and walls, what a dielectric grain's surface reflects of it among it, is told by
+// the exchange: such a grain mirrors none of them.
+class Told {
+ public:
+  Told(const Content& content, const Exchange& exchange) : content_(content), exchange_(exchange) {
+    const std::vector<Exchange::Role>& roles = exchange.roles();
+    all_ = exchange.any() && std::all_of(roles.begin(), roles.end(), has_part);
+  }
+
+  /// Whether all that this object may mirror is.
+  bool all(std::size_t mirror) const { return all_ && told_of(mirror); }
+
+  bool operator()(std::size_t mirror, std::size_t met) const {
+    return exchange_.any() && told_of(mirror) && has_part(exchange_.roles()[met]);
+  }
+
+ private:
+  bool told_of(std::size_t number) const {
+    if (!exchange_.roles()[number].grain) return false;
+    const Instances* instances = content_.instances();
+    const std::size_t count = instances != nullptr ? instances->count() : 0;
+    const scene::Material& material =
+        number < count ? instances->group_of(number).source : content_.draws()[number - count].look;
+    return material.model != scene::Model::lambert && material.model != scene::Model::conductor;
+  }
+
+  const Content& content_;
+  const Exchange& exchange_;
+  bool all_;
+};
+
+std::vector<bool> units_that_are_lights(const Content& content, const Lighting& lighting) {
+  std::vector<bool> lights(content.units(), false);
+  for (std::size_t unit = 0; unit < lights.size(); ++unit) {
+    const Draw* draw = content.draw(unit);
+    lights[unit] = draw != nullptr && draw->look.finish && draw->look.finish->radiance != glm::dvec3(0.0) &&
+                   lighting.is_light(draw->centre, draw->radius, draw->look.finish->radiance);
+  }
+  return lights;
+}
+
+std::size_t number_of(const glm::vec4& facing) { return static_cast<std::size_t>(std::abs(facing.w)) - 1; }
+
+}  // namespace
+
+bool CastMirrors::cast(const CastContent& cast, const Content& content, const Exchange& exchange,
+                       const Lighting& lighting, const SeenSurfaces& seen, const std::vector<glm::vec4>& looks,
+                       const GoOn& go_on) {
+  const glm::ivec2 size = seen.size;
+  found_.resize(size, content.textured());
+  const Told told(content, exchange);
+  const bool world = lighting.world().shines();
+  const std::vector<bool> lights = units_that_are_lights(content, lighting);
+  const auto cast_packet = [&](const glm::ivec2& corner, int end_row) {
+    casting::Packet packet;
+    casting::Hits hits;
+    std::size_t places[casting::rays_in_packet];
+    bool inside[casting::rays_in_packet] = {};
+    bool any = false;
+    for (unsigned ray = 0; ray < casting::rays_in_packet; ++ray) {
+      const glm::ivec2 pixel = corner + glm::ivec2(static_cast<int>(ray) % across, static_cast<int>(ray) / across);
+      if (pixel.x >= size.x || pixel.y >= end_row) continue;
+      const std::size_t place = places[ray] =
+          static_cast<std::size_t>(pixel.y) * static_cast<std::size_t>(size.x) + static_cast<std::size_t>(pixel.x);
+      inside[ray] = true;
+      const glm::vec4& facing = seen.normals[place];
+      if (looks[place].w == 0.0F || facing.w == 0.0F || (!world && told.all(number_of(facing)))) continue;
+      const LitPlace from = lit_place(content, seen.positions[place], facing, seen.viewer_of(place));
+      any = set_off(packet, ray, from, glm::vec3(looks[place])) || any;
+    }
+    if (any) cast.first_hits(packet, hits);
+    for (unsigned ray = 0; ray < casting::rays_in_packet; ++ray) {
+      if (!inside[ray]) continue;
+      if (!hits.met[ray]) {
+        found_.put_nothing(places[ray]);
+        continue;
+      }
+      HitSurface surface = hit_surface(cast, content, packet, hits, ray);
+      if (lights[surface.unit] || told(number_of(seen.normals[places[ray]]), number_of(surface.normal)))
+        surface.unit = HitSurface::unshaded;
+      found_.put(places[ray], surface, 0.0F);
+    }
+  };
+  return cast_rows(size.y, go_on, [&](int first, int end) {
+    for (int y = first; y < end; y += high)
+      for (int x = 0; x < size.x; x += across) cast_packet({x, y}, end);
+  });
+}
+
+}  // namespace mesograin::render

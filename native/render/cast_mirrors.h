@@ -1,0 +1,32 @@
+// What surfaces of facets mirror of other objects, found by a ray from each pixel along the direction that it drew.
+#pragma once
+
+#include <glm/vec4.hpp>
+#include <vector>
+
+#include "render/cast_content.h"
+#include "render/cast_shadows.h"
+#include "render/content.h"
+#include "render/exchange.h"
+#include "render/go_on.h"
+#include "render/hit_surface.h"
+#include "render/lighting.h"
+
+namespace mesograin::render {
+
+class CastMirrors {
+ public:
+  /// The faces of an area light send what the light does, and nothing here. `looks`: along which each pixel's mirror
+  /// looks, xyz of unit length, w 0 where there is none. False if ended.
+  bool cast(const CastContent& cast, const Content& content, const Exchange& exchange, const Lighting& lighting,
+            const SeenSurfaces& seen, const std::vector<glm::vec4>& looks, const GoOn& go_on);
+
+  /// What the rays met, nothing where they met the world. What stands in the world's way and is not to be shaded has a
+  /// normal and no mark.
+  FoundSurfaces& found() { return found_; }
+
+ private:
+  FoundSurfaces found_;
+};
+
+}  // namespace mesograin::render
