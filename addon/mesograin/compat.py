@@ -174,3 +174,12 @@ def facets_masking():
 def principled_base():
     """What lies under the Principled node's coat, as native.Finish has it: up to Blender 3 it is as Burley has it."""
     return {"coat_shades_base": True} if has_even_lights() else {"retro_reflective": True}
+
+
+def cells_by_lookup3():
+    """Whether the Voronoi Texture's points are hashed by Jenkins' lookup3; Blender 5, whose skies are others too, hashes
+    them otherwise."""
+    import bpy
+
+    kinds = bpy.types.ShaderNodeTexSky.bl_rna.properties["sky_type"].enum_items
+    return "NISHITA" in {kind.identifier for kind in kinds}

@@ -190,6 +190,7 @@ def test_world_without_background(scene, render):
     background.inputs["Color"].default_value[:3] = (0.0, 0.0, 0.0)
     assert warnings_of_render(render)[1] == ()
     sky = tree.nodes.new("ShaderNodeTexSky")
+    sky.sky_type = "HOSEK_WILKIE"
     tree.links.new(background.inputs["Color"], sky.outputs[0])
     [sentence] = warnings_of_render(render)[1]
     assert_one_sentence(sentence, "World 'Sky'", sky.name, "environment image")

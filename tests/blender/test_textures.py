@@ -231,3 +231,44 @@ def test_a_lost_file_is_said(paint, tmp_path):
     assert dict(values.instances[0].material.values)["reflectance"] == pytest.approx((0.1, 0.4, 0.7))
     [sentence] = values.warnings
     assert "Material 'Paint'" in sentence and "'Lost' cannot be loaded" in sentence
+
+
+PATTERNS = {
+    "noise": ("ShaderNodeTexNoise", {}, {"Scale": 3.0, "Detail": 2.5, "Distortion": 0.4}),
+    "cells": ("ShaderNodeTexVoronoi", {"feature": "F1"}, {"Scale": 3.0}),
+    "edges": ("ShaderNodeTexVoronoi", {"feature": "DISTANCE_TO_EDGE"}, {"Scale": 2.5}),
+    "bricks": ("ShaderNodeTexBrick", {"squash": 1.4, "offset": 0.3}, {"Scale": 3.0, "Mortar Smooth": 0.3}),
+    "rings": ("ShaderNodeTexWave", {"wave_type": "RINGS"}, {"Scale": 0.5, "Distortion": 2.0}),
+    "magic": ("ShaderNodeTexMagic", {"turbulence_depth": 3}, {"Scale": 1.0}),
+}
+
+
+@pytest.mark.parametrize(("shape", "pattern"), [
+    ("plane", "noise"), ("sphere", "noise"), ("plane", "cells"), ("sphere", "edges"), ("plane", "bricks"),
+    ("sphere", "rings"), ("plane", "magic")])
+def test_a_pattern_in_space_lies_as_in_cycles(paint, render, shape, pattern):
+    """By Generated coordinates, on what is flat and where the UVs of what is not lie."""
+    kind, properties, inputs = PATTERNS[pattern]
+    tree = paint.node_tree
+    node, ramp = tree.nodes.new(kind), tree.nodes.new("ShaderNodeValToRGB")
+    for name, value in properties.items():
+        setattr(node, name, value)
+    for name, value in inputs.items():
+        node.inputs[name].default_value = value
+    ramp.color_ramp.elements[0].color, ramp.color_ramp.elements[0].position = (0.8, 0.3, 0.1, 1.0), 0.1
+    ramp.color_ramp.elements[1].color, ramp.color_ramp.elements[1].position = (0.05, 0.2, 0.7, 1.0), 0.7
+    tree.links.new(next(out for out in node.outputs if out.enabled and out.name in ("Fac", "Distance")),
+                   ramp.inputs["Fac"])
+    tree.links.new(ramp.outputs["Color"], surface(paint).inputs["Color"])
+    stage(paint, shape)
+    assert_as_in_cycles(render)
+
+
+def test_a_pattern_in_space_on_overlapping_uvs_is_left_out(paint, render):
+    tree = paint.node_tree
+    tree.links.new(tree.nodes.new("ShaderNodeTexNoise").outputs["Color"], surface(paint).inputs["Color"])
+    made = stage(paint, "sphere")
+    for corner in made.data.uv_layers.active.data:
+        corner.uv = (corner.uv[0] * 2.0 % 1.0, corner.uv[1])
+    render()
+    assert any("do not lie over each other" in warning for warning in read_scene().warnings)

@@ -85,3 +85,44 @@ def test_a_changed_node_is_a_changed_world(ground):  # noqa: F811
     assert first == again and first.image is again.image
     background.inputs["Strength"].default_value = 2.0
     assert surroundings.read(ground)[0] != first
+
+
+def sky(scene, kind, **properties):
+    """A world that is a Sky Texture, dim enough for a picture."""
+    tree, background = make_world(scene, (0.0, 0.0, 0.0), 0.3)
+    node = tree.nodes.new("ShaderNodeTexSky")
+    if kind not in {item.identifier for item in node.bl_rna.properties["sky_type"].enum_items}:
+        pytest.skip(f"this Blender has no {kind}")
+    node.sky_type = kind
+    for name, value in properties.items():
+        setattr(node, name, value)
+    tree.links.new(node.outputs["Color"], background.inputs["Color"])
+    return node
+
+
+@pytest.mark.parametrize(("kind", "properties"), [
+    ("NISHITA", {"sun_elevation": 0.5, "sun_rotation": 2.0, "sun_disc": False, "dust_density": 2.0}),
+    ("PREETHAM", {"sun_direction": (0.3, 0.6, 0.4), "turbidity": 3.0})])
+def test_a_sky(ground, render, kind, properties):  # noqa: F811
+    sky(ground, kind, **properties)
+    look_over(ground)
+    assert_as_in_cycles(ground, render)
+    assert read_scene().warnings == ()
+
+
+def test_the_sun_of_a_sky_is_a_light(ground, render):  # noqa: F811
+    sky(ground, "NISHITA", sun_elevation=0.6, sun_rotation=0.8, sun_intensity=0.05)
+    assert_as_in_cycles(ground, render)
+    assert [type(light).__name__ for light in read_scene().lights] == ["SunValues"]
+
+
+def test_a_sky_with_noise(ground, render):  # noqa: F811
+    """Clouds."""
+    tree, background = make_world(ground, (0.0, 0.0, 0.0), 1.0)
+    clouds, ramp = nodes(tree, "TexNoise", "ValToRGB")
+    clouds.inputs["Scale"].default_value = 3.0
+    ramp.color_ramp.elements[0].color, ramp.color_ramp.elements[1].color = (0.1, 0.2, 0.6, 1.0), (1.0, 0.9, 0.8, 1.0)
+    tree.links.new(clouds.outputs["Fac"], ramp.inputs["Fac"])
+    tree.links.new(ramp.outputs["Color"], background.inputs["Color"])
+    look_over(ground)
+    assert_as_in_cycles(ground, render)

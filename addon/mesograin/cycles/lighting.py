@@ -4,7 +4,7 @@
 import math
 
 import bpy
-from mathutils import Matrix
+from mathutils import Matrix, Vector
 
 from .. import compat
 from ..scene import lights, surroundings
@@ -38,6 +38,17 @@ def copy_light(source, least_sun):
         # theirs receives the strength, one facing ours a little less.
         made.energy *= (1.0 + math.cos(0.5 * made.angle)) / 2.0 if nodes.features().even_suns else 1.0
     return made
+
+
+def add_sun(values, least_sun):
+    """A new light as a lights.SunValues, and its matrix."""
+    made = bpy.data.lights.new("Mesograin sun", "SUN")
+    made.cycles.max_bounces = 1024
+    made.angle = max(values.angle, least_sun)
+    made.energy = max(values.irradiance)
+    made.color = [channel / made.energy for channel in values.irradiance]
+    made.energy *= (1.0 + math.cos(0.5 * made.angle)) / 2.0 if nodes.features().even_suns else 1.0
+    return made, Vector(values.direction_to_light).to_track_quat("Z", "Y").to_matrix().to_4x4()
 
 
 def describe(light):

@@ -100,6 +100,9 @@ class Stage:
                 self._copy_light(source.data, instance.matrix_world)
             elif meshes.is_drawn(source, instance.matrix_world):
                 self._copy_shape(source, instance.matrix_world)
+        for sun in self.world.suns:
+            light, matrix = lighting.add_sun(sun, self._least_sun)
+            self._add(light.name, self._own(light), matrix)
         self._place_shapes()
         if not self._meshes:
             raise StageError("The scene has no visible mesh: add a grain, or switch its rendering on.")

@@ -422,7 +422,7 @@ class _Reader:
         camera = scene.camera
         if camera is not None and camera.type == "CAMERA" and camera.data.type == "PANO":
             self._warn(f"Camera '{camera.name}' is panoramic, which Mesograin draws as perspective.")
-        return SceneValues(tuple(self._instances), tuple(self._lights), tuple(self._warnings), around,
+        return SceneValues(tuple(self._instances), (*self._lights, *around.suns), tuple(self._warnings), around,
                            gathered, self._millimetres_per_unit, scene.mesograin.exchange)
 
     def _read_drawable(self, evaluated_object, matrix_world):
@@ -467,7 +467,7 @@ class _Reader:
         material = _in_slot(evaluated_object, slot)
         if material is None:
             return None
-        key = self._key(evaluated_object, material, many=True)
+        key = self._key(evaluated_object, slot, material, many=True)
         if key in self._by_instance:
             return colours.NodeVariation("reflectance", self._by_instance[key], tuple(evaluated_object.color))
         model = dict(self._material(evaluated_object, slot, many=True).values)["model"]
@@ -478,28 +478,35 @@ class _Reader:
             return None
         return variation
 
-    def _key(self, evaluated_object, material, many):
-        """What tells how a material looks on an object: its name, then the object's Box and its colour and name, each
-        if it matters. many: it is instanced, and colours are each instance's own."""
-        box = own = None
+    def _key(self, evaluated_object, slot, material, many):
+        """What tells how a material looks on an object: its name, then the object's Box and mesh and its colour and
+        name, each if it matters. many: it is instanced, and colours are each instance's own."""
+        worn = own = None
         if material is not None and plain_materials.is_plain(material):
             if plain_materials.depends_on_place(material):
-                box = textures.Box.of(evaluated_object)
+                worn = textures.Box.of(evaluated_object), self._mesh_with(evaluated_object, slot)
             if self._varied and plain_materials.depends_on_object(material):
                 own = (many, evaluated_object.name, tuple(evaluated_object.color))
-        return material and material.name_full, box, own
+        return material and material.name_full, worn, own
+
+    def _mesh_with(self, evaluated_object, slot):
+        """The native.Mesh of a slot of a shape."""
+        if not meshes.is_shape(evaluated_object):
+            return None
+        return next((part.mesh for part in self._cache.parts(evaluated_object) if part.slot == slot), None)
 
     def _material(self, evaluated_object, slot, many=False):
         material = _in_slot(evaluated_object, slot)
         reading = None
-        key = self._key(evaluated_object, material, many)
+        key = self._key(evaluated_object, slot, material, many)
         if key not in self._materials:
             if material is not None and plain_materials.is_plain(material):
-                _, box, own = key
+                _, worn, own = key
+                box, mesh = worn or (textures.Box(), None)
                 coordinates = plain_materials.AVERAGE
                 if own is not None:
                     coordinates = None if many else node_colours.of_object(node_colours.random_of(own[1]), own[2])
-                reading = plain_materials.read(material, box or textures.Box(), coordinates, self._side)
+                reading = plain_materials.read(material, box, coordinates, self._side, mesh)
                 if reading.by_instance is not None:
                     self._by_instance[key] = reading.by_instance
                 for sentence in reading.sentences:

@@ -13,11 +13,12 @@ class Unknown(Exception):
 
 @dataclasses.dataclass
 class Places:
-    """Where nodes are asked, n places. uv, generated, object: (n, 3), or a function that gives them. used: which of
-    them were."""
+    """Where nodes are asked, n places. coordinates: (n, 3) each, by name. used: which of them were. with_suns: skies
+    show theirs."""
 
     coordinates: dict
     used: set = dataclasses.field(default_factory=set)
+    with_suns: bool = False
 
     def get(self, name):
         if name not in self.coordinates:
@@ -56,11 +57,11 @@ def _input(socket, places):
     if link is None:
         return _plain(socket.default_value)
     node = link.from_node
-    if node.type not in _NODES:
+    if node.type not in NODES:
         raise Unknown(node.name)
     if node.mute:
         raise Unknown(node.name)
-    return _NODES[node.type](node, link.from_socket, places)
+    return NODES[node.type](node, link.from_socket, places)
 
 
 def feeding(socket):
@@ -487,7 +488,8 @@ def _map_range(node, _socket, places):
     return to_least + share * (to_most - to_least)
 
 
-_NODES = {
+# What follows each type of node: a function of the node, its output and places. Patterns add themselves.
+NODES = {
     "RGB": _constant, "VALUE": _constant, "TEX_COORD": _coordinates, "UVMAP": _uv_map, "OBJECT_INFO": _object_info,
     "ATTRIBUTE": _attribute, "MAPPING": _mapping, "TEX_IMAGE": _image, "TEX_ENVIRONMENT": _environment,
     "TEX_CHECKER": _checker, "TEX_GRADIENT": _gradient, "VALTORGB": _ramp, "MIX_RGB": _mix_rgb, "MIX": _mix,

@@ -33,8 +33,8 @@ class Reading:
     """What is found of one material. values: {parameter: value}; finish: FinishValues or None; sentences: about what is
     left out."""
 
-    def __init__(self, material, box, own, side):
-        self._material, self._box, self._own, self._side = material, box, own, side
+    def __init__(self, material, box, own, side, mesh):
+        self._material, self._box, self._own, self._side, self._mesh = material, box, own, side, mesh
         self.by_instance = None  # the input that says the reflectance of each of many instances; here it is 1
         self._numbers, self._maps, self._left_out = {}, {}, []
         self.values = {}
@@ -106,7 +106,7 @@ class Reading:
                 self.by_instance = socket
                 return (1.0, 1.0, 1.0)
         try:
-            found = textures.read(socket, self._box, numbers, self._side)
+            found = textures.read(socket, self._box, numbers, self._side, self._mesh)
         except node_colours.Unknown as unknown:
             stands = "" if numbers else ", for which its viewport colour stands"
             self.leave_out(f"the texture of its {socket.name.lower()}{stands} (it knows no {unknown})")
@@ -137,10 +137,11 @@ AVERAGE = node_colours.of_object(0.5, (1.0, 1.0, 1.0))
 """What an object has of its own where none is known."""
 
 
-def read(material, box=textures.Box(), own=AVERAGE, side=textures.SIDE):
+def read(material, box=textures.Box(), own=AVERAGE, side=textures.SIDE, mesh=None):
     """Reading of a material for which `is_plain` holds. box: textures.Box of what wears it; own: what that has of its
-    own, as node_colours.of_object has it, or None if that are many instances; side: of what is painted, in texels."""
-    found = Reading(material, box, own, side)
+    own, as node_colours.of_object has it, or None if that are many instances; side: of what is painted, in texels;
+    mesh: native.Mesh of what wears it."""
+    found = Reading(material, box, own, side, mesh)
     if not compat.uses_nodes(material):
         found.be_lambert(material.diffuse_color)
         return found

@@ -8,7 +8,7 @@ import numpy as np
 from mathutils import Euler, Matrix
 
 from .. import compat, native_module
-from . import node_colours
+from . import lights, node_colours, node_skies
 
 SIDE, COARSE = 512, 256
 """Texels from bottom to top of what is painted of a world's nodes; where a viewport waits for it."""
@@ -20,7 +20,7 @@ STRAIGHT = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
 class WorldValues:
     """radiance: linear RGB, multiplies the image. image: native.Surroundings, equal by identity, or None; image_name,
     image_digest: of Blender's image. rotation: from the world's directions to the image's, 9 numbers, row by row.
-    seen: in the picture."""
+    seen: in the picture. suns: lights.SunValues of those in its skies, which are not in the image."""
 
     radiance: tuple = (0.0, 0.0, 0.0)
     image: object = None
@@ -28,6 +28,7 @@ class WorldValues:
     image_digest: str = ""
     rotation: tuple = STRAIGHT
     seen: bool = False
+    suns: tuple = ()
 
     @property
     def shines(self):
@@ -73,14 +74,17 @@ def _read(world, side):
 def _painted(world, socket, side):
     """What nodes make of every direction."""
     try:
-        pixels = node_colours.remembered((node_colours.fingerprint(socket), side), lambda: _paint(socket, side))
+        pixels, suns = node_colours.remembered((node_colours.fingerprint(socket), side),
+                                               lambda: (_paint(socket, side), node_skies.suns(socket)))
     except node_colours.Unknown as unknown:
         return WorldValues(tuple(world.color)), (
             f"World '{world.name}' is drawn in its viewport colour, for Mesograin knows no {unknown}: use colours, "
-            "gradients, mixes or environment images.",)
+            "gradients, patterns, skies, mixes or environment images.",)
     surroundings = _made(pixels)
     _paintings[surroundings] = pixels
-    return WorldValues((1.0,) * 3, surroundings, "", _digests[surroundings]), ()
+    suns = tuple(lights.SunValues(world.name, tuple(towards.tolist()), tuple(irradiance.tolist()), angle)
+                 for towards, angle, irradiance in suns)
+    return WorldValues((1.0,) * 3, surroundings, "", _digests[surroundings], suns=suns), ()
 
 
 def _paint(socket, side):

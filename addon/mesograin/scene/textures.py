@@ -3,7 +3,8 @@ import dataclasses
 
 import numpy as np
 
-from . import images, node_colours
+from .. import native_module
+from . import images, node_colours, node_patterns, node_skies, unwrapped
 
 SIDE, COARSE = 1024, 512
 """Texels on a side of what is painted; where a viewport waits for it."""
@@ -58,16 +59,22 @@ class Box:
         return (places - 0.5 * (lower + upper)) / size + 0.5
 
 
-def read(socket, box, numbers, side=SIDE):
-    """MapValues of a linked colour input, or of one of numbers. side: of what is painted. Raises
-    node_colours.Unknown."""
+FOLLOWED = (node_patterns, node_skies)
+"""Whose nodes add themselves to those that are known."""
+
+MARGIN = 8  # texels that what is painted over UVs goes on beyond their edges
+
+
+def read(socket, box, numbers, side=SIDE, mesh=None):
+    """MapValues of a linked colour input, or of one of numbers. side: of what is painted; mesh: native.Mesh, on whose
+    UVs places may be painted. Raises node_colours.Unknown."""
     link = node_colours.feeding(socket)
     if link.from_node.type == "TEX_IMAGE" and link.from_socket.name == "Color" and not link.from_node.mute:
         found = _image(link.from_node, box)
         # A number is a colour's luminance, which only grey pictures hold in each channel.
         if found is not None and not (numbers and not images.is_grey(found.picture)):
             return found
-    return _painted(socket, box, numbers, side)
+    return _painted(socket, box, numbers, side, mesh)
 
 
 def _image(node, box):
@@ -98,16 +105,16 @@ def _is_affine(socket):
         _is_affine(each) for each in link.from_node.inputs if each.name == "Vector")
 
 
-def _painted(socket, box, numbers, side):
-    """MapValues of what nodes make of every UV from 0 to 1, or of every place of a flat mesh."""
+def _painted(socket, box, numbers, side, mesh):
+    """MapValues of what nodes make of every UV from 0 to 1, of every place of a flat mesh, or of every place of another
+    where its UVs lie."""
     used = _sources(socket)
     told = (node_colours.fingerprint(socket), numbers, side)
     if used == {"UV"}:
         return MapValues(node_colours.remembered(told, lambda: _painting(socket, {"UV": _grid(side)}, numbers)))
-    if "UV" in used:
-        raise node_colours.Unknown("coordinates of several kinds")
-    if not box.flat:
-        raise node_colours.Unknown("a texture in space, which is drawn on what is flat only")
+    if "UV" in used or not box.flat:
+        key = (*told, box, mesh)
+        return MapValues(node_colours.remembered(key, lambda: _painted_on_surface(socket, box, numbers, side, mesh)))
     lower, upper = np.array(box.lower), np.array(box.upper)
     size = np.maximum(upper - lower, 1e-30)
 
@@ -135,12 +142,30 @@ def _sources(socket):
     return places.used or {"UV"}
 
 
+def _painted_on_surface(socket, box, numbers, side, mesh):
+    """native.Picture of what nodes make of a mesh's places, where its UVs lie."""
+    texels = unwrapped.texels(mesh, side) if mesh is not None else None
+    if texels is None:
+        raise node_colours.Unknown("a texture in space, which is drawn on what is flat, or on UVs from 0 to 1 that do "
+                                   "not lie over each other")
+    coordinates = {"object": texels.places, "generated": box.generated(texels.places),
+                   "UV": np.pad(texels.uvs, ((0, 0), (0, 1)))}
+    picture = np.zeros((side * side, 4), dtype=np.float32)
+    picture[texels.numbers, :3] = _asked(socket, coordinates, numbers)
+    picture[texels.numbers, 3] = 1.0
+    return images.made(native_module.get().extend_margin(picture.reshape(side, side, 4), MARGIN))
+
+
 def _painting(socket, coordinates, numbers):
-    places = node_colours.Places(coordinates)
-    side = int(np.sqrt(places.count))
+    found = _asked(socket, coordinates, numbers)
+    side = int(np.sqrt(len(found)))
     texels = np.ones((side * side, 4), dtype=np.float32)
-    if numbers:
-        texels[:, :3] = node_colours.number(socket, places)[:, None]
-    else:
-        texels[:, :3] = node_colours.colour(socket, places)
-    return images.made(np.nan_to_num(texels).reshape(side, side, 4))
+    texels[:, :3] = found
+    return images.made(texels.reshape(side, side, 4))
+
+
+def _asked(socket, coordinates, numbers):
+    """(n, 3) or (n, 1) of an input at places."""
+    places = node_colours.Places(coordinates)
+    found = node_colours.number(socket, places)[:, None] if numbers else node_colours.colour(socket, places)
+    return np.nan_to_num(found)
