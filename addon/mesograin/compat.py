@@ -177,8 +177,8 @@ def principled_base():
 
 
 def cells_by_lookup3():
-    """Whether the Voronoi Texture's points are hashed by Jenkins' lookup3; Blender 5, whose skies are others too, hashes
-    them otherwise."""
+    """Whether the Voronoi Texture's points are hashed by Jenkins' lookup3; Blender 5, whose skies are others too,
+    hashes them otherwise."""
     import bpy
 
     kinds = bpy.types.ShaderNodeTexSky.bl_rna.properties["sky_type"].enum_items
