@@ -26,7 +26,7 @@ class Kind:
     """One kind of reference.
 
     name: as on the command line and in results. title: as in the report. models: our models that it answers.
-    bounces: Cycles' limit on path length. samples: per pixel and seed by default. coverage_pass: its alpha is not the
+    bounces: Cycles' limit on scattering. samples: per pixel and seed by default. coverage_pass: its alpha is not the
     coverage, so the coverage is rendered apart. cost: guessed seconds for a million samples on one core, for the first
     estimate of the time left. judged_by: the metric that says how far a model is off, pixel by pixel or in blocks.
     least_sun: radians; on both sides suns are taken at least as wide. smooth_interface: the sun's mirror image is
@@ -63,6 +63,11 @@ class Kind:
     def direct(self):
         """Whether it shows nothing but what lights do directly, so that grains send each other none."""
         return self.bounces == 0 and not self.referee
+
+    @property
+    def longest_path(self):
+        """Cycles' limit on path length, that of reflections: facets mirror what lights do on other objects, as ours."""
+        return max(self.bounces, 1) if self.parts == ("specular",) or self.light == "reflected" else self.bounces
 
     @property
     def has_texture(self):

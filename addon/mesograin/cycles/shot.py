@@ -84,7 +84,7 @@ def take(
         "light": kind.light,
         "samples": samples,
         "seed": seed,
-        "bounces": kind.bounces,
+        "bounces": kind.longest_path,
         "pixel_filter": "box, one pixel",
         "colour_space": "linear, scene-referred; alpha is premultiplied",
         "seconds": round(seconds, 3),

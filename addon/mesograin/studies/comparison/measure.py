@@ -110,7 +110,7 @@ def measure(case, chosen, request, depsgraph, size, overrides, ours, progress):
         "reference_seeds": list(theirs.seeds),
         "reference_seconds": round(theirs.seconds, 3),
         "reference_cached": theirs.cached,
-        "reference_bounces": sampling.kind.bounces,
+        "reference_bounces": sampling.kind.longest_path,
         "notes": list(theirs.notes),
     }
     return Measurement(images, theirs, mask, numbers, scores)
