@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <exception>
 #include <utility>
 
@@ -15,6 +16,12 @@ constexpr int background_niceness = 5;
 // A quick answer takes about a tenth of the time.
 constexpr double quick_share = 0.1;
 
+/// Whether one may be shown in the light of the other: grains are told by their numbers.
+bool alike(const Heap& a, const Heap& b) {
+  return std::max(a.grains.grains.size(), b.grains.grains.size()) <=
+         2 * std::min(a.grains.grains.size(), b.grains.grains.size());
+}
+
 }  // namespace
 
 News Solving::news() const {
@@ -22,15 +29,20 @@ News Solving::news() const {
   return news_;
 }
 
+bool Solving::lit() const {
+  const std::lock_guard lock(mutex_);
+  return news_.heap == heap_;
+}
+
 bool Solving::wait(std::chrono::milliseconds patience) const {
   std::unique_lock lock(mutex_);
   return told_.wait_for(lock, patience, [this] { return news_.final; });
 }
 
-void Solving::tell(std::shared_ptr<const HeapLight> light, bool final, std::string failure) {
+void Solving::tell(News news) {
   {
     const std::lock_guard lock(mutex_);
-    news_ = {news_.number + 1, std::move(light), final, std::move(failure)};
+    std::swap(news_, news);
   }
   told_.notify_all();
 }
@@ -50,7 +62,13 @@ std::shared_ptr<const Solving> Solvers::ask(Heap heap, const std::shared_ptr<con
   std::erase_if(held_, [](const std::weak_ptr<Solving>& one) { return one.expired(); });
   for (const std::weak_ptr<Solving>& one : held_)
     if (std::shared_ptr<Solving> same = one.lock(); same && same->heap() == heap) return same;
-  auto solving = std::make_shared<Solving>(std::move(heap), before ? before->solver_ : std::make_shared<Solver>());
+  const std::shared_ptr<Line> line = before ? before->line_ : std::make_shared<Line>();
+  News known;
+  if (before && alike(before->heap(), heap)) known = before->news();
+  known.final = false;
+  known.failure.clear();
+  auto solving = std::make_shared<Solving>(std::make_shared<const Heap>(std::move(heap)), line, std::move(known));
+  line->latest = solving;
   held_.push_back(solving);
   waiting_.push_back(solving);
   if (!thread_.joinable()) thread_ = std::jthread([this](const std::stop_token& stop) { loop(stop); });
@@ -74,34 +92,56 @@ void Solvers::loop(const std::stop_token& stop) {
   }
 }
 
+bool Solvers::has_heir(const Line& line, const Heap& heap) {
+  const std::lock_guard lock(mutex_);
+  const std::shared_ptr<Solving> latest = line.latest.lock();
+  return latest && alike(latest->heap(), heap);
+}
+
+void Solvers::tell(const std::weak_ptr<Solving>& of, const Line& line, News news) {
+  const std::shared_ptr<Solving> solving = of.lock();
+  std::shared_ptr<Solving> latest;
+  // While it is being told nothing takes its place.
+  const std::lock_guard lock(mutex_);
+  latest = line.latest.lock();
+  if (latest && latest != solving && !latest->lit() && alike(latest->heap(), *news.heap)) {
+    News outdated = news;
+    outdated.final = false;
+    latest->tell(std::move(outdated));
+  }
+  if (solving) solving->tell(std::move(news));
+}
+
 void Solvers::work(const std::weak_ptr<Solving>& of, const std::stop_token& stop) {
   std::atomic<bool> given_up{false};
-  Heap heap;
-  std::shared_ptr<Solver> solver;
+  std::shared_ptr<const Heap> heap;
+  std::shared_ptr<Line> line;
   if (const std::shared_ptr<Solving> solving = of.lock()) {
     heap = solving->heap_;
-    solver = solving->solver_;
+    line = solving->line_;
   } else {
     return;
   }
-  const auto tell = [&](const Quality& quality, const transport::Effort& effort, bool final) {
-    auto light = std::make_shared<const HeapLight>(solver->solve(heap, quality, effort));
-    if (const std::shared_ptr<Solving> solving = of.lock()) solving->tell(std::move(light), final);
+  const auto solve = [&](const Quality& quality, const transport::Effort& part, bool final) {
+    auto light = std::make_shared<const HeapLight>(line->solver.solve(*heap, quality, part));
+    tell(of, *line, {++told_, std::move(light), heap, final});
   };
   transport::Effort effort;
   effort.stop = &given_up;
   effort.progress = [&](double share) {
     const std::shared_ptr<Solving> solving = of.lock();
     if (solving) solving->progress_ = share;
-    if (!solving || stop.stop_requested()) given_up = true;
+    const bool wanted = solving || (share < quick_share && has_heir(*line, *heap));
+    if (!wanted || stop.stop_requested()) given_up = true;
   };
   try {
-    tell(coarse, transport::part_of(effort, 0.0, quick_share), false);
-    tell(quality_for(heap.grains.grains.size()), transport::part_of(effort, quick_share, 1.0), true);
+    solve(coarse, transport::part_of(effort, 0.0, quick_share), false);
+    if (of.expired()) return;
+    solve(quality_for(heap->grains.grains.size()), transport::part_of(effort, quick_share, 1.0), true);
   } catch (const transport::Stopped&) {
     return;
   } catch (const std::exception& failure) {
-    if (const std::shared_ptr<Solving> solving = of.lock()) solving->tell(nullptr, true, failure.what());
+    if (const std::shared_ptr<Solving> solving = of.lock()) solving->tell({.final = true, .failure = failure.what()});
   }
 }
 

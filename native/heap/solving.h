@@ -16,20 +16,33 @@ namespace mesograin::heap {
 
 /// What is known so far.
 struct News {
-  int number = 0;                          ///< grows with everything new
-  std::shared_ptr<const HeapLight> light;  ///< the best so far, or null
+  int number = 0;                            ///< another for each light; 0 while there is none
+  std::shared_ptr<const HeapLight> light{};  ///< the best so far, or null
+  std::shared_ptr<const Heap> heap{};        ///< that the light is of: until its own is known, one that was before
   bool final = false;
-  std::string failure;  ///< one sentence, if there can be none
+  std::string failure{};  ///< one sentence, if there can be none
+};
+
+class Solving;
+
+/// What is asked for in one place, one heap after the other.
+struct Line {
+  Solver solver;                  ///< the thread's
+  std::weak_ptr<Solving> latest;  ///< guarded by the mutex of Solvers
 };
 
 /// One heap's, for as long as somebody holds it. May be asked from any thread.
 class Solving {
  public:
-  Solving(Heap heap, std::shared_ptr<Solver> solver) : heap_(std::move(heap)), solver_(std::move(solver)) {}
+  Solving(std::shared_ptr<const Heap> heap, std::shared_ptr<Line> line, News before)
+      : heap_(std::move(heap)), line_(std::move(line)), news_(std::move(before)) {}
 
-  const Heap& heap() const { return heap_; }
+  const Heap& heap() const { return *heap_; }
 
   News news() const;
+
+  /// Whether any light of its own is known.
+  bool lit() const;
 
   /// The share that is done.
   double progress() const { return progress_; }
@@ -40,10 +53,10 @@ class Solving {
  private:
   friend class Solvers;
 
-  void tell(std::shared_ptr<const HeapLight> light, bool final, std::string failure = {});
+  void tell(News news);
 
-  const Heap heap_;
-  const std::shared_ptr<Solver> solver_;  ///< the thread's
+  const std::shared_ptr<const Heap> heap_;
+  const std::shared_ptr<Line> line_;
   mutable std::mutex mutex_;
   mutable std::condition_variable told_;
   News news_;
@@ -61,17 +74,27 @@ class Solvers {
   Solvers& operator=(const Solvers&) = delete;
 
   /// Returns at once. The same heap is solved once for all who hold it, and what was asked for last is solved first.
-  /// `before`: what was asked for in its place before, with which it may have much in common; or null.
+  /// `before`: what was asked for in its place before, with which it may have much in common; or null. What changes
+  /// faster than it is solved, a slider that is dragged, a heap that falls, has the light of a moment ago: a coarse
+  /// answer that is under way is finished for what was asked for since, if that has about as many grains; all else
+  /// that nobody holds any more is given up.
   std::shared_ptr<const Solving> ask(Heap heap, const std::shared_ptr<const Solving>& before);
 
  private:
   void loop(const std::stop_token& stop);
-  static void work(const std::weak_ptr<Solving>& of, const std::stop_token& stop);
+  void work(const std::weak_ptr<Solving>& of, const std::stop_token& stop);
+
+  /// Whether what was asked for last in this place can be shown in the light of `heap`.
+  bool has_heir(const Line& line, const Heap& heap);
+
+  /// The one that it is of, and what has taken its place since.
+  void tell(const std::weak_ptr<Solving>& of, const Line& line, News news);
 
   std::mutex mutex_;
   std::condition_variable_any wake_;
   std::vector<std::weak_ptr<Solving>> held_;
   std::vector<std::weak_ptr<Solving>> waiting_;
+  int told_ = 0;  // lights; the thread's
   std::jthread thread_;
 };
 

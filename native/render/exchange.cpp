@@ -147,7 +147,6 @@ void Exchange::set(const Content& content, const scene::Scene& scene) {
     return;
   }
   solving_ = heap::Solvers::instance().ask(std::move(heap), solving_);
-  news_ = 0;
   roles_ = std::move(gathered.roles);
   balls_ = gathered.balls;
   gather_.reset();
@@ -157,9 +156,8 @@ void Exchange::set(const Content& content, const scene::Scene& scene) {
 bool Exchange::take_news() {
   if (!solving_) return false;
   heap::News news = solving_->news();
-  if (news.number == news_ || !news.light) return false;
-  news_ = news.number;
-  known_ = Known{solving_->heap().grains, std::move(news.light)};
+  if (!news.light || (known_ && known_->number == news.number)) return false;
+  known_ = Known{std::move(news.heap), std::move(news.light), news.number};
   gather_.reset();
   find_gather();
   send();
@@ -168,7 +166,7 @@ bool Exchange::take_news() {
 
 void Exchange::find_gather() {
   if (!gathers_ || !known_) gather_.reset();
-  if (gathers_ && known_ && !gather_ && solving_->heap().grains == known_->grains)
+  if (gathers_ && known_ && !gather_ && solving_->heap().grains == known_->grains())
     gather_ = std::make_unique<const heap::Gather>(solving_->heap(), known_->light);
 }
 
@@ -230,8 +228,8 @@ void Exchange::send() {
     places_of_kinds.push_back(next);
     next += heap::GrainTable::lobe_nodes + 1 + known_->light->kinds[kind].from_light->came_in().offsets().size() / 2;
   }
-  const std::size_t known_grains = known_ ? known_->grains.grains.size() : 0;
-  const std::size_t known_walls = known_ ? known_->grains.walls.size() : 0;
+  const std::size_t known_grains = known_ ? known_->grains().grains.size() : 0;
+  const std::size_t known_walls = known_ ? known_->grains().walls.size() : 0;
   const auto place_of_kind = [&](std::uint32_t kind) { return static_cast<float>(places_of_kinds[kind]); };
   for (const Role& role : roles_) {
     // A grain that has just come is dark for a moment.
@@ -240,15 +238,15 @@ void Exchange::send() {
     append(numbers, lit ? known_->light->behind[*role.grain] : heap::Coefficients{});
     glm::vec4 which(-1.0F);
     if (lit) {
-      const heap::Grain& grain = known_->grains.grains[*role.grain];
+      const heap::Grain& grain = known_->grains().grains[*role.grain];
       which = {place_of_kind(grain.kind), -1.0F, grain.radius, 0.0F};
     }
     if (role.wall && *role.wall < known_walls)
-      which = {place_of_kind(known_->grains.walls[*role.wall].kind), *role.wall, 0.0F, 0.0F};
+      which = {place_of_kind(known_->grains().walls[*role.wall].kind), *role.wall, 0.0F, 0.0F};
     numbers.push_back(which);
   }
   for (std::size_t kind = 0; known_ && kind < known_->light->kinds.size(); ++kind) {
-    const heap::Optics& optics = known_->grains.kinds[kind];
+    const heap::Optics& optics = known_->grains().kinds[kind];
     // What is not transparent lets nothing through.
     const heap::GrainTable& table = *known_->light->kinds[kind].from_light;
     const std::vector<glm::vec2>& offsets = table.came_in().offsets();

@@ -85,8 +85,11 @@ class Exchange {
  private:
   /// What is drawn.
   struct Known {
-    heap::Grains grains;
+    std::shared_ptr<const heap::Heap> heap;
     std::shared_ptr<const heap::HeapLight> light;
+    int number;  ///< of the news
+
+    const heap::Grains& grains() const { return heap->grains; }
   };
 
   void send();
@@ -97,7 +100,6 @@ class Exchange {
   bool gathers_ = false;
   std::unique_ptr<const heap::Gather> gather_;
   std::shared_ptr<const heap::Solving> solving_;
-  int news_ = 0;  // taken in of it
   std::optional<Known> known_;
   std::optional<gl::Buffer> device_;
   std::optional<gl::Buffer> device_walls_;

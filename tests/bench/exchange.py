@@ -1,8 +1,10 @@
 """What light between grains costs while a scene changes: milliseconds to the first and to the final answer after each
-kind of change, the processor's until then, how far the first is off, and what was found anew. And what a sample costs
-that shows this light, over one that does not, and the memory of it all.
+kind of change, the processor's until then, how far the first is off, and what was found anew. How the light follows a
+slider that does not rest. And what a sample costs that shows this light, over one that does not, and the memory of it
+all.
 
-    exchange.py BUILD_FOLDER [--grains N] [--rounds N] [--changes NAME ...] [--materials NAME ...] [--json FILE]
+    exchange.py BUILD_FOLDER [--grains N] [--rounds N] [--changes NAME ...] [--materials NAME ...] [--drag SECONDS]
+                [--json FILE]
 
 A heap of equal balls, one sun and an even sky, seen by a view that waits for nothing, of 256 x 144 pixels. How far off:
 relative L1 in blocks of 8 x 8 pixels between the first picture with new light and the final one. Medians of the rounds.
@@ -32,11 +34,20 @@ MATERIALS = {
 }
 PARTS = ("tables", "links", "sources", "solutions")
 CHANGES = ["slider", "light", "sky", "grain", "grains"]
+DRAG_STEP = 0.05  # seconds between two changes of a slider that is dragged
+DRAG_STEPS = 40
 
 
 def blocks(view):
     view.render(4)
     return view.read()[..., 1].reshape(SIZE[1] // 8, 8, SIZE[0] // 8, 8).mean(axis=(1, 3))
+
+
+def slid(of, number):
+    """The material with its slider so many steps further."""
+    if "reflectance" in of:
+        return {**of, "reflectance": (0.8 - 0.02 * number,) * 3}
+    return {**of, "sigma_s": tuple(1.1 ** number * value for value in of["sigma_s"])}
 
 
 def scenes(native, of, count, number):
@@ -47,10 +58,6 @@ def scenes(native, of, count, number):
     transforms[:, :3, :3] *= scale[:, None, None]  # of one size: one kind
     mesh = shapes(native)["sphere"]
     sun, turned = (1.0, 0.4, 1.2), (1.0, 0.4 + 0.05 * number, 1.2)
-    slider = {name: tuple(1.1 ** number * value for value in values) if name == "sigma_s" else values
-              for name, values in of.items()}
-    if "reflectance" in of:
-        slider["reflectance"] = (0.8 - 0.02 * number,) * 3
     moved = transforms.copy()
     moved[-count // 20, :3, 3] += (0.0, 0.0, 0.3 * number)  # one of those on top
     fallen = transforms.copy()
@@ -61,7 +68,7 @@ def scenes(native, of, count, number):
         return native.Scene(arrays=[heap], lights=[native.DirectionalLight(to_light, (3.0,) * 3)],
                             world=native.World((sky,) * 3), exchange="order_1")
 
-    return width, {"nothing before": scene(), "slider": scene(material=slider), "light": scene(to_light=turned),
+    return width, {"nothing before": scene(), "slider": scene(material=slid(of, number)), "light": scene(to_light=turned),
                    "sky": scene(sky=0.3 + 0.05 * number), "grain": scene(where=moved), "grains": scene(where=fallen)}
 
 
@@ -92,6 +99,34 @@ def follow(view, scene):
             "found": {name: after["found"][name] - before[name] for name in PARTS}, "steps": after["steps"]}
 
 
+def drag(native, view, of, scene, seconds):
+    """Moves a slider on every DRAG_STEP seconds: what is seen of new light meanwhile, as a dictionary. off: of the
+    picture that is seen when the slider has moved for so long, from the final one of the same place of the slider."""
+    heap = scene.arrays[0]
+    began = latest = time.perf_counter()
+    waits, step = [], 0
+    while time.perf_counter() - began < seconds:
+        step += 1
+        material = native.Material(**slid(of, 2.9 * (1.0 - abs(1.0 - step / DRAG_STEPS % 2.0))))
+        here = native.Scene(arrays=[heap.with_material(material)], lights=scene.lights, world=scene.world,
+                            exchange="order_1")
+        view.set_scene(here)
+        while time.perf_counter() < began + step * DRAG_STEP:
+            if view.take_news():
+                now = time.perf_counter()
+                waits.append(1e3 * (now - latest))
+                latest = now
+            time.sleep(0.001)
+    waits.append(1e3 * (time.perf_counter() - latest))
+    seen = blocks(view)
+    while view.preparing is not None:
+        time.sleep(0.001)
+    view.take_news()
+    right = blocks(view)
+    return {"lights": len(waits) - 1, "steps": step, "longest_ms": max(waits), "median_ms": statistics.median(waits),
+            "off": float(numpy.abs(seen - right).sum() / right.sum())}
+
+
 def sample_milliseconds(view):
     started = time.perf_counter()
     view.render(1)
@@ -111,10 +146,11 @@ def over_direct(native, view, scene, camera):
     return statistics.median(times[0][4:]) / statistics.median(times[1][4:])
 
 
-def measure(native, of, count, rounds, wanted):
-    """({change: dictionary} of one material, a frame's cost over that of a direct one)."""
+def measure(native, of, count, rounds, wanted, seconds):
+    """({change: dictionary} of one material, of a drag of so many seconds, a frame's cost over that of a direct one).
+    """
     found = {}
-    frames = None
+    frames = dragged = None
     for number in range(1, rounds + 1):
         width, changes = scenes(native, of, count, number)
         eye = (0.0, -0.6 * width, 1.05 * width)
@@ -130,16 +166,19 @@ def measure(native, of, count, rounds, wanted):
                 follow(view, base)
             elif frames is None:
                 frames = over_direct(native, view, scene, camera)
+                dragged = drag(native, view, of, scene, seconds) if seconds else None
+                follow(view, base)
         del view
     medians = {name: {key: statistics.median(one[key] for one in each) if key != "found" else each[-1][key]
                       for key in each[0]} for name, each in found.items()}
-    return medians, frames
+    return medians, dragged, frames
 
 
 def measure_one(options, name):
     import mesograin_native as native
-    changes, frames = measure(native, MATERIALS[name], options.grains, options.rounds, options.changes)
-    return {"changes": changes, "frame_over_direct": frames,
+    changes, dragged, frames = measure(native, MATERIALS[name], options.grains, options.rounds, options.changes,
+                                       options.drag)
+    return {"changes": changes, "drag": dragged, "frame_over_direct": frames,
             "peak_megabytes": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0}
 
 
@@ -151,6 +190,8 @@ def main():
     parser.add_argument("--materials", nargs="+", default=list(MATERIALS), choices=list(MATERIALS), metavar="NAME")
     parser.add_argument("--changes", nargs="*", default=CHANGES, choices=CHANGES, metavar="NAME",
                         help="after the first picture, which is always measured (default: all)")
+    parser.add_argument("--drag", type=float, default=3.0, metavar="SECONDS",
+                        help="that a slider is dragged for (default: 3; 0: none is)")
     parser.add_argument("--json", type=pathlib.Path, metavar="FILE", help="also writes the result there")
     parser.add_argument("--one", metavar="NAME", help=argparse.SUPPRESS)
     options = parser.parse_args()
@@ -163,12 +204,16 @@ def main():
     cases = {}
     for name in options.materials:
         words = [sys.executable, __file__, options.build, "--one", name, "--grains", str(options.grains),
-                 "--rounds", str(options.rounds), "--changes", *options.changes]
+                 "--rounds", str(options.rounds), "--drag", str(options.drag), "--changes", *options.changes]
         cases[name] = json.loads(subprocess.run(words, check=True, stdout=subprocess.PIPE, text=True).stdout)
         for change, case in cases[name]["changes"].items():
             counts = ", ".join(str(case["found"][part]) for part in PARTS)
             print(f"{name:<13}{change:<16}{case['first_ms']:>9.0f}{case['first_off']:>7.1%}{case['final_ms']:>9.0f}"
                   f"{case['cpu_ms']:>9.0f}{case['steps']:>6.0f}  {counts}")
+        if dragged := cases[name]["drag"]:
+            print(f"{name:<13}a slider moved {dragged['steps']} times in {options.drag:g} s: new light "
+                  f"{dragged['lights']} times, after {dragged['median_ms']:.0f} ms, {dragged['longest_ms']:.0f} at most; "
+                  f"the last picture {dragged['off']:.1%} off")
         print(f"{name:<13}a sample is {cases[name]['frame_over_direct']:.2f} times that without light between grains; "
               f"{cases[name]['peak_megabytes']:.0f} MB at most", flush=True)
     if options.json:
