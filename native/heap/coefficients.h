@@ -28,8 +28,18 @@ struct Coefficients {
   }
 };
 
+inline Coefficients operator*(const Coefficients& coefficients, const glm::vec3& by) {
+  return {{coefficients.channels[0] * by.r, coefficients.channels[1] * by.g, coefficients.channels[2] * by.b}};
+}
+
 /// One for each grain.
 using Field = std::vector<Coefficients>;
+
+/// What leaves grains and walls because of lights: without and with other grains on the way.
+struct Lit {
+  Field direct;
+  Field crossed;
+};
 
 inline Coefficients operator+(const Coefficients& a, const Coefficients& b) {
   return {{a.channels[0] + b.channels[0], a.channels[1] + b.channels[1], a.channels[2] + b.channels[2]}};

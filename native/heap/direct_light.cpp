@@ -7,20 +7,32 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <numbers>
+#include <optional>
+#include <vector>
 
 #include "heap/draws.h"
+#include "heap/moves.h"
 #include "heap/spread.h"
 
 namespace mesograin::heap {
 namespace {
 
-void light_grain(const Space& space, std::uint32_t number, const glm::dvec3& anchor, const Draw& draw, int rays,
-                 transport::Random& random, Coefficients& direct, Coefficients& crossed) {
-  const Grain& grain = space.grains()[number];
-  const GrainTable& table = *space.kind(number).from_light;
+/// A ray towards a light, and what it brings if nothing is in its way.
+struct Look {
+  Ray ray;
+  float reach;
+  glm::vec3 brings;
+  glm::vec3 normal{0.0F};  ///< where it leaves a grain
+  float mu = 0.0F;         ///< at which cosine
+  float choice = 0.0F;     ///< of what becomes of its light there
+};
+
+void look_from_grain(const Space& space, const Grain& grain, const glm::dvec3& anchor, const Draw& draw, int rays,
+                     transport::Random& random, std::vector<Look>& looks) {
   const glm::dvec3 middle = anchor + glm::dvec3(grain.middle);
   const Spread spread(random);
   const Spread of_light(random);
+  const float share = 1.0F / (4.0F * std::numbers::pi_v<float> * static_cast<float>(rays));
   for (int i = 0; i < rays; ++i) {
     const std::array<float, 5> point = spread.point(i);
     const std::array<float, 5> light_point = of_light.point(i);
@@ -30,20 +42,17 @@ void light_grain(const Space& space, std::uint32_t number, const glm::dvec3& anc
     const glm::vec3 to_light(light.to_light);
     const float mu = std::sqrt(point[0]);
     const glm::vec3 normal = TurnedFrame(to_light, point[1]) * glm::vec3(std::sqrt(1.0F - point[0]), 0.0F, mu);
-    Ray ray{space.place(grain, normal), to_light, glm::vec3(1.0F)};
-    const glm::vec3 left = space.passed(ray, static_cast<float>(std::min(light.reach, 1e30)) - grain.radius);
-    if (left == glm::vec3(0.0F)) continue;
-    const Outcome outcome = table.draw(mu, point[2]);
-    const TurnedFrame frame(normal, -to_light);
-    const float share = 1.0F / (4.0F * std::numbers::pi_v<float> * static_cast<float>(rays));
-    const glm::vec3 leaves_at = table.seen_place(frame * outcome.normal, frame * outcome.direction);
-    (ray.crossed ? crossed : direct).add(share * irradiance * left * outcome.weight, leaves_at);
+    looks.push_back({{space.place(grain, normal), to_light, glm::vec3(1.0F)},
+                     static_cast<float>(std::min(light.reach, 1e30)) - grain.radius,
+                     share * irradiance,
+                     normal,
+                     mu,
+                     point[2]});
   }
 }
 
-void light_wall(const Space& space, const Patches::Node& node, const glm::dvec3& anchor, const Draw& draw, int rays,
-                transport::Random& random, Coefficients& direct, Coefficients& crossed) {
-  constexpr glm::vec3 nowhere(0.0F);
+void look_from_node(const Space& space, const Patches::Node& node, const glm::dvec3& anchor, const Draw& draw, int rays,
+                    transport::Random& random, std::vector<Look>& looks) {
   const glm::vec3 share =
       space.kind(node).from_light->albedo() / (std::numbers::pi_v<float> * static_cast<float>(rays));
   const Spread spread(random);
@@ -54,30 +63,57 @@ void light_wall(const Space& space, const Patches::Node& node, const glm::dvec3&
     const glm::vec3 to_light(light.to_light);
     const float cosine = glm::dot(to_light, at.normal);
     if (!(cosine > 0.0F)) continue;
-    Ray ray{at.place, to_light, glm::vec3(1.0F)};
-    const glm::vec3 left = space.passed(ray, static_cast<float>(std::min(light.reach, 1e30)));
-    (ray.crossed ? crossed : direct).add(share * cosine * glm::vec3(light.irradiance) * left, nowhere);
+    looks.push_back({{at.place, to_light, glm::vec3(1.0F)},
+                     static_cast<float>(std::min(light.reach, 1e30)),
+                     share * cosine * glm::vec3(light.irradiance)});
   }
+}
+
+void add_grain(const GrainTable& table, const Look& look, const glm::vec3& left, Coefficients& sum) {
+  const Outcome outcome = table.draw(look.mu, look.choice);
+  const TurnedFrame frame(look.normal, -look.ray.direction);
+  sum.add(left * look.brings * outcome.weight, table.seen_place(frame * outcome.normal, frame * outcome.direction));
+}
+
+/// Whether any of these meets a place where a grain was or is that has moved.
+bool touched(const Moves& moves, const std::vector<Look>& looks) {
+  return std::any_of(looks.begin(), looks.end(), [&](const Look& look) {
+    const std::optional<float> distance = moves.distance(look.ray.origin, look.ray.direction);
+    return distance && *distance <= look.reach;
+  });
 }
 
 }  // namespace
 
-void add_direct_light(const Space& space, const Heap& heap, int rays, Field& direct, Field& crossed,
-                      const transport::Effort& effort) {
+void find_direct_light(const Space& space, const Heap& heap, const Rays& rays, const Moves* moves, Lit& lit,
+                       const transport::Effort& effort) {
   const std::vector<Draw> draws = draws_of(heap);
-  if (draws.empty()) return;
-  constexpr std::size_t grains_a_piece = 64;
   const std::size_t grains = space.grains().size();
   const std::size_t count = space.size();
+  if (draws.empty()) return;
+  constexpr std::size_t grains_a_piece = 64;
   transport::run_pieces(effort, (count + grains_a_piece - 1) / grains_a_piece, [&](std::size_t piece) {
+    std::vector<Look> looks;
     for (std::size_t i = piece * grains_a_piece; i < std::min(count, (piece + 1) * grains_a_piece); ++i) {
       transport::Random random(effort.seed + 1, i);
+      looks.clear();
       for (const Draw& draw : draws)
         if (i < grains)
-          light_grain(space, static_cast<std::uint32_t>(i), heap.anchor, draw, rays, random, direct[i], crossed[i]);
+          look_from_grain(space, space.grains()[i], heap.anchor, draw, rays.of(i), random, looks);
         else
-          light_wall(space, space.patches().nodes()[i - grains], heap.anchor, draw, rays, random, direct[i],
-                     crossed[i]);
+          look_from_node(space, space.patches().nodes()[i - grains], heap.anchor, draw, rays.of_node, random, looks);
+      if (moves != nullptr && !(i < grains && moves->moved(i)) && !touched(*moves, looks)) continue;
+      lit.direct[i] = {};
+      lit.crossed[i] = {};
+      for (Look& look : looks) {
+        const glm::vec3 left = space.passed(look.ray, look.reach);
+        if (left == glm::vec3(0.0F)) continue;
+        Coefficients& sum = look.ray.crossed ? lit.crossed[i] : lit.direct[i];
+        if (i < grains)
+          add_grain(*space.kind(static_cast<std::uint32_t>(i)).from_light, look, left, sum);
+        else
+          sum.add(left * look.brings, glm::vec3(0.0F));  // as much at every normal
+      }
     }
   });
 }

@@ -3,13 +3,14 @@
 
 #include "heap/coefficients.h"
 #include "heap/heap.h"
+#include "heap/links.h"
 
 namespace mesograin::heap {
 
-/// Adds what light does that comes straight from the lights, and from the world if that is an image, to `direct`; what
-/// has gone through other grains on its way to `crossed`. `rays` of each grain, and of each node of walls,
-/// to each light.
-void add_direct_light(const Space& space, const Heap& heap, int rays, Field& direct, Field& crossed,
-                      const transport::Effort& effort);
+/// What light does that comes straight from the lights, and from the world if that is an image. `rays` to each
+/// light. `lit`: as large as the space; where there are `moves`, what was found before
+/// them, of which only what they touch is found again.
+void find_direct_light(const Space& space, const Heap& heap, const Rays& rays, const Moves* moves, Lit& lit,
+                       const transport::Effort& effort);
 
 }  // namespace mesograin::heap

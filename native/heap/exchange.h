@@ -19,6 +19,7 @@ struct Quality {
   float tolerance = 3e-4F;
   int walks = GrainTable::most_walks;  ///< for each interval of a kind's table, where kinds are few
   bool quick = false;                  ///< links that were found at other materials will do
+  int deep_rays = 16;                  ///< of each kind, of grains that lie deep in a heap of many
 };
 
 /// As fine as the memory for a heap of so many grains allows: half a gigabyte for its links. Where there are few, finer
@@ -35,6 +36,7 @@ struct Parts {
   int links = 0;
   int sources = 0;  ///< each light counts
   int solutions = 0;
+  std::size_t renewed = 0;  ///< grains and nodes whose links were found again because a few grains had moved
 };
 
 /// Of every grain, in their order, and then of every node of the walls. Radiance that leaves a grain at a normal and a

@@ -72,6 +72,7 @@ void Space::cross(Ray& ray, const Meeting& meeting, float cosine) const {
 }
 
 std::optional<Source> Space::source(const Meeting& meeting, Ray& ray, transport::Random& random) const {
+  ray.origin = meeting.place;
   if (!meeting.wall) {
     const GrainTable& table = *kind(meeting.number).from_light;
     return Source{meeting.number, table.seen_place(meeting.normal, -ray.direction), table.met()};

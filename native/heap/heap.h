@@ -35,7 +35,7 @@ std::vector<Kind> kinds_of(const Grains& grains, int walks, const transport::Eff
 
 /// A straight line between grains, with what is left of its weight.
 struct Ray {
-  glm::vec3 origin;
+  glm::vec3 origin;  ///< of one that was followed: where it has come to
   glm::vec3 direction;
   glm::vec3 weight;
   bool crossed = false;  ///< whether it has gone straight through a grain

@@ -7,8 +7,11 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
+#include <mutex>
 #include <numbers>
+#include <utility>
 
+#include "heap/moves.h"
 #include "heap/spread.h"
 #include "transport/directions.h"
 
@@ -78,30 +81,115 @@ struct Ending {
   bool crossed = false;
 };
 
-Found look_from(const Space& space, std::uint32_t number, int rays, const glm::vec3& radiance,
-                transport::Random& random) {
-  const Grain& grain = space.grains()[number];
-  const GrainTable& table = *space.kind(number).from_viewer;
-  Found found;
+/// A ray that is looked along, and where what it finds leaves a grain, towards whom.
+struct Look {
+  Ray ray;
+  glm::vec3 normal;
+  glm::vec3 towards;
+};
+
+/// The rays of a grain through its table, or of a node.
+std::vector<Look> looks_from(const Space& space, std::size_t number, const Rays& rays, std::uint64_t seed) {
+  transport::Random random(seed, number);
   const Spread spread(random);
-  std::vector<Departing> departing(static_cast<std::size_t>(rays));
-  std::vector<Ending> endings(departing.size());
-  for (std::size_t i = 0; i < departing.size(); ++i) {
-    const std::array<float, 5> point = spread.point(static_cast<int>(i));
+  std::vector<Look> looks;
+  const std::size_t grains = space.grains().size();
+  if (number < grains) {
+    const Grain& grain = space.grains()[number];
+    const GrainTable& table = *space.kind(static_cast<std::uint32_t>(number)).from_viewer;
+    const int count = rays.of(number);
+    looks.reserve(static_cast<std::size_t>(count));
+    for (int i = 0; i < count; ++i) {
+      const std::array<float, 5> point = spread.point(i);
+      const glm::vec3 normal = transport::isotropic(point[0], point[1]);
+      const float mu = std::sqrt(point[2]);
+      const Outcome outcome = table.draw(mu, point[3]);
+      const TurnedFrame frame(normal, point[4]);
+      looks.push_back({{space.place(grain, frame * outcome.normal), frame * outcome.direction, outcome.weight},
+                       normal,
+                       frame * glm::vec3(-std::sqrt(1.0F - point[2]), 0.0F, mu)});
+    }
+    return looks;
+  }
+  const Patches::Node& node = space.patches().nodes()[number - grains];
+  const glm::vec3 weight = space.kind(node).from_viewer->albedo() / static_cast<float>(rays.of_node);
+  looks.reserve(static_cast<std::size_t>(rays.of_node));
+  for (int i = 0; i < rays.of_node; ++i) {
+    const std::array<float, 5> point = spread.point(i);
+    const WallPlace from = space.place(node, point[0], point[1]);
+    const float cosine = std::sqrt(1.0F - point[2]);
+    const glm::vec3 direction = TurnedFrame(from.normal, point[3]) * glm::vec3(std::sqrt(point[2]), 0.0F, cosine);
+    looks.push_back({{from.place, direction, weight}, nowhere, nowhere});
+  }
+  return looks;
+}
+
+/// Rays straight through a transparent grain.
+std::vector<Look> looks_through(const Space& space, std::size_t number, const Rays& rays, std::uint64_t seed) {
+  std::vector<Look> looks;
+  const GrainTable& table = *space.kind(static_cast<std::uint32_t>(number)).from_viewer;
+  if (table.crossing(0.0F) == glm::vec3(0.0F)) return looks;
+  transport::Random random(seed, number);
+  const Spread spread(random);
+  const Grain& grain = space.grains()[number];
+  const int count = rays.of(number);
+  looks.reserve(static_cast<std::size_t>(count));
+  for (int i = 0; i < count; ++i) {
+    const std::array<float, 5> point = spread.point(i);
     const glm::vec3 normal = transport::isotropic(point[0], point[1]);
     const float mu = std::sqrt(point[2]);
-    const Outcome outcome = table.draw(mu, point[3]);
-    departing[i] = {outcome.weight, normal};
-    const TurnedFrame frame(normal, point[4]);
-    departing[i].normal = table.seen_place(normal, frame * glm::vec3(-std::sqrt(1.0F - point[2]), 0.0F, mu));
-    Ray ray{space.place(grain, frame * outcome.normal), frame * outcome.direction, outcome.weight};
+    const glm::vec3 inwards = TurnedFrame(normal, point[4]) * glm::vec3(std::sqrt(1.0F - point[2]), 0.0F, -mu);
+    looks.push_back(
+        {{space.place(grain, normal + 2.0F * mu * inwards), inwards, table.crossing(mu)}, normal, -inwards});
+  }
+  return looks;
+}
+
+/// Random numbers of one ray's way, so that it is the same whatever the others meet.
+transport::Random on_way(std::uint64_t seed, std::size_t number, std::size_t look) {
+  return {seed, (static_cast<std::uint64_t>(number) << 16U) + look};
+}
+
+constexpr std::uint64_t ways_seed = 0x5ca1ab1eU;  // more than that of the looks
+
+/// Whether any of these meets a place where a grain was or is that has moved.
+bool touched(const Space& space, const Moves& moves, const std::vector<Look>& looks, std::size_t number,
+             std::uint64_t seed) {
+  for (std::size_t i = 0; i < looks.size(); ++i) {
+    const std::optional<float> distance = moves.distance(looks[i].ray.origin, looks[i].ray.direction);
+    if (!distance) continue;
+    Ray ray = looks[i].ray;
+    transport::Random random = on_way(seed + ways_seed, number, i);
+    // What it meets before is as it was.
+    if (!space.follow(ray, random) ||
+        glm::dot(ray.origin - looks[i].ray.origin, ray.direction) >= *distance * (1.0F - 1e-5F))
+      return true;
+  }
+  return false;
+}
+
+Found found_by(const Space& space, std::size_t number, const std::vector<Look>& looks, const glm::vec3& radiance,
+               std::uint64_t seed) {
+  Found found;
+  std::vector<Departing> departing;
+  std::vector<Ending> endings(looks.size());
+  departing.reserve(looks.size());
+  const bool of_grain = number < space.grains().size();
+  const GrainTable* table = of_grain ? space.kind(static_cast<std::uint32_t>(number)).from_viewer.get() : nullptr;
+  for (std::size_t i = 0; i < looks.size(); ++i) {
+    Ray ray = looks[i].ray;
+    transport::Random random = on_way(seed + ways_seed, number, i);
+    departing.push_back({ray.weight, of_grain ? table->seen_place(looks[i].normal, looks[i].towards) : nowhere});
     endings[i].source = space.follow(ray, random);
     endings[i].crossed = ray.crossed;
     // What the way has left of the weight.
     for (int channel = 0; channel < 3; ++channel)
-      endings[i].left[channel] = outcome.weight[channel] > 0.0F ? ray.weight[channel] / outcome.weight[channel] : 0.0F;
+      endings[i].left[channel] =
+          departing[i].weight[channel] > 0.0F ? ray.weight[channel] / departing[i].weight[channel] : 0.0F;
   }
-  balance(departing, table.albedo());
+  if (of_grain) balance(departing, table->albedo());
+  found.links.reserve(static_cast<std::size_t>(
+      std::count_if(endings.begin(), endings.end(), [](const Ending& ending) { return ending.source.has_value(); })));
   for (std::size_t i = 0; i < departing.size(); ++i) {
     const Departing& from = departing[i];
     const glm::vec3 weight = from.weight * endings[i].left;
@@ -113,74 +201,98 @@ Found look_from(const Space& space, std::uint32_t number, int rays, const glm::v
   return found;
 }
 
-Found look_from(const Space& space, const Patches::Node& node, int rays, const glm::vec3& radiance,
-                transport::Random& random) {
-  Found found;
-  const Spread spread(random);
-  for (int i = 0; i < rays; ++i) {
-    const std::array<float, 5> point = spread.point(i);
-    const WallPlace from = space.place(node, point[0], point[1]);
-    const float cosine = std::sqrt(1.0F - point[2]);
-    const glm::vec3 direction = TurnedFrame(from.normal, point[3]) * glm::vec3(std::sqrt(point[2]), 0.0F, cosine);
-    Ray ray{from.place, direction, space.kind(node).from_viewer->albedo() / static_cast<float>(rays)};
+std::vector<Link> seen_behind(const Space& space, std::size_t number, const std::vector<Look>& looks,
+                              std::uint64_t seed) {
+  std::vector<Link> links;
+  glm::vec3 all(0.0F);
+  for (std::size_t i = 0; i < looks.size(); ++i) {
+    Ray ray = looks[i].ray;
+    transport::Random random = on_way(seed + ways_seed, number, i);
+    all += ray.weight;
     if (const std::optional<Source> source = space.follow(ray, random))
-      found.links.push_back(link_to(*source, ray.weight, nowhere));
-    else
-      (ray.crossed ? found.crossed : found.direct).add(ray.weight * radiance, nowhere);
+      links.push_back(link_to(*source, ray.weight, look_through(looks[i].normal, looks[i].towards)));
   }
-  return found;
+  for (Link& link : links)
+    for (int channel = 0; channel < 3; ++channel)
+      link.weight[channel] *= all[channel] > 0.0F ? 1.0F / all[channel] : 0.0F;
+  links.shrink_to_fit();
+  return links;
 }
 
-Links joined(std::vector<std::vector<Link>> found) {
-  Links links;
-  links.first.reserve(found.size() + 1);
-  links.first.push_back(0);
-  std::size_t all = 0;
-  for (const std::vector<Link>& of : found) links.first.push_back(all += of.size());
-  links.links.reserve(all);
-  for (std::vector<Link>& of : found) {
-    links.links.insert(links.links.end(), of.begin(), of.end());
-    of = {};
-  }
-  return links;
+constexpr std::uint64_t behind_seed = 2;  // more than an effort's
+
+/// each(i) for i below `count`, many a piece.
+template <typename Each>
+void for_each(std::size_t count, const transport::Effort& effort, const Each& each) {
+  transport::run_pieces(effort, (count + grains_a_piece - 1) / grains_a_piece, [&](std::size_t piece) {
+    for (std::size_t i = piece * grains_a_piece; i < std::min(count, (piece + 1) * grains_a_piece); ++i) each(i);
+  });
 }
 
 }  // namespace
 
-Links find_links(const Space& space, const Rays& rays, const glm::vec3& radiance, WorldLit& lit,
-                 const transport::Effort& effort) {
-  const std::size_t count = space.size();
-  const std::size_t grains = space.grains().size();
-  std::vector<std::vector<Link>> found(count);
-  lit.direct.assign(count, {});
-  lit.crossed.assign(count, {});
-  transport::run_pieces(effort, (count + grains_a_piece - 1) / grains_a_piece, [&](std::size_t piece) {
-    for (std::size_t i = piece * grains_a_piece; i < std::min(count, (piece + 1) * grains_a_piece); ++i) {
-      transport::Random random(effort.seed, i);
-      Found of = i < grains ? look_from(space, static_cast<std::uint32_t>(i), rays.of_grain, radiance, random)
-                            : look_from(space, space.patches().nodes()[i - grains], rays.of_node, radiance, random);
-      found[i] = std::move(of.links);
-      lit.direct[i] = of.direct;
-      lit.crossed[i] = of.crossed;
-    }
-  });
-  return joined(std::move(found));
+std::size_t Links::count() const {
+  std::size_t all = 0;
+  for (const std::vector<Link>& links : of) all += links.size();
+  return all;
 }
 
-void Links::gather(const Field& sent, Field& answer, const transport::Effort& effort) const {
+void Links::gather(const Field& sent, Field& answer, const transport::Effort& effort, const Change* change) const {
   answer.resize(sent.size());
   constexpr std::size_t at_once = 512;
   transport::run_pieces(effort, (sent.size() + at_once - 1) / at_once, [&](std::size_t piece) {
     for (std::size_t i = piece * at_once; i < std::min(sent.size(), (piece + 1) * at_once); ++i) {
       Coefficients sum;
-      for (std::size_t l = first[i]; l < first[i + 1]; ++l) {
-        const Link& link = links[l];
-        const glm::vec3 weight(link.weight[0], link.weight[1], link.weight[2]);
+      for (const Link& link : of[i]) {
+        glm::vec3 weight(link.weight[0], link.weight[1], link.weight[2]);
+        if (change != nullptr) weight *= change->received[link.from];
         sum.add(weight * sent[link.from].at(unpacked(link.sent_at)), unpacked(link.leaves_at));
       }
+      if (change != nullptr && !change->answered.empty()) sum = sum * change->answered[i];
       answer[i] = sum;
     }
   });
+}
+
+Deep find_deep(const Space& space, int ways, const transport::Effort& effort) {
+  const Rays few{8, 8};
+  const std::size_t count = space.size();
+  std::vector<std::vector<std::uint32_t>> sees(count);
+  std::vector<int> depths(count, ways + 1);
+  for_each(count, effort, [&](std::size_t i) {
+    const std::vector<Look> looks = looks_from(space, i, few, effort.seed);
+    for (std::size_t look = 0; look < looks.size(); ++look) {
+      Ray ray = looks[look].ray;
+      transport::Random random = on_way(effort.seed + ways_seed, i, look);
+      if (const std::optional<Source> source = space.follow(ray, random))
+        sees[i].push_back(source->number);
+      else
+        depths[i] = 0;
+    }
+  });
+  for (int way = 1; way <= ways; ++way)
+    for (std::size_t i = 0; i < count; ++i)
+      if (depths[i] > way &&
+          std::any_of(sees[i].begin(), sees[i].end(), [&](std::uint32_t from) { return depths[from] == way - 1; }))
+        depths[i] = way;
+  auto deep = std::make_shared<std::vector<bool>>(space.grains().size());
+  for (std::size_t i = 0; i < deep->size(); ++i) (*deep)[i] = depths[i] > ways;
+  return deep;
+}
+
+Links find_links(const Space& space, const Rays& rays, const glm::vec3& radiance, Lit& lit,
+                 const transport::Effort& effort) {
+  const std::size_t count = space.size();
+  Links links{std::vector<std::vector<Link>>(count)};
+  lit.direct.assign(count, {});
+  lit.crossed.assign(count, {});
+  for_each(count, effort, [&](std::size_t i) {
+    Found found = found_by(space, i, looks_from(space, i, rays, effort.seed), radiance, effort.seed);
+    links.of[i] = std::move(found.links);
+    lit.direct[i] = found.direct;
+    lit.crossed[i] = found.crossed;
+  });
+  return links;
 }
 
 glm::vec3 look_through(const glm::vec3& normal, const glm::vec3& towards) {
@@ -188,34 +300,42 @@ glm::vec3 look_through(const glm::vec3& normal, const glm::vec3& towards) {
   return glm::normalize((2.0F * mu + 1.0F) * towards - normal);
 }
 
-Links find_behind(const Space& space, int rays, const transport::Effort& effort) {
-  const std::size_t count = space.grains().size();
-  std::vector<std::vector<Link>> found(space.size());
-  transport::run_pieces(effort, (count + grains_a_piece - 1) / grains_a_piece, [&](std::size_t piece) {
-    for (std::size_t i = piece * grains_a_piece; i < std::min(count, (piece + 1) * grains_a_piece); ++i) {
-      const auto number = static_cast<std::uint32_t>(i);
-      const GrainTable& table = *space.kind(number).from_viewer;
-      if (table.crossing(0.0F) == glm::vec3(0.0F)) continue;
-      transport::Random random(effort.seed + 2, i);
-      const Spread spread(random);
-      const Grain& grain = space.grains()[i];
-      glm::vec3 all(0.0F);
-      for (int r = 0; r < rays; ++r) {
-        const std::array<float, 5> point = spread.point(r);
-        const glm::vec3 normal = transport::isotropic(point[0], point[1]);
-        const float mu = std::sqrt(point[2]);
-        const glm::vec3 inwards = TurnedFrame(normal, point[4]) * glm::vec3(std::sqrt(1.0F - point[2]), 0.0F, -mu);
-        Ray ray{space.place(grain, normal + 2.0F * mu * inwards), inwards, table.crossing(mu)};
-        all += ray.weight;
-        if (const std::optional<Source> source = space.follow(ray, random))
-          found[i].push_back(link_to(*source, ray.weight, look_through(normal, -inwards)));
-      }
-      for (Link& link : found[i])
-        for (int channel = 0; channel < 3; ++channel)
-          link.weight[channel] *= all[channel] > 0.0F ? 1.0F / all[channel] : 0.0F;
-    }
+Links find_behind(const Space& space, const Rays& rays, const transport::Effort& effort) {
+  Links behind{std::vector<std::vector<Link>>(space.size())};
+  const std::uint64_t seed = effort.seed + behind_seed;
+  for_each(space.grains().size(), effort,
+           [&](std::size_t i) { behind.of[i] = seen_behind(space, i, looks_through(space, i, rays, seed), seed); });
+  return behind;
+}
+
+std::size_t renew(const Space& space, const Moves& moves, const Rays& rays, const Rays& rays_through,
+                  const glm::vec3& radiance, Ways& ways, const transport::Effort& effort) {
+  std::mutex mutex;
+  std::vector<std::pair<std::size_t, Found>> found;
+  for_each(space.size(), transport::part_of(effort, 0.0, 0.8), [&](std::size_t i) {
+    const std::vector<Look> looks = looks_from(space, i, rays, effort.seed);
+    const bool moved = i < space.grains().size() && moves.moved(i);
+    if (!moved && !touched(space, moves, looks, i, effort.seed)) return;
+    Found anew = found_by(space, i, looks, radiance, effort.seed);
+    const std::lock_guard lock(mutex);
+    found.emplace_back(i, std::move(anew));
   });
-  return joined(std::move(found));
+  std::vector<std::pair<std::size_t, std::vector<Link>>> behind;
+  const std::uint64_t seed = effort.seed + behind_seed;
+  for_each(space.grains().size(), transport::part_of(effort, 0.8, 1.0), [&](std::size_t i) {
+    const std::vector<Look> looks = looks_through(space, i, rays_through, seed);
+    if (!moves.moved(i) && !touched(space, moves, looks, i, seed)) return;
+    std::vector<Link> anew = seen_behind(space, i, looks, seed);
+    const std::lock_guard lock(mutex);
+    behind.emplace_back(i, std::move(anew));
+  });
+  for (auto& [i, anew] : found) {
+    ways.links.of[i] = std::move(anew.links);
+    ways.world.direct[i] = anew.direct;
+    ways.world.crossed[i] = anew.crossed;
+  }
+  for (auto& [i, anew] : behind) ways.behind.of[i] = std::move(anew);
+  return found.size();
 }
 
 }  // namespace mesograin::heap

@@ -3,12 +3,15 @@
 
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <memory>
 #include <vector>
 
 #include "heap/coefficients.h"
 #include "heap/heap.h"
 
 namespace mesograin::heap {
+
+class Moves;
 
 /// A ray that leaves a grain at a normal (GrainTable::seen_place) because of light that another one sent out at one of
 /// its own; of a node of walls, which sends out the same at every normal, it is 0.
@@ -19,29 +22,39 @@ struct Link {
   float weight[3];
 };
 
+/// What light does at other materials that goes the same ways.
+struct Change {
+  std::vector<glm::vec3> answered;  ///< how much more each sends out of what comes to it; empty: just as much
+  std::vector<glm::vec3> received;  ///< how much more comes to others of what each sends out
+};
+
 struct Links {
-  std::vector<std::size_t> first;  ///< of each grain, then of each node of walls, and one past the last
-  std::vector<Link> links;
+  std::vector<std::vector<Link>> of;  ///< each grain, then each node of walls
 
-  /// What light sent out by others makes the grains send out.
-  void gather(const Field& sent, Field& answer, const transport::Effort& effort) const;
+  std::size_t count() const;
+
+  /// What light sent out by others makes the grains send out. `change`: since the links were found; or null.
+  void gather(const Field& sent, Field& answer, const transport::Effort& effort, const Change* change = nullptr) const;
 };
 
-/// What leaves grains and walls because of an even world: without and with other grains on the way.
-struct WorldLit {
-  Field direct;
-  Field crossed;
-};
+/// Of each grain, whether it lies deep; empty: none does.
+using Deep = std::shared_ptr<const std::vector<bool>>;
 
 /// How many rays leave each.
 struct Rays {
   int of_grain;
-  int of_node;  ///< of walls
+  int of_node;      ///< of walls
+  int of_deep = 0;  ///< of grains that lie deep
+  Deep deep{};
+
+  int of(std::size_t grain) const { return deep && (*deep)[grain] ? of_deep : of_grain; }
 };
 
-/// `radiance` from outside the heap wherever a ray leaves
-/// it.
-Links find_links(const Space& space, const Rays& rays, const glm::vec3& radiance, WorldLit& lit,
+/// Grains that no light leaves the heap from but by way of more than `ways` others, as far as a few rays of each tell.
+Deep find_deep(const Space& space, int ways, const transport::Effort& effort);
+
+/// `radiance` from outside the heap wherever a ray leaves it.
+Links find_links(const Space& space, const Rays& rays, const glm::vec3& radiance, Lit& lit,
                  const transport::Effort& effort);
 
 /// By what four numbers know a look straight through a ball, at a normal and from a direction: halfway between that
@@ -51,6 +64,19 @@ glm::vec3 look_through(const glm::vec3& normal, const glm::vec3& towards);
 
 /// The light that is seen straight through transparent grains, by look_through(): what others send, 0 where no grain
 /// stands behind.
-Links find_behind(const Space& space, int rays, const transport::Effort& effort);
+Links find_behind(const Space& space, const Rays& rays, const transport::Effort& effort);
+
+/// What find_links() and find_behind() find.
+struct Ways {
+  Links links;
+  Links behind;
+  Lit world;
+};
+
+/// Finds what a change of places may touch again, to the last bit as it is found from nothing in `space`. `ways`: those
+/// of the space before, found with as many rays; left as they are until all is found. Returns of how many grains and
+/// nodes there was something to find.
+std::size_t renew(const Space& space, const Moves& moves, const Rays& rays, const Rays& rays_through,
+                  const glm::vec3& radiance, Ways& ways, const transport::Effort& effort);
 
 }  // namespace mesograin::heap

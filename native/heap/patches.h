@@ -28,9 +28,13 @@ class Patches {
     glm::ivec2 at;   ///< in the cells' lengths from middle()
     float depth;     ///< along the axis, from middle()
     glm::vec3 home;  ///< a place on the wall that is near, from middle()
+
+    bool operator==(const Node&) const = default;
   };
 
   Patches() = default;
+
+  bool operator==(const Patches&) const = default;
 
   /// `most_nodes`: the grids are as coarse as that asks for.
   Patches(const Grains& grains, std::size_t most_nodes);
@@ -55,6 +59,8 @@ class Patches {
     glm::ivec3 at{0};  // along the axes across, and in its own depths along the one that it faces
     std::uint32_t tag = no_cell;
     std::array<std::uint32_t, 4> nodes{};
+
+    bool operator==(const Cell&) const = default;
   };
   static constexpr std::uint32_t no_cell = ~0U;
 

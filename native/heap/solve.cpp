@@ -7,11 +7,15 @@
 #include <array>
 #include <cmath>
 #include <glm/common.hpp>
+#include <utility>
 
 namespace mesograin::heap {
 namespace {
 
 constexpr int most_steps = 400;
+
+// Of D: numbers of 24 bits leave as much.
+constexpr float least_left = 1e-6F;
 
 glm::dvec3 product(const Field& a, const Field& b) {
   glm::dvec3 sum(0.0);
@@ -49,7 +53,7 @@ glm::dvec3 ratio(const glm::dvec3& over, const glm::dvec3& under) {
 
 }  // namespace
 
-Solved solve(const Links& links, const Field& direct, const Field& guess, float tolerance,
+Solved solve(const Links& links, const Change* change, const Field& direct, const Field& guess, const Goal& goal,
              const transport::Effort& effort) {
   Solved solved;
   solved.sent = guess.size() == direct.size() ? guess : direct;
@@ -57,7 +61,7 @@ Solved solve(const Links& links, const Field& direct, const Field& guess, float 
   quiet.progress = {};
   // a - G a
   const auto apply = [&](const Field& of, Field& result) {
-    links.gather(of, result, quiet);
+    links.gather(of, result, quiet, change);
     scale_and_add(result, glm::dvec3(-1.0), of);
   };
   const glm::dvec3 size = product(direct, direct);
@@ -72,7 +76,9 @@ Solved solve(const Links& links, const Field& direct, const Field& guess, float 
     return static_cast<float>(std::sqrt(std::max({squared.r, squared.g, squared.b})));
   };
   solved.residual = left();
-  while (solved.residual > tolerance && solved.steps < most_steps) {
+  const float enough =
+      goal.share < 1.0F ? std::clamp(goal.share * solved.residual, least_left, goal.tolerance) : goal.tolerance;
+  while (solved.residual > enough && solved.steps < most_steps) {
     apply(search, product_p);
     const glm::dvec3 alpha = ratio(rho, product(shadow, product_p));
     add(residual, -alpha, product_p);
@@ -91,6 +97,7 @@ Solved solve(const Links& links, const Field& direct, const Field& guess, float 
     solved.residual = left();
     if (effort.progress) effort.progress(static_cast<double>(solved.steps) / most_steps);
   }
+  solved.left = std::move(residual);
   return solved;
 }
 

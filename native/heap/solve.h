@@ -10,10 +10,17 @@ struct Solved {
   Field sent;
   int steps = 0;
   float residual = 0.0F;  ///< the largest channel's, over D
+  Field left{};           ///< of each: D + G S - S
 };
 
-/// From `guess`, which may be of any size, to a residual of `tolerance` of D.
-Solved solve(const Links& links, const Field& direct, const Field& guess, float tolerance,
+/// When a solution will do.
+struct Goal {
+  float tolerance;     ///< for what is left, over D
+  float share = 1.0F;  ///< and over what was left to begin with: of a change of few grains D does not tell
+};
+
+/// From `guess`, which may be of any size, to the `goal`. `change`: as for Links::gather().
+Solved solve(const Links& links, const Change* change, const Field& direct, const Field& guess, const Goal& goal,
              const transport::Effort& effort);
 
 }  // namespace mesograin::heap

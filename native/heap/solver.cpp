@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "heap/direct_light.h"
+#include "heap/moves.h"
 #include "heap/solve.h"
 
 namespace mesograin::heap {
@@ -37,29 +38,12 @@ bool is_small(const glm::vec3& change) {
          std::min({change.r, change.g, change.b}) * greatest_change >= 1.0F;
 }
 
-void scale(Coefficients& coefficients, const glm::vec3& by) {
-  for (int channel = 0; channel < 3; ++channel) coefficients.channels[static_cast<std::size_t>(channel)] *= by[channel];
-}
-
 void scale(Field& field, const std::vector<glm::vec3>& by) {
-  for (std::size_t i = 0; i < field.size(); ++i) scale(field[i], by[i]);
-}
-
-void scale(Links& links, const std::vector<glm::vec3>* answered, const std::vector<glm::vec3>& received) {
-  for (std::size_t i = 0; i + 1 < links.first.size(); ++i)
-    for (std::size_t l = links.first[i]; l < links.first[i + 1]; ++l) {
-      Link& link = links.links[l];
-      const glm::vec3 by = received[link.from] * (answered != nullptr ? (*answered)[i] : glm::vec3(1.0F));
-      for (int channel = 0; channel < 3; ++channel) link.weight[channel] *= by[channel];
-    }
+  for (std::size_t i = 0; i < field.size(); ++i) field[i] = field[i] * by[i];
 }
 
 void add(Field& sum, const Field& of, const glm::vec3& by) {
-  for (std::size_t i = 0; i < sum.size(); ++i) {
-    Coefficients scaled = of[i];
-    scale(scaled, by);
-    sum[i] = sum[i] + scaled;
-  }
+  for (std::size_t i = 0; i < sum.size(); ++i) sum[i] = sum[i] + of[i] * by;
 }
 
 /// The numbers of the first grains as they were, and their mean for those that came.
@@ -67,8 +51,7 @@ Field resized(Field field, std::size_t count) {
   if (field.empty() || field.size() > 2 * count || count > 2 * field.size()) return {};
   Coefficients mean;
   for (const Coefficients& one : field) mean = mean + one;
-  scale(mean, glm::vec3(1.0F / static_cast<float>(field.size())));
-  field.resize(count, mean);
+  field.resize(count, mean * glm::vec3(1.0F / static_cast<float>(field.size())));
   return field;
 }
 
@@ -80,7 +63,7 @@ bool Solver::serves(const std::shared_ptr<const Matter>& other, int rays, int wa
   return quality.quick && same_places(other->grains, matter_->grains) && change_from(*other);
 }
 
-std::optional<Solver::Change> Solver::change_from(const Matter& other) const {
+std::optional<Change> Solver::change_from(const Matter& other) const {
   Change change;
   const std::size_t count = matter_->grains.grains.size();
   change.answered.reserve(count);
@@ -122,39 +105,81 @@ const Space& Solver::space() {
   return *matter_->space;
 }
 
+Deep Solver::find_deep(const transport::Effort& effort) {
+  // What lies deeper has a share in what is seen, but none of its noise.
+  constexpr int ways = 2;
+  // Fewer have few that lie deep.
+  constexpr std::size_t many = 5000;
+  return matter_->grains.grains.size() < many ? nullptr : heap::find_deep(space(), ways, effort);
+}
+
 void Solver::find_ways(const Quality& quality, const transport::Effort& effort) {
-  if (ways_ && serves(ways_->matter, ways_->rays, quality.rays, quality)) return;
-  Ways ways{matter_, quality.rays, {}, {}, {}};
-  ways.links = find_links(space(), {quality.rays, quality.wall_rays}, glm::vec3(1.0F), ways.world,
-                          transport::part_of(effort, 0.0, 0.8));
-  ways.behind = find_behind(space(), quality.seen_rays, transport::part_of(effort, 0.8, 1.0));
-  ways_ = std::move(ways);
+  if (traced_ && serves(traced_->matter, traced_->rays.of_grain, quality.rays, quality)) return;
+  constexpr glm::vec3 radiance(1.0F);
+  if (traced_ && traced_->rays.of_grain >= quality.rays)
+    if (const std::optional<Moves> moves = moves_from(*traced_->matter)) {
+      parts_.renewed += renew(space(), *moves, traced_->rays, traced_->rays_through, radiance, traced_->ways, effort);
+      traced_->matter = matter_;
+      return;
+    }
+  Traced traced{matter_, {quality.rays, quality.wall_rays}, {quality.seen_rays, 0}, {}};
+  if (quality.rays > quality.deep_rays) {
+    traced.rays.deep = traced.rays_through.deep = find_deep(transport::part_of(effort, 0.0, 0.1));
+    traced.rays.of_deep = traced.rays_through.of_deep = quality.deep_rays;
+  }
+  traced.ways.links =
+      find_links(space(), traced.rays, radiance, traced.ways.world, transport::part_of(effort, 0.1, 0.8));
+  traced.ways.behind = find_behind(space(), traced.rays_through, transport::part_of(effort, 0.8, 1.0));
+  traced_ = std::move(traced);
   ++parts_.links;
+}
+
+std::optional<Moves> Solver::moves_from(const Matter& other) {
+  const bool same_tables =
+      std::equal(other.kinds.begin(), other.kinds.end(), matter_->kinds.begin(), matter_->kinds.end(),
+                 [](const Kind& one, const Kind& of_other) {
+                   return one.from_light == of_other.from_light && one.from_viewer == of_other.from_viewer;
+                 });
+  if (!same_tables) return std::nullopt;
+  std::optional<Moves> moves = Moves::between(other.grains, matter_->grains);
+  // Where there are walls, what is known of them must be told by the same numbers.
+  if (moves && !(other.space->patches() == space().patches())) return std::nullopt;
+  return moves;
 }
 
 const Solver::Source& Solver::find_source(Heap light, const Quality& quality, const transport::Effort& effort) {
   const auto same =
       std::find_if(sources_.begin(), sources_.end(), [&](const Source& source) { return source.light == light; });
-  if (same != sources_.end() && serves(same->matter, same->rays, quality.light_rays, quality)) return *same;
-  Source source{std::move(light), matter_, quality.light_rays, {}};
-  const std::size_t count = space().size();
-  source.lit = {Field(count), Field(count)};
-  add_direct_light(space(), source.light, quality.light_rays, source.lit.direct, source.lit.crossed, effort);
-  ++parts_.sources;
+  if (same != sources_.end() && serves(same->matter, same->rays.of_grain, quality.light_rays, quality)) return *same;
+  Source source{std::move(light), matter_, {quality.light_rays, quality.light_rays}, {}};
+  if (traced_->rays.deep && quality.light_rays > quality.deep_rays) {
+    source.rays.deep = traced_->rays.deep;
+    source.rays.of_deep = quality.deep_rays;
+  }
+  std::optional<Moves> moves;
+  if (same != sources_.end() && same->rays.of_grain >= quality.light_rays) moves = moves_from(*same->matter);
+  if (moves) {
+    source.rays = same->rays;
+    source.lit = same->lit;
+  } else {
+    source.lit = {Field(space().size()), Field(space().size())};
+    ++parts_.sources;
+  }
+  find_direct_light(space(), source.light, source.rays, moves ? &*moves : nullptr, source.lit, effort);
   if (same == sources_.end()) return sources_.emplace_back(std::move(source));
   return *same = std::move(source);
 }
 
-WorldLit Solver::find_direct(const Heap& heap, const Quality& quality, const transport::Effort& effort) {
+Lit Solver::find_direct(const Heap& heap, const Quality& quality, const transport::Effort& effort) {
   std::vector<Heap> lights;
   for (const scene::Light& light : heap.lights) lights.push_back({{}, heap.anchor, {light}, {}});
   if (heap.world.image && heap.world.shines()) lights.push_back({{}, heap.anchor, {}, heap.world});
   std::erase_if(sources_, [&](const Source& source) {
     return std::find(lights.begin(), lights.end(), source.light) == lights.end();
   });
-  const std::size_t count = ways_->world.direct.size();
-  WorldLit sum{Field(count), Field(count)};
-  const auto add_lit = [&](WorldLit lit, const Matter& with, const glm::vec3& by) {
+  const std::size_t count = traced_->ways.world.direct.size();
+  Lit sum{Field(count), Field(count)};
+  const auto add_lit = [&](Lit lit, const Matter& with, const glm::vec3& by) {
     if (with.grains != matter_->grains) {
       const std::optional<Change> change = change_from(with);
       scale(lit.direct, change->answered);
@@ -171,42 +196,41 @@ WorldLit Solver::find_direct(const Heap& heap, const Quality& quality, const tra
     add_lit(source.lit, *source.matter, glm::vec3(1.0F));
   }
   lights_crossed_ = sum.crossed;
-  if (!heap.world.image) add_lit(ways_->world, *ways_->matter, glm::vec3(heap.world.radiance));
+  if (!heap.world.image) add_lit(traced_->ways.world, *traced_->matter, glm::vec3(heap.world.radiance));
   return sum;
 }
 
 HeapLight Solver::solve(const Heap& heap, const Quality& quality, const transport::Effort& effort) {
   const auto started = std::chrono::steady_clock::now();
+  const std::size_t renewed_before = parts_.renewed;
   find_matter(heap.grains, quality, transport::part_of(effort, 0.0, 0.1));
   find_ways(quality, transport::part_of(effort, 0.1, 0.5));
-  const WorldLit lit = find_direct(heap, quality, transport::part_of(effort, 0.5, 0.7));
-  const Links* links = &ways_->links;
-  const Links* behind = &ways_->behind;
-  Links scaled, scaled_behind;
-  if (ways_->matter->grains != matter_->grains) {
-    const std::optional<Change> change = change_from(*ways_->matter);
-    scaled = *links;
-    scale(scaled, &change->answered, change->received);
-    scaled_behind = *behind;
-    scale(scaled_behind, nullptr, change->received);
-    links = &scaled;
-    behind = &scaled_behind;
-  }
+  const Lit lit = find_direct(heap, quality, transport::part_of(effort, 0.5, 0.7));
+  std::optional<Change> change;
+  if (traced_->matter->grains != matter_->grains) change = change_from(*traced_->matter);
   Field first(lit.direct.size());
   for (std::size_t i = 0; i < first.size(); ++i) first[i] = lit.direct[i] + lit.crossed[i];
+  // Where a few grains have moved, what the solution before has left everywhere else is none of their doing.
+  const bool few_moved = parts_.renewed != renewed_before && left_.size() == first.size();
+  constexpr float left_of_moves = 0.02F;
+  if (few_moved) add(first, left_, glm::vec3(-1.0F));
   Solved solved =
-      heap::solve(*links, first, resized(sent_, first.size()), quality.tolerance, transport::part_of(effort, 0.7, 1.0));
+      heap::solve(traced_->ways.links, change ? &*change : nullptr, first, resized(sent_, first.size()),
+                  {quality.tolerance, few_moved ? left_of_moves : 1.0F}, transport::part_of(effort, 0.7, 1.0));
+  if (few_moved) add(solved.left, left_, glm::vec3(1.0F));
+  left_ = std::move(solved.left);
   ++parts_.solutions;
   HeapLight light;
   light.kinds = matter_->kinds;
   light.crossed = lights_crossed_;
-  light.patches = ways_->matter->space->patches();
+  light.patches = traced_->matter->space->patches();
   light.answer.resize(first.size());
   for (std::size_t i = 0; i < first.size(); ++i) light.answer[i] = solved.sent[i] - lit.direct[i];
-  behind->gather(solved.sent, light.behind, effort);
+  if (change) change->answered.clear();  // no grain answers what is seen behind it
+  traced_->ways.behind.gather(solved.sent, light.behind, effort, change ? &*change : nullptr);
   sent_ = solved.sent;
   light.sent = std::move(solved.sent);
-  light.links = links->links.size();
+  light.links = traced_->ways.links.count();
   light.steps = solved.steps;
   light.residual = solved.residual;
   light.parts = parts_;

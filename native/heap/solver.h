@@ -32,44 +32,40 @@ class Solver {
   };
 
   /// What was found of grains by rays.
-  struct Ways {
+  struct Traced {
     std::shared_ptr<const Matter> matter;
-    int rays = 0;
-    Links links;
-    Links behind;
-    WorldLit world;  ///< of a world whose radiance is 1
+    Rays rays;
+    Rays rays_through;
+    Ways ways;  ///< in a world whose radiance is 1
   };
 
   /// What one light, or a world that is an image, does.
   struct Source {
     Heap light;  ///< without grains
     std::shared_ptr<const Matter> matter;
-    int rays = 0;
-    WorldLit lit;
-  };
-
-  /// How much more, at other materials, each grain sends out of what comes to it, and others' share of what it sends.
-  struct Change {
-    std::vector<glm::vec3> answered;
-    std::vector<glm::vec3> received;
+    Rays rays;
+    Lit lit;
   };
 
   void find_matter(const Grains& grains, const Quality& quality, const transport::Effort& effort);
   const Space& space();
+  Deep find_deep(const transport::Effort& effort);
   void find_ways(const Quality& quality, const transport::Effort& effort);
-  WorldLit find_direct(const Heap& heap, const Quality& quality, const transport::Effort& effort);
+  Lit find_direct(const Heap& heap, const Quality& quality, const transport::Effort& effort);
   const Source& find_source(Heap light, const Quality& quality, const transport::Effort& effort);
 
   /// Whether what was found with `other` and this many rays serves.
   bool serves(const std::shared_ptr<const Matter>& other, int rays, int wanted, const Quality& quality) const;
 
-  /// From `other` to what there is now; nothing between the same.
+  /// From `other` to what there is now; nothing where its rays tell nothing of that.
   std::optional<Change> change_from(const Matter& other) const;
+  std::optional<Moves> moves_from(const Matter& other);
 
   std::shared_ptr<Matter> matter_;
-  std::optional<Ways> ways_;
+  std::optional<Traced> traced_;
   std::vector<Source> sources_;
   Field sent_;
+  Field left_;            ///< that this leaves of its equations
   Field lights_crossed_;  ///< of the last solution
   Parts parts_;
 };

@@ -2,8 +2,10 @@
 #include "render/content.h"
 
 #include <algorithm>
+#include <glm/common.hpp>
 #include <glm/gtc/type_ptr.hpp>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "scene/colour_classes.h"
@@ -51,21 +53,24 @@ glm::dvec3 middle(const scene::Mesh& mesh, const glm::dmat4& object_to_world) {
   return glm::dvec3(object_to_world * glm::dvec4(of_bounds, 1.0));
 }
 
-glm::dvec3 amid(const scene::Scene& scene) {
+/// The place before, if that is amid the scene, too: what has not moved is then told by the same numbers.
+glm::dvec3 amid(const scene::Scene& scene, const std::optional<glm::dvec3>& before) {
   Bounds middles;
   for (const scene::Instance& instance : scene.instances)
     middles.include(middle(*instance.mesh, instance.object_to_world), 0.0);
   for (const scene::InstanceArray& array : scene.arrays)
     for (const glm::dmat4& object_to_world : array.object_to_world())
       middles.include(middle(*array.mesh, object_to_world), 0.0);
-  return middles.empty() ? glm::dvec3(0.0) : 0.5 * (middles.lower + middles.upper);
+  if (middles.empty()) return glm::dvec3(0.0);
+  if (before && *before == glm::clamp(*before, middles.lower, middles.upper)) return *before;
+  return 0.5 * (middles.lower + middles.upper);
 }
 
 }  // namespace
 
 Content::Content(DeviceCache& cache, const scene::Scene& scene, Content before,
                  const std::vector<std::size_t>& alone_too)
-    : anchor_(amid(scene)) {
+    : anchor_(amid(scene, before.bounds_.empty() ? std::nullopt : std::optional(before.anchor_))) {
   std::vector<std::size_t> alone = alone_too;
   std::vector<scene::InstanceArray> arrays = gathered(scene, alone);
   for (const scene::InstanceArray& array : scene::by_colour(scene.arrays))

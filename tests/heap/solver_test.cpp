@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <glm/geometric.hpp>
 
 #include "heaps.h"
 
@@ -13,8 +15,8 @@ namespace {
 
 const scene::DirectionalLight sun{{0.0, 0.6, 0.8}, glm::dvec3(3.0)};
 
-Heap lit(const Optics& optics) {
-  Heap heap = lattice(6, optics);
+Heap lit(const Optics& optics, int side = 6) {
+  Heap heap = lattice(side, optics);
   heap.lights.emplace_back(sun);
   heap.world.radiance = glm::dvec3(0.3);
   return heap;
@@ -102,7 +104,7 @@ TEST(Solver, DoesOverWhatAChangeTouches) {
 
   Heap moved = heap;
   moved.grains.grains.back().middle += glm::vec3(0.4F, 0.3F, 0.5F);
-  expect_redone(heap, moved, {0, 1, 1}, {0, 2, 2}, "a moved grain");
+  expect_redone(heap, moved, {0, 0, 0}, {0, 0, 0}, "a moved grain");
 
   Heap fewer = heap;
   fewer.grains.grains.resize(heap.grains.grains.size() - 5);
@@ -150,7 +152,8 @@ TEST(Solver, HasFewerRaysWhereGrainsAreMany) {
 }
 
 // A scene at rest has no noise at all: its rays are the same in each frame. With others the light of the whole is the
-// same within .5 %, and what grains send each other of it, .96 % in 216 white grains, within 1.2 %.
+// same within 1.5 %, and what grains send each other of it within 4 %: in ten solutions of 216 grains the former had a
+// standard deviation of .5, .4 and 1.0 %.
 TEST(Solver, HasTheSameLightInEachFrame) {
   for (const Optics& optics : {medium(3.0, 0.95), medium(1.0, 0.999), lambert(0.8)}) {
     const Heap heap = lit(optics);
@@ -159,8 +162,50 @@ TEST(Solver, HasTheSameLightInEachFrame) {
     transport::Effort other;
     other.seed = 12345;
     const HeapLight again = solve_exchange(heap, {}, {}, other);
-    EXPECT_NEAR(mean(again.sent), mean(light.sent), 0.005 * mean(light.sent));
-    EXPECT_NEAR(mean(again.answer), mean(light.answer), 0.012 * mean(light.answer));
+    EXPECT_NEAR(mean(again.sent), mean(light.sent), 0.015 * mean(light.sent));
+    EXPECT_NEAR(mean(again.answer), mean(light.answer), 0.04 * mean(light.answer));
+  }
+}
+
+TEST(Solver, HasTheLightThatIsSeenFromFewRaysOfDeepGrains) {
+  constexpr int side = 18;
+  const Heap heap = lit(medium(3.0, 0.999), side);
+  Quality all_alike;
+  all_alike.deep_rays = all_alike.rays;
+  const HeapLight right = solve_exchange(heap, all_alike, {}, {});
+  const HeapLight light = solve_exchange(heap, {}, {}, {});
+  EXPECT_LT(light.links, right.links * 4 / 5);
+  double seen = 0.0;
+  double apart = 0.0;
+  for (std::size_t i = 0; i < light.sent.size(); ++i) {
+    const glm::vec3 at = heap.grains.grains[i].middle / 2.05F;
+    if (std::min({at.x, at.y, at.z}) > 0.5F && std::max({at.x, at.y, at.z}) < side - 1.5F) continue;
+    seen += static_cast<double>(right.sent[i].channels[1].w);
+    apart += static_cast<double>(light.sent[i].channels[1].w - right.sent[i].channels[1].w);
+  }
+  EXPECT_NEAR(apart / seen, 0.0, 0.005);
+}
+
+// A moved grain changes the light of those around it, and that of no other by more than .5 %, whatever their noise.
+TEST(Solver, KeepsTheLightFarFromAMovedGrainAsItWas) {
+  for (const Optics& optics : {medium(3.0, 0.95), lambert(0.8)}) {
+    Solver solver;
+    Heap heap = lit(optics, 12);
+    heap.lights.clear();  // its shadow reaches far
+    const HeapLight before = solver.solve(heap, {}, {});
+    const std::size_t number = 12 * 12 * 12 - 1;
+    heap.grains.grains[number].middle.z += 1.0F;
+    const HeapLight after = solver.solve(heap, {}, {});
+    EXPECT_EQ(after.parts.links, before.parts.links);
+    EXPECT_GT(after.parts.renewed, 0U);
+    double most = 0.0;
+    for (std::size_t i = 0; i < heap.grains.grains.size(); ++i) {
+      if (glm::distance(heap.grains.grains[i].middle, heap.grains.grains[number].middle) < 12.0F) continue;
+      const auto change = static_cast<double>(after.sent[i].channels[1].w - before.sent[i].channels[1].w);
+      most = std::max(most, std::abs(change) / mean(before.sent));
+    }
+    EXPECT_LT(most, 0.005);
+    EXPECT_LT(difference(after.sent, solve_exchange(heap, {}, {}, {}).sent), 2e-3);
   }
 }
 
