@@ -156,6 +156,7 @@ py::dict of_exchange(const render::ExchangeStatistics& exchange) {
   found["links"] = exchange.parts.links;
   found["sources"] = exchange.parts.sources;
   found["solutions"] = exchange.parts.solutions;
+  found["renewed"] = exchange.parts.renewed;
   result["found"] = found;
   result["balls"] = exchange.balls;
   py::list stuff;
