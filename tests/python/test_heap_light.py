@@ -227,6 +227,20 @@ MOVED = numpy.ones((len(SPHERES), 4, 4))
 MOVED[::7, :3, 3] = 1.01
 
 
+def test_a_slider_that_does_not_rest_is_seen_in_the_light_of_a_moment_ago(viewport):
+    view, array = viewport
+    lights, step = 0, 0
+    deadline = time.monotonic() + 60.0
+    while lights < 3 and time.monotonic() < deadline:
+        step += 1
+        scene = lit(array.with_material(white(1.0 + 1e-4 * step)))
+        view.set_scene(scene)
+        lights += view.take_news()
+    assert lights == 3, f"{step} changes, and the light was seen to change {lights} times"
+    *_, last = each_news(view)
+    assert apart(last, patiently(scene)) < 1e-3
+
+
 def test_what_is_no_heap_pays_nothing():
     view = native.View(16, 16)
     view.set_scene(native.Scene(instances=[native.Instance(sphere(), white())], exchange="order_1"))
