@@ -13,10 +13,11 @@ __version__ = ".".join(str(number) for number in bl_info["version"])
 
 # What there is to register, in the order of its imports: each room knows only those before it.
 ROOMS = ("compat", "native_module", "grains.shape", "grains.kinds", "grains.pile", "grains.objects",
-         "scene.smooth_normals", "scene.properties", "scene.meshes", "scene.heaps", "scene.lights",
+         "scene.smooth_normals", "scene.properties", "scene.meshes", "scene.heaps", "scene.lens", "scene.lights",
          "scene.mesh_lights", "scene.images", "scene.node_colours", "scene.colours", "scene.surroundings",
          "scene.textures", "scene.plain_materials", "scene.thick_layer", "scene.export",
-         "engine.status", "engine.passes", "engine.viewport", "engine.viewport_text", "engine.engine",
+         "engine.status", "engine.motion", "engine.identities", "engine.passes", "engine.viewport",
+         "engine.viewport_text", "engine.engine",
          "cycles.reference_cache", "ui.presets", "ui.look", "ui.conversion", "ui.named_things", "ui.panels",
          "ui.node_panels", "ui.notes",
          "ui.grain_tools", "ui.grain_colours", "ui.self_test", "ui.preferences",

@@ -30,11 +30,11 @@ def set_pass_pixels(render_pass, pixels):
 
 def borrowed_panels():
     """Panels of Blender that serve any engine: those of the built-in one, but for what we draw ourselves, and the slot
-    list and viewport settings of materials, which Blender ties to engines by name."""
+    list and viewport settings of materials and the lens of cameras, which Blender ties to engines by name."""
     import bpy
 
     drawn_by_us = {"DATA_PT_light", "DATA_PT_area", "DATA_PT_spot", "DATA_PT_falloff_curve", "DATA_PT_preview"}
-    tied_by_name = {"EEVEE_MATERIAL_PT_context_material"}
+    tied_by_name = {"EEVEE_MATERIAL_PT_context_material", "DATA_PT_camera_dof", "DATA_PT_camera_dof_aperture"}
     for panel in bpy.types.Panel.__subclasses__():
         engines = getattr(panel, "COMPAT_ENGINES", None)
         if engines is None:
@@ -169,6 +169,13 @@ def geometry_set(evaluated_object):
 def facets_masking():
     """How facets of Cycles' rough surfaces hide one another: that changed with its lights."""
     return "correlated" if has_even_lights() else "separable"
+
+
+def owner_of_motion_blur_position(scene):
+    """Whose property `motion_blur_position` says when a frame's shutter is open: from the frame on (START), about it
+    (CENTER) or up to it (END). Cycles', until Blender made it every engine's; None where neither is there."""
+    owners = (scene.render, getattr(scene, "cycles", None))
+    return next((owner for owner in owners if hasattr(owner, "motion_blur_position")), None)
 
 
 def principled_base():

@@ -9,6 +9,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <map>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -150,10 +151,24 @@ void require_text(const Node& node, const char* key, std::string_view beginning)
   if (node.has(key) && !node[key].text().starts_with(beginning)) node[key].fail("must begin with \"{}\"", beginning);
 }
 
-/// As two matrices, which say all that a camera may be.
+/// Of a camera, if it has one.
+std::optional<Lens> read_lens(const Node& camera) {
+  if (!camera.has("lens")) return {};
+  const Node node = camera["lens"];
+  node.require_object(
+      std::array<std::string_view, 5>{"aperture_radius", "focus_distance", "blades", "rotation", "ratio"});
+  Lens lens{node["aperture_radius"].number(), node["focus_distance"].number()};
+  if (node.has("blades")) lens.blades = node["blades"].integer(0, 1000);
+  if (node.has("rotation")) lens.rotation = node["rotation"].number();
+  if (node.has("ratio")) lens.ratio = node["ratio"].number();
+  at(node, [&] { validate(lens); });
+  return lens;
+}
+
+/// As two matrices, which say all that a camera may be but for its lens.
 Camera read_camera_matrices(const Node& node) {
-  node.require_object(std::array<std::string_view, 2>{"world_to_camera", "camera_to_clip"}, provenance_keys);
-  const Camera camera{read_transform(node["world_to_camera"]), read_transform(node["camera_to_clip"])};
+  node.require_object(std::array<std::string_view, 3>{"world_to_camera", "camera_to_clip", "lens"}, provenance_keys);
+  const Camera camera{read_transform(node["world_to_camera"]), read_transform(node["camera_to_clip"]), read_lens(node)};
   at(node, [&] { validate(camera); });
   return camera;
 }
@@ -161,8 +176,8 @@ Camera read_camera_matrices(const Node& node) {
 Camera read_camera(const Node& node, double aspect) {
   if (node.is_object() && (node.has("world_to_camera") || node.has("camera_to_clip")))
     return read_camera_matrices(node);
-  node.require_object(std::array<std::string_view, 7>{"position", "look_at", "up", "fov_degrees", "handedness",
-                                                      "projection", "pixel_filter"},
+  node.require_object(std::array<std::string_view, 8>{"position", "look_at", "up", "fov_degrees", "handedness",
+                                                      "projection", "pixel_filter", "lens"},
                       provenance_keys);
   require_text(node, "handedness", "right-handed");
   require_text(node, "projection", "pinhole perspective");
@@ -173,6 +188,7 @@ Camera read_camera(const Node& node, double aspect) {
   const double fov_degrees = node["fov_degrees"].number();
   return at(node, [&] {
     Camera camera = Camera::look_at(position, look_at, up, fov_degrees, aspect);
+    camera.lens = read_lens(node);
     validate(camera);
     return camera;
   });

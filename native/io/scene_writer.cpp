@@ -123,6 +123,14 @@ class Writer {
   std::size_t finishes_ = 0;
 };
 
+Json lens(const Lens& lens) {
+  return {{"aperture_radius", lens.aperture_radius},
+          {"focus_distance", lens.focus_distance},
+          {"blades", lens.blades},
+          {"rotation", lens.rotation},
+          {"ratio", lens.ratio}};
+}
+
 }  // namespace
 
 void write_scene(const std::filesystem::path& path, const SceneFile& file) {
@@ -136,6 +144,7 @@ void write_scene(const std::filesystem::path& path, const SceneFile& file) {
             {"world", writer.world(file.scene.world)},
             {"exchange", exchange_names[static_cast<std::size_t>(file.scene.exchange)]},
             {"lights", Json::array()}};
+  if (file.camera.lens) json["camera"]["lens"] = lens(*file.camera.lens);
   for (const Light& light : file.scene.lights) json["lights"].push_back(to_json(light));
   base::write_file_atomically(path, json.dump(1) + "\n");
 }

@@ -191,16 +191,40 @@ void bind_instance_array(py::module_& module) {
       .def("__len__", [](const scene::InstanceArray& array) { return array.object_to_world().size(); });
 }
 
+void bind_lens(py::module_& module) {
+  py::class_<scene::Lens>(module, "Lens", "The opening that a camera looks through: what is out of focus is blurred.")
+      .def(py::init([](double aperture_radius, double focus_distance, int blades, double rotation, double ratio) {
+             const scene::Lens lens{aperture_radius, focus_distance, blades, rotation, ratio};
+             validate(lens);
+             return lens;
+           }),
+           py::arg("aperture_radius"), py::arg("focus_distance"), py::arg("blades") = 0, py::arg("rotation") = 0.0,
+           py::arg("ratio") = 1.0,
+           "aperture_radius and focus_distance, along the camera's axis, in scene units; fewer than 3 blades leave a "
+           "round opening; rotation of the blades in radians; ratio of the opening's height to its width. Raises Error "
+           "for numbers that no lens has.")
+      .def_readonly("aperture_radius", &scene::Lens::aperture_radius)
+      .def_readonly("focus_distance", &scene::Lens::focus_distance)
+      .def_readonly("blades", &scene::Lens::blades)
+      .def_readonly("rotation", &scene::Lens::rotation)
+      .def_readonly("ratio", &scene::Lens::ratio)
+      .def(
+          "__eq__", [](const scene::Lens& a, const scene::Lens& b) { return a == b; }, py::is_operator());
+}
+
 void bind_camera(py::module_& module) {
-  py::class_<scene::Camera>(module, "Camera", "Two matrices: perspective, orthographic, shifted, all the same.")
-      .def(py::init([](const Array<double>& world_to_camera, const Array<double>& camera_to_clip) {
+  py::class_<scene::Camera>(module, "Camera",
+                            "Two matrices: perspective, orthographic, shifted, all the same; and a Lens.")
+      .def(py::init([](const Array<double>& world_to_camera, const Array<double>& camera_to_clip,
+                       const std::optional<scene::Lens>& lens) {
              scene::Camera camera{to_matrix(world_to_camera, "world_to_camera"),
-                                  to_matrix(camera_to_clip, "camera_to_clip")};
+                                  to_matrix(camera_to_clip, "camera_to_clip"), lens};
              validate(camera);
              return camera;
            }),
-           py::arg("world_to_camera"), py::arg("camera_to_clip"),
-           "Both (4, 4) float64; camera space looks along -z with y up, clip space is OpenGL's.")
+           py::arg("world_to_camera"), py::arg("camera_to_clip"), py::arg("lens") = py::none(),
+           "Both (4, 4) float64; camera space looks along -z with y up, clip space is OpenGL's. Without a Lens "
+           "everything is sharp.")
       .def_static(
           "look_at",
           [](const Triple& position, const Triple& look_at, const Triple& up, double fov_degrees, double aspect,
@@ -214,6 +238,7 @@ void bind_camera(py::module_& module) {
           "100.")
       .def_property_readonly("world_to_camera", [](const scene::Camera& c) { return to_array(c.world_to_camera); })
       .def_property_readonly("camera_to_clip", [](const scene::Camera& c) { return to_array(c.camera_to_clip); })
+      .def_readonly("lens", &scene::Camera::lens)
       .def(
           "__eq__", [](const scene::Camera& a, const scene::Camera& b) { return a == b; }, py::is_operator());
 }
@@ -224,6 +249,7 @@ void bind_scene(py::module_& module) {
   bind_mesh_and_instance(module);
   bind_advice(module);
   bind_instance_array(module);
+  bind_lens(module);
   bind_camera(module);
   bind_lights(module);
   py::class_<scene::Scene>(module, "Scene", "Instances, lights and the world around them.")

@@ -108,6 +108,30 @@ Pixels read(render::View& view, std::optional<Pixels> out) {
   return *std::move(out);
 }
 
+render::Portion portion_of(const std::string& name) {
+  const auto found = std::find(render::portion_names.begin(), render::portion_names.end(), name);
+  if (found == render::portion_names.end())
+    throw Error("A portion must be one of {}; got '{}'.", fmt::join(render::portion_names, ", "), name);
+  return static_cast<render::Portion>(found - render::portion_names.begin());
+}
+
+void set_portions(render::View& view, const std::vector<std::string>& names) {
+  std::vector<render::Portion> portions;
+  portions.reserve(names.size());
+  for (const std::string& name : names) portions.push_back(portion_of(name));
+  const py::gil_scoped_release release;
+  view.set_portions(portions);
+}
+
+Pixels read_portion(render::View& view, const std::string& name) {
+  const render::Portion portion = portion_of(name);
+  Pixels pixels({static_cast<py::ssize_t>(view.height()), static_cast<py::ssize_t>(view.width()), py::ssize_t{4}});
+  float* const numbers = pixels.mutable_data();
+  const py::gil_scoped_release release;
+  view.read_portion(portion, numbers);
+  return pixels;
+}
+
 py::dict read_surfaces(render::View& view) {
   const auto height = static_cast<py::ssize_t>(view.height());
   const auto width = static_cast<py::ssize_t>(view.width());
@@ -273,6 +297,24 @@ void bind_view(py::module_& module) {
           "be cast.")
       .def("set_camera", &render::View::set_camera, py::arg("camera"), Release(),
            "Restarts the accumulation; sends nothing.")
+      .def(
+          "set_moment",
+          [](render::View& view, const scene::Camera& camera, const std::optional<scene::Scene>& scene) {
+            const py::gil_scoped_release release;
+            view.set_moment(camera, scene ? &*scene : nullptr);
+          },
+          py::arg("camera"), py::arg("scene") = py::none(),
+          "Another moment of the exposure: what set_scene() took elsewhere, if a scene is given, seen through this "
+          "camera. Samples from now on are added to those before; nothing but transforms is sent. Light between grains "
+          "stays each grain's own as it was found for set_scene(). Raises Error for a scene of other things, and for a "
+          "bake.")
+      .def("set_portions", &set_portions, py::arg("portions"),
+           "Has these portions of the picture's light told beside it: any of 'diffuse', 'specular', 'subsurface', "
+           "'single_scattering', 'transmission', 'exchange', 'emission', 'environment', whose sum is the picture, and "
+           "'normal'. Restarts the accumulation; each costs about its own shading. A bake has none.")
+      .def("read_portion", &read_portion, py::arg("portion"),
+           "The mean of one of set_portions()'s, (height, width, 4) float32, linear RGB, or the normal's x, y and z "
+           "premultiplied by coverage; row 0 at the top. Raises Error for one that is not told.")
       .def("set_bake", &set_bake, py::arg("instances"), py::arg("view_from") = "above_surface",
            "Instead of what the camera sees, until the next set_scene(): the texture of the scene's instances of these "
            "numbers, which share one unwrapping, at their UVs; u to the right, v up. Each texel is the mean over its "

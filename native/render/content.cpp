@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/error.h"
 #include "scene/colour_classes.h"
 
 namespace mesograin::render {
@@ -48,6 +49,14 @@ std::vector<scene::InstanceArray> gathered(const scene::Scene& scene, std::vecto
   return arrays;
 }
 
+// All arrays there are, instances that deserve one first.
+std::vector<scene::InstanceArray> arrays_of(const scene::Scene& scene, std::vector<std::size_t>& alone) {
+  std::vector<scene::InstanceArray> arrays = gathered(scene, alone);
+  for (const scene::InstanceArray& array : scene::by_colour(scene.arrays))
+    if (!array.object_to_world().empty()) arrays.push_back(array);
+  return arrays;
+}
+
 glm::dvec3 middle(const scene::Mesh& mesh, const glm::dmat4& object_to_world) {
   const glm::dvec3 of_bounds = 0.5 * (glm::dvec3(mesh.lower()) + glm::dvec3(mesh.upper()));
   return glm::dvec3(object_to_world * glm::dvec4(of_bounds, 1.0));
@@ -70,11 +79,9 @@ glm::dvec3 amid(const scene::Scene& scene, const std::optional<glm::dvec3>& befo
 
 Content::Content(DeviceCache& cache, const scene::Scene& scene, Content before,
                  const std::vector<std::size_t>& alone_too)
-    : anchor_(amid(scene, before.bounds_.empty() ? std::nullopt : std::optional(before.anchor_))) {
+    : anchor_(amid(scene, before.bounds_.empty() ? std::nullopt : std::optional(before.anchor_))), alone_(alone_too) {
   std::vector<std::size_t> alone = alone_too;
-  std::vector<scene::InstanceArray> arrays = gathered(scene, alone);
-  for (const scene::InstanceArray& array : scene::by_colour(scene.arrays))
-    if (!array.object_to_world().empty()) arrays.push_back(array);
+  const std::vector<scene::InstanceArray> arrays = arrays_of(scene, alone);
   if (!arrays.empty()) {
     instances_.emplace(cache, arrays, anchor_);
     if (before.instances_) {
@@ -93,18 +100,38 @@ Content::Content(DeviceCache& cache, const scene::Scene& scene, Content before,
   for (std::size_t i = 0; i < draws_.size(); ++i)
     if (!shades_itself(draws_[i]) && !draws_[i].light_maps && (!ground_ || draws_[i].radius > draws_[*ground_].radius))
       ground_ = i;
-  for (std::size_t i = 0; i < draws_.size(); ++i) {
-    bounds_.include(draws_[i].centre - anchor_, draws_[i].radius);
-    if (i != ground_) over_ground_.include(draws_[i].centre - anchor_, draws_[i].radius);
-  }
-  if (instances_) {
-    bounds_.include(instances_->bounds());
-    over_ground_.include(instances_->bounds());
-  }
+  find_bounds();
   find_shadows();
   textured_ = std::any_of(draws_.begin(), draws_.end(), [](const Draw& draw) { return draw.material->textured(); });
   if (instances_)
     for (const InstanceGroup& group : instances_->groups()) textured_ = textured_ || group.material->textured();
+}
+
+void Content::find_bounds() {
+  bounds_ = over_ground_ = {};
+  for (std::size_t i = 0; i < draws_.size(); ++i) {
+    bounds_.include(draws_[i].centre - anchor_, draws_[i].radius);
+    if (i != ground_) over_ground_.include(draws_[i].centre - anchor_, draws_[i].radius);
+  }
+  if (!instances_) return;
+  bounds_.include(instances_->bounds());
+  over_ground_.include(instances_->bounds());
+}
+
+void Content::place(const scene::Scene& scene) {
+  std::vector<std::size_t> alone = alone_;
+  const std::vector<scene::InstanceArray> arrays = arrays_of(scene, alone);
+  std::size_t count = 0;
+  for (const scene::InstanceArray& array : arrays) count += array.object_to_world().size();
+  const std::size_t in_arrays = instances_ ? instances_->count() : 0;
+  if (count != in_arrays || alone.size() != draws_.size())
+    throw Error(
+        "A moment of an exposure shows the things of its scene elsewhere: {} instances in arrays and {} others; got {} "
+        "and {}.",
+        in_arrays, draws_.size(), count, alone.size());
+  for (Draw& draw : draws_) draw.place(scene.instances[draw.instance].object_to_world);
+  if (instances_) instances_->place(arrays, anchor_);
+  find_bounds();
 }
 
 bool Content::facets() const {

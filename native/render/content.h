@@ -23,6 +23,10 @@ class Content {
   /// many are like them.
   Content(DeviceCache& cache, const scene::Scene& scene, Content before, const std::vector<std::size_t>& alone = {});
 
+  /// Puts everything where this scene has it, which differs in transforms alone from the one that it was made of.
+  /// Throws Error if there are others or more or fewer.
+  void place(const scene::Scene& scene);
+
   std::vector<Draw>& draws() { return draws_; }
   const std::vector<Draw>& draws() const { return draws_; }
 
@@ -90,6 +94,7 @@ class Content {
 
  private:
   void tell_objects();
+  void find_bounds();
   void find_shadows();
 
   std::vector<Draw> draws_;
@@ -98,6 +103,7 @@ class Content {
   Bounds bounds_;
   Bounds over_ground_;
   std::optional<std::size_t> ground_;  // which draw
+  std::vector<std::size_t> alone_;     // instances that are in no array, whatever they are
   bool shadows_ = false;
   bool textured_ = false;
 };

@@ -16,6 +16,7 @@
 #include "gl/volume.h"
 #include "models/material_inputs.h"
 #include "render/details.h"
+#include "render/portion.h"
 #include "scene/scene.h"
 #include "transport/works.h"
 
@@ -34,11 +35,12 @@ struct Shading {
   bool instanced = false;  ///< one of an array of instances
   bool mirrored = false;   ///< seen in another surface
   Shadows shadows = Shadows::none;
-  bool exchange = false;         ///< light goes from grain to grain
-  bool gathered = false;         ///< and was gathered for each pixel
-  bool world = false;            ///< there is a world to be seen through it
-  bool mirrors_world = false;    ///< or in its facets, and what stands before it
-  bool lights_at_place = false;  ///< the place that is shaded draws its own directions of lights that have a place
+  bool exchange = false;             ///< light goes from grain to grain
+  bool gathered = false;             ///< and was gathered for each pixel
+  bool world = false;                ///< there is a world to be seen through it
+  bool mirrors_world = false;        ///< or in its facets, and what stands before it
+  bool lights_at_place = false;      ///< the place that is shaded draws its own directions of lights that have a place
+  std::optional<Portion> portion{};  ///< told alone
 };
 
 /// A material ready to draw with: what its programs are made of, and the uniforms and tables that they read.

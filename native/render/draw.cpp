@@ -19,19 +19,9 @@ Draw::Draw(DeviceCache& cache, const scene::Instance& from, std::size_t index)
       look(from.material),
       object_to_world(from.object_to_world),
       convex(cache.convex(from.mesh)) {
-  const glm::dvec3 lower(from.mesh->lower());
-  const glm::dvec3 upper(from.mesh->upper());
   const glm::dmat3 linear(from.object_to_world);
-  const glm::dvec3 half = 0.5 * (upper - lower);
-  centre = glm::dvec3(from.object_to_world * glm::dvec4(0.5 * (lower + upper), 1.0));
-  radius = glm::length(
-      glm::dvec3(glm::length(linear[0] * half.x), glm::length(linear[1] * half.y), glm::length(linear[2] * half.z)));
-  const glm::dmat3 squared = glm::transpose(linear) * linear;
-  double stretch_squared = 0.0;  // a bound, exact for rotations, scales and mirrors
-  for (int row = 0; row < 3; ++row)
-    stretch_squared =
-        std::max(stretch_squared, std::abs(squared[0][row]) + std::abs(squared[1][row]) + std::abs(squared[2][row]));
-  reach = from.mesh->reach() * std::sqrt(stretch_squared);
+  measure();
+  settled = centre;
   if (scene::traits_of(from.material.model).mesh) {
     const models::TurnAndStretch parts = models::turn_and_stretch(linear);
     grain_to_prototype = glm::transpose(parts.turn);
@@ -44,6 +34,31 @@ Draw::Draw(DeviceCache& cache, const scene::Instance& from, std::size_t index)
   const scene::Material& medium = from.material;
   const glm::dvec3 reduced = medium.scale * (medium.sigma_a + (1.0 - medium.g) * medium.sigma_s);
   mean_free_paths_across = 2.0 * radius * std::max({reduced.r, reduced.g, reduced.b});
+}
+
+void Draw::measure() {
+  const glm::dvec3 lower(source->lower());
+  const glm::dvec3 upper(source->upper());
+  const glm::dmat3 linear(object_to_world);
+  const glm::dvec3 half = 0.5 * (upper - lower);
+  centre = glm::dvec3(object_to_world * glm::dvec4(0.5 * (lower + upper), 1.0));
+  radius = glm::length(
+      glm::dvec3(glm::length(linear[0] * half.x), glm::length(linear[1] * half.y), glm::length(linear[2] * half.z)));
+  const glm::dmat3 squared = glm::transpose(linear) * linear;
+  double stretch_squared = 0.0;  // a bound, exact for rotations, scales and mirrors
+  for (int row = 0; row < 3; ++row)
+    stretch_squared =
+        std::max(stretch_squared, std::abs(squared[0][row]) + std::abs(squared[1][row]) + std::abs(squared[2][row]));
+  reach = source->reach() * std::sqrt(stretch_squared);
+}
+
+void Draw::place(const glm::dmat4& to_world) {
+  object_to_world = to_world;
+  measure();
+  if (scene::traits_of(look.model).mesh)
+    grain_to_prototype = glm::transpose(models::turn_and_stretch(glm::dmat3(to_world)).turn);
+  if (light_maps && !light_maps->are_of(source, object_to_grain()))
+    light_maps = std::make_unique<LightMaps>(source, object_to_grain());
 }
 
 glm::dmat4 Draw::object_to_grain() const {

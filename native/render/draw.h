@@ -28,6 +28,7 @@ struct Draw {
   scene::Material look;  // of the material
   glm::dmat4 object_to_world;
   glm::dvec3 centre;                      // middle of its bounds, world space
+  glm::dvec3 settled;                     // the same where light between grains was found
   double radius;                          // of the sphere around its bounds
   double reach;                           // no point is farther from the centre
   double mean_free_paths_across;          // of the bounds' diameter, reduced, in the densest channel
@@ -39,12 +40,18 @@ struct Draw {
 
   glm::dmat4 object_to_grain() const;
 
+  /// Puts it elsewhere; it keeps the tables that its material has for its size.
+  void place(const glm::dmat4& to_world);
+
   /// How many pixels its bounds' diameter takes of a picture.
   double pixels_across(const scene::Camera& camera, int width, int height) const;
 
   /// Light maps for it: those of one of `others`, which then has none, if they serve, so that a change elsewhere costs
   /// no light map.
   void take_light_maps(std::vector<Draw>& others);
+
+ private:
+  void measure();
 };
 
 }  // namespace mesograin::render

@@ -15,6 +15,9 @@ namespace {
 // How many directions of the world light one sample; where each costs a grain its own light map, one.
 constexpr int most_world_directions = 4;
 
+// Sets the lens' sequence apart from others of the same seed.
+constexpr std::uint32_t lens_seed = 0x30000U;
+
 }  // namespace
 
 Frame::Frame(DeviceCache& cache, int width, int height, std::uint32_t seed)
@@ -26,6 +29,7 @@ void Frame::resize(int width, int height) {
   if (glm::ivec2(width, height) == size_) return;
   targets_ = std::make_unique<Targets>(width, height, content_->textured());
   size_ = {width, height};
+  for (auto& [portion, told] : portions_) told.sum = std::make_unique<Sum>(width, height);
   forget_view();
 }
 
@@ -42,6 +46,17 @@ void Frame::set_scene(scene::Scene scene) {
 void Frame::set_camera(const scene::Camera& camera) {
   camera_ = camera;
   forget_view();
+}
+
+void Frame::set_moment(const scene::Camera& camera, const scene::Scene* scene) {
+  if (unwrapping_) throw Error("A bake has no moments: set a scene first.");
+  if (scene != nullptr) {
+    content_->place(*scene);
+    arrays_.forget_content();
+    shadows_.forget_content();
+  }
+  camera_ = camera;
+  forget_what_is_seen();
 }
 
 void Frame::set_bake(const Bake& bake) {
@@ -85,9 +100,13 @@ bool Frame::take_news() {
   return true;
 }
 
-void Frame::forget_view() {
+void Frame::forget_what_is_seen() {
   arrays_.forget_view();
   shadows_.forget_view();
+}
+
+void Frame::forget_view() {
+  forget_what_is_seen();
   samples_ = 0;
 }
 
@@ -98,6 +117,12 @@ void Frame::forget_content() {
   arrays_.forget_content();
   shadows_.forget_content();
   samples_ = 0;
+}
+
+scene::Camera Frame::pinhole() const { return {camera_.world_to_camera, camera_.camera_to_clip, {}}; }
+
+scene::Camera Frame::seen_through(std::uint32_t index) const {
+  return camera_.lens ? camera_.through(camera_.lens->place(scrambled_point(index, seed_ + lens_seed))) : camera_;
 }
 
 Sample Frame::begin_sample(const GoOn& go_on) {
@@ -112,7 +137,7 @@ Sample Frame::begin_sample(const GoOn& go_on) {
           .lighting = lighting_,
           .exchange = exchange_,
           .targets = *targets_,
-          .camera = camera_,
+          .camera = unwrapping_ ? pinhole() : seen_through(index),
           .unwrapping = unwrapping_ ? &*unwrapping_ : nullptr,
           .size = size_,
           .index = index,
@@ -126,6 +151,7 @@ Sample Frame::begin_sample(const GoOn& go_on) {
 }
 
 bool Frame::add_sample(const GoOn& go_on) {
+  if (looks_through_lens()) forget_what_is_seen();
   const Sample sample = begin_sample(go_on);
   arrays_.prepare(sample);
   timers_.light_maps.start();
@@ -136,8 +162,9 @@ bool Frame::add_sample(const GoOn& go_on) {
   timers_.shade.stop();
   if (!mirror_.run(sample, arrays_, surfaces_, shadows_, shade_)) return false;
   timers_.accumulate.start();
-  accumulate_.run(*targets_, samples_ == 0);
+  accumulate_.run(*targets_, targets_->sum, samples_ == 0);
   timers_.accumulate.stop();
+  if (!add_portions(sample)) return false;
   timed_ = true;
   ++samples_;
   return true;
@@ -155,6 +182,43 @@ bool Frame::draw_seen(const Sample& sample) {
     shade_.shade_seen(sample, shadows_, gather_, first);
   }
   return true;
+}
+
+bool Frame::add_portions(Sample sample) {
+  if (unwrapping_) return true;
+  const std::size_t units = content_->units();
+  for (auto& [portion, told] : portions_) {
+    if (samples_ == 0) told.samples = 0;
+    sample.portion = portion;
+    shade_.clear(sample);
+    for (std::size_t first = 0; first < units || first == 0; first += most_in_stencil) {
+      // The last of them is what the surfaces show already, unless what is mirrored took their place.
+      if ((units > most_in_stencil || mirror_.ran()) && !surfaces_.run(sample, arrays_, first)) return false;
+      shade_.shade_seen(sample, shadows_, gather_, first);
+    }
+    if (portion == Portion::specular && !mirror_.run(sample, arrays_, surfaces_, shadows_, shade_)) return false;
+    accumulate_.run(*targets_, *told.sum, told.samples == 0);
+    ++told.samples;
+  }
+  return true;
+}
+
+void Frame::set_portions(const std::vector<Portion>& portions) {
+  portions_.clear();
+  for (const Portion portion : portions) portions_[portion].sum = std::make_unique<Sum>(size_.x, size_.y);
+  samples_ = 0;
+}
+
+void Frame::read_portion(Portion portion, float* pixels) {
+  const auto found = portions_.find(portion);
+  if (found == portions_.end())
+    throw Error("The portion '{}' is not told: ask for it with set_portions before the samples.",
+                portion_names[static_cast<std::size_t>(portion)]);
+  const int samples = samples_ == 0 ? 0 : found->second.samples;
+  if (samples == 0)
+    std::fill_n(pixels, static_cast<std::size_t>(size_.x) * static_cast<std::size_t>(size_.y) * 4, 0.0F);
+  else
+    accumulate_.read(*targets_, *found->second.sum, samples, pixels);
 }
 
 bool Frame::draw_unwrapped(const Sample& sample) {
@@ -177,7 +241,7 @@ void Frame::read(float* pixels) {
   if (samples_ == 0)
     std::fill_n(pixels, static_cast<std::size_t>(size_.x) * static_cast<std::size_t>(size_.y) * 4, 0.0F);
   else
-    accumulate_.read(*targets_, samples_, pixels);
+    accumulate_.read(*targets_, targets_->sum, samples_, pixels);
 }
 
 void Frame::read_surfaces(float* positions, float* normals) {
@@ -186,6 +250,8 @@ void Frame::read_surfaces(float* positions, float* normals) {
   const GoOn to_the_end = [] { return true; };
   Sample sample = begin_sample(to_the_end);
   sample.jitter = glm::vec2(0.0F);
+  sample.camera = pinhole();
+  if (looks_through_lens()) arrays_.forget_view();
   arrays_.prepare(sample);
   surfaces_.run(sample, arrays_, 0);
   render::read_surfaces(sample, positions, normals);

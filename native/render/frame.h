@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -21,6 +22,7 @@
 #include "render/passes/surface_pass.h"
 #include "render/passes/targets.h"
 #include "render/passes/timings.h"
+#include "render/portion.h"
 #include "scene/camera.h"
 #include "scene/scene.h"
 
@@ -37,6 +39,12 @@ struct Statistics {
   std::optional<ExchangeStatistics> exchange;  ///< where light goes from grain to grain
 };
 
+/// Of one portion of a picture's light.
+struct PortionSum {
+  std::unique_ptr<Sum> sum;
+  int samples = 0;
+};
+
 /// Lives on the context's thread.
 class Frame {
  public:
@@ -45,6 +53,17 @@ class Frame {
   void resize(int width, int height);
   void set_scene(scene::Scene scene);
   void set_camera(const scene::Camera& camera);
+
+  /// Another moment of the exposure: what set_scene() took elsewhere, if a scene is given, seen through this camera.
+  /// Samples from now on see it so and are added to those before. Light between grains stays each grain's own as it was
+  /// found for set_scene(). Throws Error for a scene of other things, and for a bake.
+  void set_moment(const scene::Camera& camera, const scene::Scene* scene);
+
+  /// Has these told beside the picture from now on; the samples begin anew. Each costs about what its own shading does.
+  void set_portions(const std::vector<Portion>& portions);
+
+  /// The mean of one of them, as read(). Throws Error if it is not told.
+  void read_portion(Portion portion, float* pixels);
 
   /// From here to the next scene the picture is a texture: the instances unwrapped. Throws Error for instances that do
   /// not exist or have no UVs.
@@ -97,10 +116,25 @@ class Frame {
 
   /// The surfaces, what stands in their light, and their shading.
   bool draw_seen(const Sample& sample);
+
+  /// The portions of what was drawn.
+  bool add_portions(Sample sample);
   bool draw_unwrapped(const Sample& sample);
   bool update_shadows(const Sample& sample);
 
-  /// What is seen, or how, has changed.
+  /// Whether each sample sees the scene from a place of its own.
+  bool looks_through_lens() const { return camera_.lens && !unwrapping_; }
+
+  /// The camera from the middle of its lens.
+  scene::Camera pinhole() const;
+
+  /// The camera from the place of its lens that this sample looks through.
+  scene::Camera seen_through(std::uint32_t index) const;
+
+  /// What is seen, or how, has changed; the samples before it stay.
+  void forget_what_is_seen();
+
+  /// The same, and the samples begin anew.
   void forget_view();
   void forget_content();
 
@@ -116,6 +150,7 @@ class Frame {
   Exchange exchange_;
   ArrayVisibility arrays_;
   std::unique_ptr<Targets> targets_;
+  std::map<Portion, PortionSum> portions_;
   LightMapPass light_maps_;
   SurfacePass surfaces_;
   ShadowPass shadows_;

@@ -31,6 +31,7 @@ Instances::Instances(DeviceCache& cache, const std::vector<scene::InstanceArray>
   for (const scene::InstanceArray& array : arrays) count += array.object_to_world().size();
   rows_.reserve(3 * count);
   balls_.reserve(count);
+  members_.reserve(count);
   for (const scene::InstanceArray& array : arrays) add(cache, array, anchor);
 }
 
@@ -44,8 +45,6 @@ std::size_t Instances::prototype(DeviceCache& cache, const scene::MeshPointer& m
 void Instances::add(DeviceCache& cache, const scene::InstanceArray& array, const glm::dvec3& anchor) {
   const std::size_t of = prototype(cache, array.mesh);
   const scene::Mesh& mesh = *array.mesh;
-  const glm::dvec3 middle = 0.5 * (glm::dvec3(mesh.lower()) + glm::dvec3(mesh.upper()));
-
   for (const InstanceClass& alike : instance_classes(array)) {
     InstanceGroup group;
     group.prototype = of;
@@ -67,14 +66,34 @@ void Instances::add(DeviceCache& cache, const scene::InstanceArray& array, const
     group.count = static_cast<std::uint32_t>(alike.members.size());
     groups_.push_back(std::move(group));
     for (const std::size_t member : alike.members) {
-      const glm::dmat4& object_to_world = array.object_to_world()[member];
-      const glm::dmat3 linear(object_to_world);
-      const glm::dvec3 place = glm::dvec3(object_to_world * glm::dvec4(middle, 1.0)) - anchor;
-      for (int row = 0; row < 3; ++row) rows_.emplace_back(linear[0][row], linear[1][row], linear[2][row], place[row]);
-      balls_.emplace_back(glm::vec3(place), static_cast<float>(mesh.reach() * largest_stretch(linear)));
-      bounds_.include(glm::dvec3(balls_.back()), balls_.back().w);
+      members_.push_back(static_cast<std::uint32_t>(member));
+      rows_.resize(rows_.size() + 3);
+      balls_.emplace_back();
+      place(balls_.size() - 1, mesh, array.object_to_world()[member], anchor);
     }
   }
+}
+
+void Instances::place(std::size_t instance, const scene::Mesh& mesh, const glm::dmat4& object_to_world,
+                      const glm::dvec3& anchor) {
+  const glm::dvec3 middle = 0.5 * (glm::dvec3(mesh.lower()) + glm::dvec3(mesh.upper()));
+  const glm::dmat3 linear(object_to_world);
+  const glm::dvec3 place = glm::dvec3(object_to_world * glm::dvec4(middle, 1.0)) - anchor;
+  for (int row = 0; row < 3; ++row)
+    rows_[3 * instance + static_cast<std::size_t>(row)] =
+        glm::vec4(linear[0][row], linear[1][row], linear[2][row], place[row]);
+  balls_[instance] = glm::vec4(glm::vec3(place), static_cast<float>(mesh.reach() * largest_stretch(linear)));
+  bounds_.include(glm::dvec3(balls_[instance]), balls_[instance].w);
+}
+
+void Instances::place(const std::vector<scene::InstanceArray>& arrays, const glm::dvec3& anchor) {
+  bounds_ = {};
+  tree_.reset();
+  device_.reset();
+  std::size_t instance = 0;
+  for (const scene::InstanceArray& array : arrays)
+    for (const std::size_t end = instance + array.object_to_world().size(); instance < end; ++instance)
+      place(instance, *array.mesh, array.object_to_world()[members_[instance]], anchor);
 }
 
 void Instances::take_places(Instances& before) {

@@ -64,6 +64,10 @@ class Instances {
   /// Takes the arrays of a scene. `anchor`, a place amid the scene, is the origin of all that is on the device.
   Instances(DeviceCache& cache, const std::vector<scene::InstanceArray>& arrays, const glm::dvec3& anchor);
 
+  /// Puts them where these arrays have them, which differ in nothing else from those that they were made of; each keeps
+  /// its group.
+  void place(const std::vector<scene::InstanceArray>& arrays, const glm::dvec3& anchor);
+
   /// Takes over what was made for the same instances in the same order, whatever their materials are: a material's
   /// change costs no tree and sends nothing.
   void take_places(Instances& before);
@@ -111,11 +115,14 @@ class Instances {
  private:
   void add(DeviceCache& cache, const scene::InstanceArray& array, const glm::dvec3& anchor);
   std::size_t prototype(DeviceCache& cache, const scene::MeshPointer& mesh);
+  void place(std::size_t instance, const scene::Mesh& mesh, const glm::dmat4& object_to_world,
+             const glm::dvec3& anchor);
 
   std::vector<Prototype> prototypes_;
   std::vector<InstanceGroup> groups_;
   std::vector<glm::vec4> rows_;  // three an instance
   std::vector<glm::vec4> balls_;
+  std::vector<std::uint32_t> members_;  // of each instance, which it is of its array
   Bounds bounds_;
   std::unique_ptr<casting::PlacedTree> tree_;
   mutable std::optional<gl::Buffer> device_;  // the rows, sent on first use

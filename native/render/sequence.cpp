@@ -1,4 +1,4 @@
-// Additive recurrences with the generalised golden ratios.
+// Additive recurrences with the generalised golden ratios, and Sobol's first two dimensions.
 #include "render/sequence.h"
 
 #include <cmath>
@@ -29,6 +29,23 @@ glm::dvec2 r2_point(std::uint32_t index, glm::dvec2 offset) {
 glm::dvec2 r4_point(std::uint32_t index, glm::dvec2 offset) {
   const glm::dvec2 step(std::pow(four_dimensional_ratio, -3.0), std::pow(four_dimensional_ratio, -4.0));
   return glm::fract(offset + static_cast<double>(index) * step);
+}
+
+glm::dvec2 scrambled_point(std::uint32_t index, std::uint32_t seed) {
+  const std::uint64_t scramble = mix(seed);
+  auto first = static_cast<std::uint32_t>(scramble);
+  auto second = static_cast<std::uint32_t>(scramble >> 32U);
+  std::uint32_t of_first = 1U << 31U;
+  std::uint32_t of_second = 1U << 31U;
+  for (; index != 0; index >>= 1U) {
+    if ((index & 1U) != 0) {
+      first ^= of_first;
+      second ^= of_second;
+    }
+    of_first >>= 1U;
+    of_second ^= of_second >> 1U;
+  }
+  return {0x1.0p-32 * first, 0x1.0p-32 * second};
 }
 
 glm::dvec2 seeded_offset(std::uint32_t seed) {

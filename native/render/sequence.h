@@ -1,4 +1,4 @@
-// Low-discrepancy points for antialiasing and for the sun's disc.
+// Low-discrepancy points for antialiasing, for the sun's disc and for lenses.
 #pragma once
 
 #include <cstdint>
@@ -12,6 +12,11 @@ glm::dvec2 r2_point(std::uint32_t index, glm::dvec2 offset);
 
 /// Dimensions 3 and 4 of the same construction in four dimensions, to be paired with r2_point without correlation.
 glm::dvec2 r4_point(std::uint32_t index, glm::dvec2 offset);
+
+/// Point `index` of a (0,2)-sequence: any run of 2^k points from a multiple of 2^k on is stratified in every way
+/// (Kollig and Keller, "Efficient Multidimensional Sampling", 2002, section 3.2), scrambled by `seed`; in [0, 1)^2.
+/// Without correlation to the recurrences.
+glm::dvec2 scrambled_point(std::uint32_t index, std::uint32_t seed);
 
 /// A pair in [0, 1)^2 that depends on nothing but `seed`.
 glm::dvec2 seeded_offset(std::uint32_t seed);

@@ -74,6 +74,21 @@ void View::set_camera(const scene::Camera& camera) {
   *samples_ = 0;
 }
 
+void View::set_moment(const scene::Camera& camera, const scene::Scene* scene) {
+  validate(camera);
+  if (scene != nullptr) validate(*scene);
+  gl::ContextThread::instance().run([&] { frame(id_).set_moment(camera, scene); });
+}
+
+void View::set_portions(const std::vector<Portion>& portions) {
+  gl::ContextThread::instance().run([&] { frame(id_).set_portions(portions); });
+  *samples_ = 0;
+}
+
+void View::read_portion(Portion portion, float* pixels) {
+  gl::ContextThread::instance().run([&] { frame(id_).read_portion(portion, pixels); });
+}
+
 void View::set_bake(const Bake& bake) {
   gl::ContextThread::instance().run([&] {
     frame(id_).set_bake(bake);

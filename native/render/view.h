@@ -36,6 +36,18 @@ class View {
   /// Restarts the accumulation and sends nothing.
   void set_camera(const scene::Camera& camera);
 
+  /// Another moment of the exposure: what set_scene() took elsewhere, if a scene is given, seen through this camera.
+  /// Samples from now on are added to those before. Light between grains stays each grain's own as it was found for
+  /// set_scene(). Throws Error for a scene of other things, and for a bake.
+  void set_moment(const scene::Camera& camera, const scene::Scene* scene);
+
+  /// Has these told beside the picture from now on, each by about the cost of its own shading. Restarts the
+  /// accumulation. A bake has none.
+  void set_portions(const std::vector<Portion>& portions);
+
+  /// The mean of one of them, as read(). Throws Error if it is not told.
+  void read_portion(Portion portion, float* pixels);
+
   /// Instead of what the camera sees, until the next set_scene(): the texture of some instances, unwrapped at their UVs
   /// with v upwards, the scene's other instances left out. Restarts the accumulation. Throws Error for instances that
   /// the scene does not have or that have no UVs.

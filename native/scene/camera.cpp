@@ -36,12 +36,25 @@ Camera Camera::look_at(glm::dvec3 position, glm::dvec3 look_at, glm::dvec3 up, d
   if (far_plane <= 0.0) far_plane = distance * 100.0;
   const double half_height = std::tan(glm::radians(fov_degrees) / 2.0) / std::min(aspect, 1.0);
   return {glm::lookAt(position, look_at, up),
-          glm::perspective(2.0 * std::atan(half_height), aspect, near_plane, far_plane)};
+          glm::perspective(2.0 * std::atan(half_height), aspect, near_plane, far_plane),
+          {}};
+}
+
+Camera Camera::through(const glm::dvec2& place) const {
+  // Space is sheared along the lens, so that its plane of focus stays and that place comes to the middle (Haeberli and
+  // Akeley, "The Accumulation Buffer", 1990, section 4).
+  glm::dmat4 shear(1.0);
+  for (int axis = 0; axis < 2; ++axis) {
+    shear[2][axis] = -place[axis] / lens->focus_distance;
+    shear[3][axis] = -place[axis];
+  }
+  return {shear * world_to_camera, camera_to_clip, {}};
 }
 
 void validate(const Camera& camera) {
   require_invertible(camera.world_to_camera, "world_to_camera");
   require_invertible(camera.camera_to_clip, "camera_to_clip");
+  if (camera.lens) validate(*camera.lens);
 }
 
 }  // namespace mesograin::scene

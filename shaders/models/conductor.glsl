@@ -3,6 +3,7 @@
 // GGX_SMALLEST_ALPHA, the narrowest highlight that single precision resolves.
 #include "models/interface.glsl"
 #include "models/mirrored_world.glsl"
+#include "models/portions.glsl"
 #include "physics/prelude.glsl"
 #include "physics/ggx.glsl"
 
@@ -37,5 +38,6 @@ vec3 evaluate_model(SurfacePoint point, Outwards outwards, LightSample light) {
 #ifdef MIRRORS_WORLD
   light.irradiance *= share_of_light(point, light, mu_o);
 #endif
-  return material.reflectance * light.irradiance * (ggx_distribution(point.normal, half_vector, alpha) * visibility * mu_i);
+  vec3 reflected = material.reflectance * light.irradiance * (ggx_distribution(point.normal, half_vector, alpha) * visibility * mu_i);
+  return portion(SPECULAR_PORTION, reflected);
 }

@@ -10,6 +10,7 @@
 //   EMITS               it sends out light
 #include "models/interface.glsl"
 #include "models/mirrored_world.glsl"
+#include "models/portions.glsl"
 #include "physics/prelude.glsl"
 #include "physics/ggx.glsl"
 #include "physics/fresnel.glsl"
@@ -219,7 +220,9 @@ vec3 evaluate_model(SurfacePoint point, Outwards outwards, LightSample light) {
 #ifdef MIRRORS_WORLD
   of_facets *= share_of_light(point, light, mu_o);
 #endif
-  diffuse += facet_reflectance(mu_h) * of_facets;
+  vec3 specular = facet_reflectance(mu_h) * of_facets;
+#else
+  const vec3 specular = vec3(0.0);
 #endif
-  return diffuse * light.irradiance * mu_i;
+  return (portion(DIFFUSE_PORTION, diffuse) + portion(SPECULAR_PORTION, specular)) * light.irradiance * mu_i;
 }

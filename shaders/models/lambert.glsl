@@ -1,5 +1,6 @@
 // An ideally diffuse surface (Lambert 1760): what everything else is measured against.
 #include "models/interface.glsl"
+#include "models/portions.glsl"
 #include "physics/prelude.glsl"
 
 struct Material {
@@ -11,5 +12,5 @@ uniform Material material;
 Outwards look_outwards(SurfacePoint point) { return Outwards(1.0, 1.0, 1.0); }
 
 vec3 evaluate_model(SurfacePoint point, Outwards outwards, LightSample light) {
-  return material.reflectance * (1.0 / PI) * light.irradiance * max(dot(point.normal, light.to_light), 0.0);
+  return portion(DIFFUSE_PORTION, material.reflectance * (1.0 / PI) * light.irradiance * max(dot(point.normal, light.to_light), 0.0));
 }

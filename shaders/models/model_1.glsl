@@ -2,12 +2,13 @@
 // Not physical: no light passes through or around a grain, so its unlit side is black.
 #include "models/half_space_light.glsl"
 #include "models/interface.glsl"
+#include "models/portions.glsl"
 
 vec3 evaluate_model(SurfacePoint point, Outwards outwards, LightSample light) {
   HalfSpaceLight result = half_space_light(point, outwards, light);
-  vec3 radiance = result.single + result.multiple;
+  vec3 radiance = portion(SINGLE_SCATTERING_PORTION, result.single) + portion(SUBSURFACE_PORTION, result.multiple);
 #ifdef SPECULAR
-  radiance += specular_reflection(point, outwards, light);
+  radiance += portion(SPECULAR_PORTION, specular_reflection(point, outwards, light));
 #endif
   return radiance;
 }

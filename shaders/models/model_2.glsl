@@ -7,6 +7,7 @@
 #include "models/body_light.glsl"
 #include "models/half_space_light.glsl"
 #include "models/interface.glsl"
+#include "models/portions.glsl"
 
 #ifdef SEPARATE_SINGLE
 uniform sampler2D single_difference;
@@ -17,17 +18,19 @@ vec3 evaluate_model(SurfacePoint point, Outwards outwards, LightSample light) {
   HalfSpaceLight half_space = half_space_light(point, outwards, light);
   vec4 difference = look_up_body(body_table, fit);
   vec3 lobe = light.irradiance * flowing_lobe(fit, point, light, flow_at(fit, difference));
-  vec3 radiance = corrected(fit.visible * half_space.multiple, difference.rgb, lobe);
+  vec3 radiance = portion(SUBSURFACE_PORTION, corrected(fit.visible * half_space.multiple, difference.rgb, lobe));
 #ifdef SEPARATE_SINGLE
   vec3 out_of = refract(-point.to_viewer, point.normal, sqrt(material.inverse_eta_squared));
   vec3 sum = out_of - material.sign_g * light.to_light;
   float versine = 0.5 * dot(sum, sum);
   float phase = 4.0 * PI * henyey_greenstein(versine, material.absolute_g, material.one_minus_absolute_g);
-  radiance += corrected(fit.visible * half_space.single, look_up_body(single_difference, fit).rgb, phase * diffused_lobe(fit) * light.irradiance);
+  vec3 single_lobe = phase * diffused_lobe(fit) * light.irradiance;
+  vec3 single = corrected(fit.visible * half_space.single, look_up_body(single_difference, fit).rgb, single_lobe);
+  radiance += portion(SINGLE_SCATTERING_PORTION, single);
 #endif
   radiance *= fit.entered;
 #ifdef SPECULAR
-  radiance += fit.reached * fit.visible * specular_reflection(point, outwards, light);
+  radiance += portion(SPECULAR_PORTION, fit.reached * fit.visible * specular_reflection(point, outwards, light));
 #endif
   return radiance;
 }

@@ -12,6 +12,7 @@
 #include "models/interface.glsl"
 #include "models/light_map.glsl"
 #include "models/pixel_random.glsl"
+#include "models/portions.glsl"
 #include "physics/prelude.glsl"
 #include "physics/elementary.glsl"
 #include "physics/fresnel.glsl"
@@ -346,17 +347,17 @@ vec3 evaluate_model(SurfacePoint point, Outwards outwards, LightSample light) {
   vec3 fit_normal = vec3(normal.xy * (tilt * inversesqrt(max(dot(normal.xy, normal.xy), 1e-12))), fit.cosine);
   Seen seen = Seen(frame, light.map, fit, position, fit_normal);
   Gathered gathered = gather(seen, Draws(multiple_share, uint(sample_index * multiple_share), offset.xy));
-  vec3 radiance = on_the_grain(gathered, sphere, lobe, fit.radius);
+  vec3 radiance = portion(SUBSURFACE_PORTION, on_the_grain(gathered, sphere, lobe, fit.radius));
 #ifdef SINGLE_MARCHED
   vec3 to_viewer = to_light_space(frame, point.to_viewer);
   vec3 inwards = (fit.mu_o * normal - to_viewer) / body.eta - fit.mu_o_refracted * normal;
   vec3 inside = single_scattering(seen, inwards, Draws(single_share, uint(sample_index * single_share), offset.zw));
-  radiance += fit.transmittance / (body.eta * body.eta) * inside;
+  radiance += portion(SINGLE_SCATTERING_PORTION, fit.transmittance / (body.eta * body.eta) * inside);
 #endif
   radiance *= light.irradiance;
   if (entered >= 0.0) radiance *= entered;
 #ifdef SPECULAR
-  radiance += fit.visible * fit.reached * specular_reflection(point, outwards, light);
+  radiance += portion(SPECULAR_PORTION, fit.visible * fit.reached * specular_reflection(point, outwards, light));
 #endif
   return radiance;
 }

@@ -11,6 +11,7 @@
 #include "models/dielectric.glsl"
 #include "models/interface.glsl"
 #include "models/pixel_random.glsl"
+#include "models/portions.glsl"
 #include "physics/prelude.glsl"
 #include "physics/elementary.glsl"
 #include "physics/fresnel.glsl"
@@ -222,9 +223,9 @@ vec3 evaluate_model(SurfacePoint point, Outwards outwards, LightSample light) {
 #else
   Spectrum inside = radiance_inside(to_body * point.on_triangle * stored.units, normalize(to_body * inwards));
 #endif
-  vec3 radiance = light.irradiance * (outwards.transmittance / (stored.eta * stored.eta) * inside);
+  vec3 radiance = portion(SUBSURFACE_PORTION, light.irradiance * (outwards.transmittance / (stored.eta * stored.eta) * inside));
 #ifdef SPECULAR
-  radiance += specular_reflection(point, outwards, light);
+  radiance += portion(SPECULAR_PORTION, specular_reflection(point, outwards, light));
 #endif
   return radiance;
 }

@@ -7,6 +7,7 @@
 //   CLEAR, WORLD         the model knows what crosses the grain unscattered, and there is a world to be seen through it
 //   WHOLE_GRAIN          the model knows what light does in all of the grain, but not where it enters
 //   EMITS                the surface sends out light of its own
+//   PORTION              of all that, one thing alone is told (models/portions.glsl)
 //   MIRRORS_WORLD        the surface has facets, and there is something to be mirrored; where anything may stand in the way, it is for a later
 //                        pass to add
 //   FACETS_ALONE         the surface is of facets alone
@@ -18,6 +19,7 @@
 #include "lights/light.glsl"
 #include "models/interface.glsl"
 #include "models/mirrored_world.glsl"
+#include "models/portions.glsl"
 #include "scene/grain.glsl"
 #include "scene/shadows.glsl"
 #include "models/entries.glsl"
@@ -36,6 +38,13 @@ uniform int distant_light_count;  // those have their shadows first
 
 // xyz: the direction towards the viewer if w is 0; if w is 1 the pinhole, in grain space, or for instances from the place amid the scene.
 uniform vec4 viewer;
+
+#if defined(EXCHANGE) && !defined(INSTANCED)
+uniform vec3 to_settled;  // from the grain to where it stood when light between grains was found
+vec3 settled_place() { return grain_place + to_settled; }
+#else
+vec3 settled_place() { return grain_place; }
+#endif
 
 #ifdef MIRRORED
 uniform sampler2D mirror_looks;  // xyz: along which each pixel's mirror looks, of unit length
@@ -135,31 +144,33 @@ Mirrored mirrored;
 vec3 lit_point(SurfacePoint point) {
 #ifdef GATHERED
   vec4 all = texelFetch(gathered, ivec2(gl_FragCoord.xy), 0);
-  if (all.w > 1.5) return all.rgb;
+  if (all.w > 1.5) return portion(EXCHANGE_PORTION, all.rgb);
 #endif
   Outwards outwards = look_outwards(point);
 #if defined(EXCHANGE) && !(defined(FACETS_ALONE) && defined(MIRRORS_WORLD))
-  vec3 sum = light_from_grains(grain_instance, grain_place + grain_unit * point.on_triangle, point.normal, point.to_viewer);
+  vec3 place = settled_place() + grain_unit * point.on_triangle;
+  vec3 sum = portion(EXCHANGE_PORTION, light_from_grains(grain_instance, place, point.normal, point.to_viewer));
 #else
   vec3 sum = vec3(0.0);
 #endif
 #ifdef EMITS
-  sum += emitted();
+  sum += portion(EMISSION_PORTION, emitted());
 #endif
 #ifdef LIGHTS_AT_PLACE
-  sum += locally_lit(point, outwards);
+  if (LIGHTS_TELL) sum += locally_lit(point, outwards);
 #endif
 #if defined(CLEAR) && defined(WORLD)
-  sum += crossing_light(point, outwards);
+  sum += portion(TRANSMISSION_PORTION, crossing_light(point, outwards));
 #endif
 #ifdef MIRRORS_WORLD
 #ifdef SHADOWS
   mirrored = mirrored_world(point, outwards.mu);
+  mirrored.radiance = portion(SPECULAR_PORTION, mirrored.radiance);
 #else
-  sum += mirrored_world(point, outwards.mu).radiance;
+  sum += portion(SPECULAR_PORTION, mirrored_world(point, outwards.mu).radiance);
 #endif
 #endif
-  if (light_count == 0) return sum;
+  if (light_count == 0 || !LIGHTS_TELL) return sum;
   // Software renderers run a loop's body once more, masked, to find that a condition at its head has failed: it is at the foot.
   int i = 0;
   do {

@@ -56,7 +56,7 @@ void main() {
 #ifdef MIRRORED
   radiance = vec4(lit_point(point) * texelFetch(mirror_passes, ivec2(gl_FragCoord.xy), 0).rgb, 0.0);
 #else
-  radiance = vec4(lit_point(point), 1.0);
+  radiance = vec4(PORTION == NORMAL_PORTION ? point.normal : lit_point(point), 1.0);
 #endif
 #if defined(MIRRORS_WORLD) && defined(SHADOWS)
   bool any_mirrored = max(mirrored.passed.r, max(mirrored.passed.g, mirrored.passed.b)) > 0.0;

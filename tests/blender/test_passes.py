@@ -7,6 +7,7 @@ import pytest
 from mesograin import compat
 from mesograin.engine import identities, passes
 from test_export import add_camera, add_sun
+from test_final_render import compositor_tree
 
 SIDE = 33
 
@@ -191,3 +192,54 @@ def test_ranks_are_by_share():
     assert ids.ravel().tolist() == [2, 1, 3, 0] and shares.ravel().tolist() == [0.375, 0.25, 0.125, 0.0]
     ids, shares = identities.ranked(numbers, np.array([0, 1, 1, 2]), 2)
     assert ids.ravel().tolist() == [1, 2] and shares.ravel().tolist() == [0.625, 0.125]
+
+
+def ask_for_light():
+    layer = bpy.context.view_layer
+    for one in passes.PORTIONS.values():
+        *owner, name = one.asked_for.split(".")
+        setattr(layer.mesograin if owner else layer, name, True)
+
+
+def test_the_light_s_portions_are_the_picture_together(layers, tmp_path):
+    scene = scene_of_two(tmp_path)
+    for number, material in enumerate(bpy.data.materials):
+        material.mesograin.model = ("model_1", "conductor")[number % 2]
+    scene.world = bpy.data.worlds.new("Sky")
+    scene.world.use_nodes = False
+    scene.world.color = (0.2, 0.3, 0.5)
+    ask_for_light()
+    found = layers()
+    portions = [found[one.name].astype(np.float64) for one in passes.PORTIONS.values()]
+    np.testing.assert_allclose(sum(portions), found["Combined"][..., :3], rtol=1e-4, atol=1e-5)
+    assert {name for name, one in passes.PORTIONS.items() if found[one.name].max() > 1e-3} >= {
+        "specular", "subsurface", "environment"}
+
+
+def test_the_compositor_s_nodes_have_the_light_s_portions():
+    scene = scene_of_a_sphere()
+    ask_for_light()
+    tree = compositor_tree(scene)
+    node = tree.nodes.new("CompositorNodeRLayers")
+    assert {one.name for one in passes.PORTIONS.values()} <= {socket.name for socket in node.outputs if socket.enabled}
+
+
+def test_denoisers_get_albedo_and_normal(layers, tmp_path):
+    scene = scene_of_two(tmp_path)
+    cycles = getattr(bpy.context.view_layer, "cycles", None)
+    if cycles is None:
+        pytest.skip("Cycles, which keeps the setting, is not there")
+    cycles.denoising_store_passes = True
+    scene.camera.rotation_euler = (0.0, 0.1, 0.4)
+    for material in bpy.data.materials:
+        material.mesograin.model, material.mesograin.reflectance = "lambert", (0.7, 0.4, 0.1)
+    found = layers()
+    inside = (found[passes.OBJECT_INDEX.name][..., 0] == 3) & (found["CryptoObject00"][..., 1] == 1.0)
+    assert inside.mean() > 0.1
+    np.testing.assert_allclose(found["Denoising Albedo"][inside], [(0.7, 0.4, 0.1)] * inside.sum(), rtol=1e-4)
+    to_camera = np.array(scene.camera.matrix_world.to_3x3().transposed())
+    np.testing.assert_allclose(found["Denoising Normal"][inside], found["Normal"][inside] @ to_camera.T, atol=0.05)
+    material = bpy.data.materials[0]
+    material.mesograin.model = "model_3"
+    translucent = layers()["Denoising Albedo"]
+    assert 0.05 < translucent[SIDE // 2, SIDE // 2].max() < 1.0

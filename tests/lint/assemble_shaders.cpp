@@ -95,6 +95,9 @@ void write_shading(Writer& writer) {
                                                           {"EXCHANGE"},
                                                           {"EXCHANGE", "GATHERED"},
                                                           {"LIGHTS_AT_PLACE"},
+                                                          {"PORTION 0"},
+                                                          {"PORTION 5", "EXCHANGE"},
+                                                          {"PORTION 8"},
                                                           {"INSTANCED", "SHADOWS", "LIGHTS_AT_PLACE"},
                                                           clear};
   const std::vector<std::vector<std::string>> mirrors = {{"MIRRORS_WORLD"}, {"MIRRORS_WORLD", "SHADOWS"}};

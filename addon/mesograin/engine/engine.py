@@ -1,4 +1,6 @@
 # The render engine as Blender calls it: final renders and Rendered viewports, both through the native module.
+import contextlib
+import functools
 import time
 import weakref
 
@@ -6,8 +8,8 @@ import bpy
 import numpy as np
 
 from .. import compat, native_module
-from ..scene import export, meshes
-from . import passes, status, viewport, viewport_text
+from ..scene import export, lens
+from . import motion, passes, status, viewport, viewport_text
 
 # How long a final render may go without looking whether it was cancelled, and without showing how far it is.
 POLL_SECONDS = 0.05
@@ -50,35 +52,38 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
         width, height = self.resolution_x, self.resolution_y
         region = export.render_region(depsgraph.scene, width, height)
         self.update_stats("", "Mesograin: reading the scene")
-        values = export.read_scene(depsgraph, meshes.MeshCache())
-        warnings = values.warnings
+        exposure = motion.Exposure(self, depsgraph)
+        warnings = exposure.values.warnings
         view = native.View(region.width, region.height)
-        view.set_scene(values.to_native())
+        still = exposure.native_scene(exposure.values)
+        view.set_scene(still)
+        view.set_portions(passes.portions(depsgraph.view_layer))
         for warning in warnings:
             self.report({"WARNING"}, warning)
 
         opaque = not depsgraph.scene.render.film_transparent
         eyes = _eyes(depsgraph.scene.render)
         for number, name in enumerate(eyes):
-            camera = self._camera(depsgraph, width, height, region, name)
-            view.set_camera(camera)
+            read_camera = functools.partial(self._camera, depsgraph, width, height, region, name)
+            view.set_camera(read_camera())
             passes.add(self, depsgraph.view_layer)
             result = self.begin_result(0, 0, region.width, region.height, layer=depsgraph.view_layer.name, view=name)
             try:
-                for samples in self._render_samples(view, target):
+                for samples in self._render_samples(view, exposure, read_camera, target):
                     self._show(result, view, opaque)
                     self.update_result(result)
                     self.update_progress((number + samples / target) / len(eyes))
                 if view.samples:  # a cancelled render keeps what it has
                     self._show(result, view, opaque)
-                    beside = passes.pixels(view, depsgraph.view_layer, camera, values)
+                    view.set_moment(read_camera(), still)
+                    beside = passes.pixels(view, depsgraph.view_layer, exposure, read_camera)
                     for name_, pixels in beside.items():
                         _set_pass(result, name_, pixels)
             except Exception:  # whatever it is: Blender must not be left with a result that never ends
                 self.end_result(result, cancel=True)
                 raise
             self.end_result(result)
-        self._sign(passes.metadata(depsgraph.view_layer, values))
+        self._sign(passes.metadata(depsgraph.view_layer, exposure.values))
         for warning in view.warnings:
             self.report({"WARNING"}, warning)
         timings = tuple((timing["pass"], timing["milliseconds"]) for timing in view.timings())
@@ -94,27 +99,38 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
         placed = camera and export.Eye(self.camera_model_matrix(camera), self.camera_shift_x(camera))
         return export.camera_from_scene(depsgraph, width, height, camera, region, placed)
 
-    def _render_samples(self, view, target):
+    def _render_samples(self, view, exposure, read_camera, target):
         """Renders until `target` samples or a cancel, and yields their number whenever it is time to show them."""
         started = shown = time.perf_counter()
-        chunk = 1
-        while view.samples < target and not self.test_break():
-            chunk_started = time.perf_counter()
-            task = view.start(min(chunk, target - view.samples))
-            while not task.wait(POLL_SECONDS):
+        chunk, reached, seen = 1, 0, exposure.values
+        with contextlib.closing(exposure.moments(read_camera, target)) as moments:
+            for values, camera, count in moments:
+                if exposure.blurred:
+                    view.set_moment(camera, None if values is seen else exposure.native_scene(values))
+                    seen = values
+                reached += count
+                while view.samples < reached and not self.test_break():
+                    chunk_started = time.perf_counter()
+                    self._wait(view, view.start(min(chunk, reached - view.samples)))
+                    now = time.perf_counter()
+                    if now - chunk_started < POLL_SECONDS:
+                        chunk *= 2
+                    if now - shown > SHOW_SECONDS and view.samples < target:
+                        left = (now - started) / max(view.samples, 1) * (target - view.samples)
+                        self.update_stats("", f"Sample {view.samples}/{target}, {left:.1f} s left")
+                        yield view.samples
+                        shown = time.perf_counter()
                 if self.test_break():
-                    view.cancel()
-                if view.preparing is not None:
-                    self.update_stats("", _preparing(view.preparing))
-            task.result()
-            now = time.perf_counter()
-            if now - chunk_started < POLL_SECONDS:
-                chunk *= 2
-            if now - shown > SHOW_SECONDS and view.samples < target:
-                left = (now - started) / max(view.samples, 1) * (target - view.samples)
-                self.update_stats("", f"Sample {view.samples}/{target}, {left:.1f} s left")
-                yield view.samples
-                shown = time.perf_counter()
+                    return
+
+    def _wait(self, view, task):
+        """Until a view's task ends, or is cancelled by the artist."""
+        while not task.wait(POLL_SECONDS):
+            if self.test_break():
+                view.cancel()
+            if view.preparing is not None:
+                self.update_stats("", _preparing(view.preparing))
+        task.result()
 
     def _sign(self, metadata):
         """metadata: {field: text} that goes into the picture's file."""
@@ -164,7 +180,7 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
     def _view_draw(self, context, depsgraph):
         session, region, scene = self._session, context.region, depsgraph.scene
         if session is not None and session.has_scene:
-            session.set_camera(_viewport_camera(context.region_data), region.width, region.height)
+            session.set_camera(_viewport_camera(context, depsgraph), region.width, region.height)
             pixels = session.advance(scene.mesograin.viewport_samples)
             if pixels is None and self._texture is not None and scene.render.film_transparent != self._transparent:
                 pixels = session.picture()  # at rest nothing new would come
@@ -255,9 +271,15 @@ def _replaces_geometry(update):
     return update.is_updated_geometry and not isinstance(update.id, (bpy.types.Material, bpy.types.Scene))
 
 
-def _viewport_camera(region_data):
-    return native_module.get().Camera(np.array(region_data.view_matrix, dtype=np.float64),
-                                      np.array(region_data.window_matrix, dtype=np.float64))
+def _viewport_camera(context, depsgraph):
+    view, space = context.region_data, context.space_data
+    shown = None
+    if view.view_perspective == "CAMERA":
+        camera = (space.camera if space.use_local_camera else None) or depsgraph.scene.camera
+        if camera is not None and camera.type == "CAMERA":
+            shown = lens.of_camera(camera.evaluated_get(depsgraph), view.view_matrix.inverted())
+    return native_module.get().Camera(np.array(view.view_matrix, dtype=np.float64),
+                                      np.array(view.window_matrix, dtype=np.float64), shown)
 
 
 def _texture(pixels):

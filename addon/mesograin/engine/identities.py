@@ -1,4 +1,5 @@
-# Which objects and materials cover each pixel, for indices and Cryptomatte: a picture whose things shine by numbers.
+# Which objects and materials cover each pixel, for indices and Cryptomatte, and their albedo, for denoisers: pictures
+# whose things shine by numbers.
 import dataclasses
 import json
 import typing
@@ -7,9 +8,10 @@ import numpy as np
 
 from .. import native_module
 from ..scene import export, plain_materials, surroundings
+from ..schema import models
 
-SAMPLES = 16
-"""Of each pixel: edges are known to a sixteenth."""
+SAMPLES, BLURRED_SAMPLES = 16, 64
+"""Of each pixel: edges are known to a sixteenth, blurred ones to a sixty-fourth."""
 
 
 class Things(typing.NamedTuple):
@@ -23,34 +25,88 @@ def things_of(values):
     """Things of an export.SceneValues."""
     numbers = {}
 
-    def shining(drawn):
+    def number_of(drawn):
         name = drawn.name, drawn.material.name
         number = float(numbers.setdefault(name, len(numbers) + 1))
-        material = export.MaterialValues(
-            drawn.material.name, (("model", "lambert"), ("profile", "half_space"), ("reflectance", (0.0, 0.0, 0.0))),
-            plain_materials.FinishValues((("radiance", (number, number, number)),)))
-        changes = {"factors": ()} if hasattr(drawn, "factors") else {}
-        return dataclasses.replace(drawn, material=material, **changes)
+        return plain_materials.FinishValues((("radiance", (number, number, number)),))
 
-    scene = dataclasses.replace(
-        values, instances=tuple(map(shining, values.instances)), heaps=tuple(map(shining, values.heaps)), lights=(),
-        world=surroundings.WorldValues(), exchange="off")
+    scene = _shining(values, number_of)
     return Things(list(numbers), scene.to_native())
 
 
-def seen(things, camera, width, height):
-    """(SAMPLES, h, w) int32 with row 0 at the top: the number of what each sample sees, 0 for nothing."""
+def _shining(values, finish_of):
+    """export.SceneValues whose things do nothing but shine, each with the plain_materials.FinishValues of it."""
+
+    def shining(drawn):
+        material = export.MaterialValues(
+            drawn.material.name, (("model", "lambert"), ("profile", "half_space"), ("reflectance", (0.0, 0.0, 0.0))),
+            finish_of(drawn))
+        changes = {"factors": ()} if hasattr(drawn, "factors") else {}
+        return dataclasses.replace(drawn, material=material, **changes)
+
+    return dataclasses.replace(
+        values, instances=tuple(map(shining, values.instances)), heaps=tuple(map(shining, values.heaps)), lights=(),
+        world=surroundings.WorldValues(), exchange="off")
+
+
+def seen(exposure, read_camera, width, height):
+    """(names, numbers): the names of Things, and (samples, h, w) int32 with row 0 at the top, the number of what each
+    sample sees, 0 for nothing. exposure: motion.Exposure; read_camera: gives the native.Camera of its moment."""
     view = native_module.get().View(width, height)
-    view.set_scene(things.scene)
-    view.set_camera(camera)
-    found = np.empty((SAMPLES, height, width), dtype=np.int32)
-    before = np.zeros((height, width))
-    for sample in range(SAMPLES):
-        view.render(1)
-        # The mean of whole numbers, whose sum floats hold exactly.
-        total = np.rint(view.read()[..., 0].astype(np.float64) * (sample + 1))
-        found[sample], before = total - before, total
-    return found
+    samples = _samples(exposure, read_camera)
+    found = np.empty((samples, height, width), dtype=np.int32)
+    before, names, sample = np.zeros((height, width)), None, 0
+    for values, camera, count in exposure.moments(read_camera, samples):
+        things = things_of(values)
+        if names is None:
+            names = things.names
+            view.set_scene(things.scene)
+        view.set_moment(camera, things.scene)
+        for sample in range(sample, sample + count):
+            view.render(1)
+            # The mean of whole numbers, whose sum floats hold exactly.
+            total = np.rint(view.read()[..., 0].astype(np.float64) * (sample + 1))
+            found[sample], before = total - before, total
+        sample += 1
+    return names, found
+
+
+def _samples(exposure, read_camera):
+    return BLURRED_SAMPLES if exposure.blurred or read_camera().lens else SAMPLES
+
+
+def albedo(exposure, read_camera, width, height):
+    """(h, w, 3) float32 with row 0 at the top: what a pixel's things send back of light from everywhere, 0 where
+    nothing is. exposure, read_camera: as of `seen`."""
+    native = native_module.get()
+    view, known, begun = native.View(width, height), {}, False
+
+    def finish_of(drawn):
+        if drawn.material not in known:
+            known[drawn.material] = _albedo_of(drawn.material, native)
+        return known[drawn.material]
+
+    for values, camera, count in exposure.moments(read_camera, _samples(exposure, read_camera)):
+        scene = _shining(values, finish_of).to_native()
+        if not begun:
+            view.set_scene(scene)
+            begun = True
+        view.set_moment(camera, scene)
+        view.render(count)
+    return view.read()[..., :3]
+
+
+def _albedo_of(material, native):
+    """plain_materials.FinishValues that shine by a material's albedo."""
+    values = dict(material.values)
+    if "sigma_s" in models.CHOICES[values["model"]].parameters:
+        plain = dataclasses.replace(material, finish=None)
+        radiance = native.half_space_albedo(plain.to_native(native))
+        return plain_materials.FinishValues((("radiance", tuple(radiance)),))
+    maps = dict(material.finish.maps) if material.finish else {}
+    worn = (("emission", maps["reflectance"]),) if "reflectance" in maps else ()
+    radiance = (1.0, 1.0, 1.0) if worn else tuple(values["reflectance"])
+    return plain_materials.FinishValues((("radiance", radiance),), worn)
 
 
 def ranked(found, groups, ranks):

@@ -1,5 +1,5 @@
-# The passes of a final render beside the picture: where rays through the pixels' middles meet what, facing where, and
-# whose they are.
+# The passes of a final render beside the picture: where rays through the pixels' middles meet what, facing where, whose
+# they are, and what the picture's light is made of.
 import operator
 import typing
 
@@ -7,6 +7,7 @@ import bpy
 import numpy as np
 
 from .. import compat
+from ..scene import properties
 from . import identities
 
 NOWHERE = 1e10
@@ -34,8 +35,18 @@ _INDEX_NAMES = compat.names_of_index_passes()
 OBJECT_INDEX = Pass(_INDEX_NAMES[0], "use_pass_object_index", "X", "VALUE", "Object Index")
 MATERIAL_INDEX = Pass(_INDEX_NAMES[1], "use_pass_material_index", "X", "VALUE", "Material Index")
 SAMPLE_COUNT = Pass("Debug Sample Count", "cycles.pass_debug_sample_count", "X", "VALUE", "Sample Count")
-PASSES = (DEPTH, POSITION, NORMAL, OBJECT_INDEX, MATERIAL_INDEX, SAMPLE_COUNT)
+DENOISING_NORMAL = Pass("Denoising Normal", "cycles.denoising_store_passes", "XYZ", "VECTOR")
+DENOISING_ALBEDO = Pass("Denoising Albedo", "cycles.denoising_store_passes", "RGB", "COLOR")
 SURFACES, INDICES = (DEPTH, POSITION, NORMAL), (OBJECT_INDEX, MATERIAL_INDEX)
+DENOISING = (DENOISING_NORMAL, DENOISING_ALBEDO)
+PORTIONS = {
+    **{name: Pass(name.replace("_", " ").title(), f"mesograin.use_pass_{name}", "RGB", "COLOR")
+       for name in properties.PORTIONS},
+    "emission": Pass("Emit", "use_pass_emit", "RGB", "COLOR", "Emission"),
+    "environment": Pass("Env", "use_pass_environment", "RGB", "COLOR", "Environment"),
+}
+"""Of the picture's light, by the native module's names: their sum is the picture."""
+PASSES = (*SURFACES, *INDICES, SAMPLE_COUNT, *DENOISING, *PORTIONS.values())
 
 
 class Matte(typing.NamedTuple):
@@ -90,21 +101,33 @@ def add(engine, view_layer):
         engine.add_pass(one.name, len(one.channels), one.channels, layer=view_layer.name)
 
 
-def pixels(view, view_layer, camera, values):
-    """{name: (h, w, channels) float32 with row 0 at the top} of a native.View of this native.Camera and
-    export.SceneValues."""
+def portions(view_layer):
+    """What native.View.set_portions is to be asked for."""
+    found = [name for name, one in PORTIONS.items() if is_asked_for(view_layer, one)]
+    return [*found, "normal"] if is_asked_for(view_layer, DENOISING_NORMAL) else found
+
+
+def pixels(view, view_layer, exposure, read_camera):
+    """{name: (h, w, channels) float32 with row 0 at the top} of a native.View that shows the frame of a motion.Exposure
+    through the native.Camera that `read_camera` gives."""
     found = {}
     asked = of(view_layer)
     if any(one in SURFACES for one in asked):
-        found.update(_surfaces(view, camera.world_to_camera))
+        found.update(_surfaces(view, read_camera().world_to_camera))
     if SAMPLE_COUNT in asked:
         found[SAMPLE_COUNT.name] = np.full((view.height, view.width, 1), view.samples, dtype=np.float32)
+    for name, one in PORTIONS.items():
+        if one in asked:
+            found[one.name] = view.read_portion(name)[..., :3]
+    if DENOISING_NORMAL in asked:
+        to_camera = read_camera().world_to_camera[:3, :3].astype(np.float32)
+        found[DENOISING_NORMAL.name] = view.read_portion("normal")[..., :3] @ to_camera.T  # as Cycles has it
+        found[DENOISING_ALBEDO.name] = identities.albedo(exposure, read_camera, view.width, view.height)
     if any(one in INDICES for one in asked) or _mattes(view_layer):
-        things = identities.things_of(values)
-        numbers = identities.seen(things, camera, view.width, view.height)
-        found.update(_indices(things.names, numbers))
+        names, numbers = identities.seen(exposure, read_camera, view.width, view.height)
+        found.update(_indices(names, numbers))
         for matte in _mattes(view_layer):
-            found.update(_matte(matte, things.names, numbers, _ranks(view_layer)))
+            found.update(_matte(matte, names, numbers, _ranks(view_layer)))
     return {one.name: found[one.name] for one in asked}
 
 

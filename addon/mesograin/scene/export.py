@@ -9,7 +9,7 @@ import numpy as np
 
 from .. import native_module
 from ..schema import models, parameters
-from . import (automatic, colours, heaps, lights, mesh_lights, meshes, node_colours, plain_materials, properties,
+from . import (automatic, colours, heaps, lens, lights, mesh_lights, meshes, node_colours, plain_materials, properties,
                scattered, surroundings, textures)
 
 
@@ -98,11 +98,15 @@ class SceneValues:
             field: tuple(automatic.with_model(drawn) for drawn in getattr(self, field))
             for field in ("instances", "heaps")})
 
-    def to_native(self):
-        """The native Scene. Raises native.Error with a sentence that names the datablock at fault."""
+    def to_native(self, materials=None):
+        """The native Scene. materials: {MaterialValues: native.Material} that are made already; takes in the others.
+        Raises native.Error with a sentence that names the datablock at fault."""
         native = native_module.get()
         chosen = self.with_models_chosen()
-        materials = {values: values.to_native(native) for values in chosen.materials}
+        materials = {} if materials is None else materials
+        for values in chosen.materials:
+            if values not in materials:
+                materials[values] = values.to_native(native)
         instances, arrays = ([drawn.to_native(native, materials[drawn.material]) for drawn in group]
                              for group in (chosen.instances, chosen.heaps))
         return native.Scene(
@@ -155,9 +159,10 @@ class Eye(typing.NamedTuple):
     shift_x: float  # of the lens, as a camera has it
 
 
-def camera_from_scene(depsgraph, width, height, camera=None, region=None, eye=None):
+def camera_from_scene(depsgraph, width, height, camera=None, region=None, eye=None, sharp=False):
     """native.Camera of the scene's active camera (or `camera`) for a picture of width x height pixels, or for a Region
-    of it: perspective or orthographic, with sensor fit, shift and pixel aspect as Blender has them; eye: an Eye of it.
+    of it: perspective or orthographic, with sensor fit, shift, pixel aspect and depth of field as Blender has them.
+    eye: an Eye of it. sharp: without depth of field.
     Raises native.Error without a camera, or for one that has no place to look from."""
     native = native_module.get()
     scene = depsgraph.scene
@@ -174,12 +179,13 @@ def camera_from_scene(depsgraph, width, height, camera=None, region=None, eye=No
     if region is not None:
         to_clip = _zoom(region, width, height) @ to_clip
     # A camera's scale does not scale its view.
-    to_world = np.array((eye.to_world if eye else camera.matrix_world).normalized(), dtype=np.float64)
+    placed = (eye.to_world if eye else camera.matrix_world).normalized()
+    to_world = np.array(placed, dtype=np.float64)
     if not np.isfinite(to_world).all() or np.linalg.det(to_world) == 0.0:
         raise native.Error(f"Camera '{camera.name}' is scaled to nothing, or its place is no number: clear its scale "
                            "(Object > Clear > Scale) and place it anew.")
     try:
-        return native.Camera(np.linalg.inv(to_world), to_clip)
+        return native.Camera(np.linalg.inv(to_world), to_clip, None if sharp else lens.of_camera(camera, placed))
     except native.Error as error:
         raise native.Error(f"Camera '{camera.name}' has a lens that shows nothing: check its focal length or "
                            "orthographic scale, its sensor and its clip distances.") from error
@@ -236,6 +242,21 @@ def read_scene(depsgraph, cache, varied=True):
     reader = _Reader(depsgraph, cache, varied)
     reader.read_all(depsgraph)
     return reader.scene_values(depsgraph.scene)
+
+
+def read_scene_in_motion(depsgraph, cache):
+    """(SceneValues, function). The function reads SceneValues of the same dependency graph at another time, of which
+    the places alone count: materials are those of before."""
+    first = _Reader(depsgraph, cache, True)
+    first.read_all(depsgraph)
+
+    def read_again():
+        cache.forget()  # addresses of shapes that were evaluated anew
+        reader = _Reader(depsgraph, cache, True, first)
+        reader.read_all(depsgraph)
+        return reader.places()
+
+    return first.scene_values(depsgraph.scene), read_again
 
 
 def with_new_materials(values, depsgraph):
@@ -299,15 +320,16 @@ def _in_slot(evaluated_object, slot):
 class _Reader:
     """Collects what one pass over the instances finds; complaints come once, however often an object is instanced."""
 
-    def __init__(self, depsgraph, cache, varied):
+    def __init__(self, depsgraph, cache, varied, before=None):
         self._millimetres_per_unit = depsgraph.scene.mesograin.millimetres_per_unit
         # An artist who drags waits for what is painted.
         self._side = textures.COARSE if depsgraph.mode == "VIEWPORT" else textures.SIDE
         self._world_side = _world_side(depsgraph)
         self._cache = cache
         self._varied = varied
-        self._materials = {}
-        self._by_instance = {}  # {key of a material: the input that says the reflectance of each instance}
+        self._materials = before._materials if before else {}
+        # {key of a material: the input that says the reflectance of each instance}
+        self._by_instance = before._by_instance if before else {}
         self._instances = []
         self._groups = []  # heaps.Group of each shape that is read with all its placings at once
         self._lights = []
@@ -409,6 +431,11 @@ class _Reader:
                 self._instances.extend(InstanceValues(heap.name, heap.mesh, material, placing)
                                        for placing, material in zip(heap.each(), heap.materials()))
         return tuple(found)
+
+    def places(self):
+        """SceneValues of what stands where, and nothing else."""
+        gathered = self._gather()
+        return SceneValues(tuple(self._instances), (), (), heaps=gathered)
 
     def scene_values(self, scene):
         gathered = self._gather()

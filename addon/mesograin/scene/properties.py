@@ -61,16 +61,42 @@ class SceneProperties(bpy.types.PropertyGroup):
     exchange: _property(parameters.SCENE["exchange"])
 
 
-_register_classes, _unregister_classes = bpy.utils.register_classes_factory((MaterialProperties, SceneProperties))
+PORTIONS = {
+    "diffuse": "What lights do on surfaces that are no grains, once",
+    "specular": "What surfaces of facets mirror of lights and the world: highlights, coats and metal",
+    "subsurface": "What lights do in grains, scattered many times; all orders where a model does not tell them apart",
+    "single_scattering": "What lights do in grains, scattered once, where a model tells it apart",
+    "transmission": "The world seen through clear grains",
+    "exchange": "What grains and walls send each other",
+}
+"""Of a picture's light, that Blender has no pass of its own for; as the native module names them."""
+
+
+def _portion(name, sentence):
+    return BoolProperty(name=name.replace("_", " ").title(), default=False, update=_tag,
+                        description=f"Deliver a pass of its own: {sentence[0].lower()}{sentence[1:]}")
+
+
+class ViewLayerProperties(bpy.types.PropertyGroup):
+    """`view_layer.mesograin`: which portions of a picture's light are passes of a final render."""
+
+    # A view layer is no datablock: it is the scene that changes.
+    __annotations__ = {f"use_pass_{name}": _portion(name, sentence) for name, sentence in PORTIONS.items()}
+
+
+_register_classes, _unregister_classes = bpy.utils.register_classes_factory(
+    (MaterialProperties, SceneProperties, ViewLayerProperties))
 
 
 def register():
     _register_classes()
     bpy.types.Material.mesograin = PointerProperty(type=MaterialProperties)
     bpy.types.Scene.mesograin = PointerProperty(type=SceneProperties)
+    bpy.types.ViewLayer.mesograin = PointerProperty(type=ViewLayerProperties)
 
 
 def unregister():
+    del bpy.types.ViewLayer.mesograin
     del bpy.types.Scene.mesograin
     del bpy.types.Material.mesograin
     _unregister_classes()

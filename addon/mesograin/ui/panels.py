@@ -3,7 +3,7 @@ import textwrap
 
 import bpy
 
-from .. import native_module
+from .. import compat, native_module
 from ..engine import engine, passes, status
 from ..scene import export, plain_materials
 from ..schema import models, parameters
@@ -231,6 +231,25 @@ class MESOGRAIN_PT_sampling(MesograinPanel, bpy.types.Panel):
         layout.column(heading="Film").prop(context.scene.render, "film_transparent", text="Transparent")
 
 
+class MESOGRAIN_PT_motion_blur(MesograinPanel, bpy.types.Panel):
+    bl_label = "Motion Blur"
+    bl_context = "render"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw_header(self, context):
+        self.layout.prop(context.scene.render, "use_motion_blur", text="")
+
+    def draw(self, context):
+        layout, render = self.layout, context.scene.render
+        layout.use_property_split = True
+        layout.active = render.use_motion_blur
+        owner = compat.owner_of_motion_blur_position(context.scene)
+        if owner is not None:
+            layout.prop(owner, "motion_blur_position", text="Position")
+        layout.prop(render, "motion_blur_shutter", text="Shutter")
+        layout.template_curve_mapping(render, "motion_blur_shutter_curve")
+
+
 class MESOGRAIN_PT_passes(MesograinPanel, bpy.types.Panel):
     bl_label = "Passes"
     bl_context = "view_layer"
@@ -244,6 +263,11 @@ class MESOGRAIN_PT_passes(MesograinPanel, bpy.types.Panel):
         cycles = getattr(context.view_layer, "cycles", None)
         if cycles is not None:  # which Cycles keeps, where it is enabled
             column.prop(cycles, passes.SAMPLE_COUNT.asked_for.split(".")[1], text=passes.SAMPLE_COUNT.shown)
+            column.prop(cycles, passes.DENOISING_ALBEDO.asked_for.split(".")[1], text="Denoising Data")
+        column = layout.column(heading="Light")
+        for one in passes.PORTIONS.values():
+            *owner, name = one.asked_for.split(".")
+            column.prop(context.view_layer.mesograin if owner else context.view_layer, name, text=one.shown)
         column = layout.column(heading="Cryptomatte")
         for matte in passes.MATTES:
             column.prop(context.view_layer, matte.asked_for, text=matte.label)
@@ -286,5 +310,5 @@ class MESOGRAIN_PT_statistics(MesograinPanel, bpy.types.Panel):
 
 
 register, unregister = bpy.utils.register_classes_factory(
-    (MESOGRAIN_MT_profiles, MESOGRAIN_PT_material, MESOGRAIN_PT_light, MESOGRAIN_PT_sampling, MESOGRAIN_PT_passes,
-     MESOGRAIN_PT_statistics))
+    (MESOGRAIN_MT_profiles, MESOGRAIN_PT_material, MESOGRAIN_PT_light, MESOGRAIN_PT_sampling, MESOGRAIN_PT_motion_blur,
+     MESOGRAIN_PT_passes, MESOGRAIN_PT_statistics))

@@ -9,9 +9,9 @@ AccumulatePass::AccumulatePass()
       resolve_program_("resolve", gl::ShaderSource({"passes/full_screen.vert"}, {}),
                        gl::ShaderSource({"passes/resolve.frag"}, {})) {}
 
-void AccumulatePass::run(const Targets& targets, bool first) {
-  targets.accumulate.bind();
-  if (first) targets.accumulate.clear();
+void AccumulatePass::run(const Targets& targets, const Sum& sum, bool first) {
+  sum.accumulate.bind();
+  if (first) sum.accumulate.clear();
   glDisable(GL_DEPTH_TEST);
   glEnable(GL_BLEND);
   glBlendFunc(GL_ONE, GL_ONE);
@@ -20,13 +20,13 @@ void AccumulatePass::run(const Targets& targets, bool first) {
   full_screen_.draw();
 }
 
-void AccumulatePass::read(const Targets& targets, int samples, float* pixels) {
+void AccumulatePass::read(const Targets& targets, const Sum& sum, int samples, float* pixels) {
   // The sample's texture has the right size and format.
   targets.shade.bind();
   glDisable(GL_DEPTH_TEST);
   glDisable(GL_BLEND);
   resolve_program_.use();
-  resolve_program_.set("sum", targets.sum);
+  resolve_program_.set("sum", sum.texture);
   resolve_program_.set("samples", static_cast<float>(samples));
   full_screen_.draw();
   targets.shade.read(pixels);

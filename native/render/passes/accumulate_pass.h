@@ -11,11 +11,11 @@ class AccumulatePass {
  public:
   AccumulatePass();
 
-  /// The `first` begins a new sum.
-  void run(const Targets& targets, bool first);
+  /// Adds what was shaded. The `first` begins a new sum.
+  void run(const Targets& targets, const Sum& sum, bool first);
 
   /// The mean of so many samples, (height, width, 4), first row at the top.
-  void read(const Targets& targets, int samples, float* pixels);
+  void read(const Targets& targets, const Sum& sum, int samples, float* pixels);
 
  private:
   gl::Program accumulate_program_;

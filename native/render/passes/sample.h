@@ -6,6 +6,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
+#include <optional>
 #include <vector>
 
 #include "render/bake.h"
@@ -15,6 +16,7 @@
 #include "render/go_on.h"
 #include "render/lighting.h"
 #include "render/passes/targets.h"
+#include "render/portion.h"
 #include "scene/camera.h"
 
 namespace mesograin::render {
@@ -38,7 +40,7 @@ struct Sample {
   const Lighting& lighting;
   const Exchange& exchange;
   Targets& targets;
-  const scene::Camera& camera;
+  scene::Camera camera;          ///< a pinhole
   const Unwrapping* unwrapping;  ///< null for what the camera sees
   glm::ivec2 size;
   std::uint32_t index;
@@ -48,6 +50,7 @@ struct Sample {
   bool cast;  ///< rays find what is seen of arrays
   Mirrors mirrors;
   const GoOn& go_on;
+  std::optional<Portion> portion{};  ///< of its light, that is shaded alone
 
   /// The camera from `origin` and 1; for a parallel projection the direction towards it and 0.
   glm::vec4 viewer(const glm::dvec3& origin) const;

@@ -71,7 +71,8 @@ void ShadePass::clear(const Sample& sample) {
   }
   sample.targets.shade.clear_colour();
   if (sample.mirrors == Mirrors::hindered) sample.targets.mirror->shade.clear_colour();
-  if (sample.lighting.world().seen) draw_background(sample);
+  if (sample.lighting.world().seen && sample.portion.value_or(Portion::environment) == Portion::environment)
+    draw_background(sample);
 }
 
 void ShadePass::draw_background(const Sample& sample) {
@@ -91,14 +92,16 @@ void ShadePass::shade_seen(const Sample& sample, const ShadowPass& shadows, cons
   glDisable(GL_BLEND);
   for (std::size_t unit = first; unit < std::min(first + most_in_stencil, sample.content.units()); ++unit) {
     const DeviceMaterial& material = sample.content.material(unit);
-    const gl::Program& program = prepare(sample, material,
-                                         {.instanced = sample.content.draw(unit) == nullptr,
-                                          .shadows = shadows.kind(sample.content),
-                                          .gathered = gathered.ran(),
-                                          .mirrors_world = sample.mirrors != Mirrors::none});
+    const gl::Program& program =
+        prepare(sample, material,
+                {.instanced = sample.content.draw(unit) == nullptr,
+                 .shadows = shadows.kind(sample.content),
+                 .gathered = gathered.ran(),
+                 .mirrors_world = sample.mirrors != Mirrors::none && sample.portion != Portion::normal,
+                 .portion = sample.portion});
     shadows.bind(program);
     gathered.bind(program);
-    const bool mirrors = sample.mirrors == Mirrors::hindered && material.facets();
+    const bool mirrors = sample.mirrors == Mirrors::hindered && material.facets() && sample.portion != Portion::normal;
     (mirrors ? sample.targets.mirror->shade : sample.targets.shade).bind();
     if (const Draw* draw = sample.content.draw(unit))
       confine_to(sample, *draw);
@@ -191,6 +194,7 @@ void ShadePass::set_draw(const Sample& sample, const gl::Program& program, const
   program.offer("grain_reach", static_cast<float>(draw.reach));
   program.offer("grain_to_prototype", glm::mat3(draw.grain_to_prototype));
   program.offer("place_of_grain", glm::vec3(draw.centre - content.anchor()));
+  program.offer("to_settled", glm::vec3(draw.settled - draw.centre));
   program.offer("object_number",
                 static_cast<int>(content.object_number(static_cast<std::size_t>(&draw - content.draws().data()))));
   program.offer("shades_itself", static_cast<int>(content.shades_itself(draw)));

@@ -23,6 +23,14 @@ struct MirrorTargets {
   gl::Framebuffer shade;
 };
 
+/// Samples, added up.
+struct Sum {
+  Sum(int width, int height) : texture(GL_RGBA32F, width, height), accumulate({&texture}) {}
+
+  gl::Texture texture;
+  gl::Framebuffer accumulate;
+};
+
 /// The passes of one sample share the depth and its stencil.
 struct Targets {
   /// `textured`: with where on their pictures surfaces are.
@@ -32,21 +40,19 @@ struct Targets {
         coordinates(textured ? std::make_optional<gl::Texture>(GL_RGBA32F, width, height) : std::nullopt),
         depth(GL_DEPTH32F_STENCIL8, width, height),
         sample(GL_RGBA32F, width, height),
-        sum(GL_RGBA32F, width, height),
         surfaces(textured ? gl::Framebuffer({&position, &normal, &*coordinates}, &depth)
                           : gl::Framebuffer({&position, &normal}, &depth)),
         shade({&sample}, &depth),
-        accumulate({&sum}) {}
+        sum(width, height) {}
 
   gl::Texture position;
   gl::Texture normal;
   std::optional<gl::Texture> coordinates;
   gl::Texture depth;
   gl::Texture sample;  ///< free between samples
-  gl::Texture sum;
   gl::Framebuffer surfaces;
   gl::Framebuffer shade;
-  gl::Framebuffer accumulate;
+  Sum sum;
   std::optional<MirrorTargets> mirror;  ///< of a sample that has Mirrors::hindered
 };
 

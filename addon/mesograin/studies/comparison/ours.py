@@ -31,7 +31,7 @@ class Ours:
         # What is behind the grains is no part of a comparison: alpha tells where they are.
         self._scene = dataclasses.replace(scene, world=dataclasses.replace(scene.world, seen=False))
         self._views = self._all_views = [native.View(*size, seed=seed) for seed in range(parts)]
-        self._camera = export.camera_from_scene(depsgraph, *size)
+        self._camera = export.camera_from_scene(depsgraph, *size, sharp=True)
         self.warnings = scene.warnings
 
     def parameters(self, chosen):
