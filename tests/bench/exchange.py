@@ -113,11 +113,13 @@ def drag(native, view, of, scene, seconds):
         here = native.Scene(arrays=[heap.with_material(material)], lights=scene.lights, world=scene.world,
                             exchange="order_1")
         view.set_scene(here)
-        while time.perf_counter() < began + step * DRAG_STEP:
+        while True:  # once at least: a material may take as long as a step
             if view.take_news():
                 now = time.perf_counter()
                 waits.append(1e3 * (now - latest))
                 latest = now
+            if time.perf_counter() >= began + step * DRAG_STEP:
+                break
             time.sleep(0.001)
     waits.append(1e3 * (time.perf_counter() - latest))
     seen = blocks(view)
