@@ -108,10 +108,12 @@ std::vector<float> picture(bool array, render::Visibility visibility, const Came
   DirectionalLight sun;
   sun.direction_to_light = glm::normalize(glm::dvec3(1, 1, 2));
   sun.irradiance = glm::dvec3(3.0);
-  std::vector<glm::dmat4> matrices;
-  for (int i = 0; i < 12; ++i)
-    matrices.push_back(glm::scale(
-        glm::translate(glm::dmat4(1.0), glm::dvec3(i % 4 - 1.5, i / 4 - 1.0, 0.8 * (i % 3) - 2.0)), glm::dvec3(0.5)));
+  std::vector<glm::dmat4> matrices(12);
+  for (int i = 0; i < 12; ++i) {
+    const int row = i / 4;
+    const glm::dvec3 middle(i % 4 - 1.5, row - 1.0, 0.8 * (i % 3) - 2.0);
+    matrices[static_cast<std::size_t>(i)] = glm::scale(glm::translate(glm::dmat4(1.0), middle), glm::dvec3(0.5));
+  }
   Scene scene{{}, {sun}};
   if (array) {
     scene.arrays.emplace_back(ball, material, matrices);
