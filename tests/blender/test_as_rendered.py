@@ -7,7 +7,6 @@ from cycles_scenes import make_sphere
 from test_export import add_cube, add_mesh_object, add_object
 
 from mesograin.cycles.cache import Cache
-from mesograin.engine import engine
 from mesograin.scene import as_rendered, export, meshes
 from mesograin.studies.baking import surface
 from mesograin.studies.comparison import progress, run
@@ -81,11 +80,12 @@ def test_it_is_what_a_render_shows(monkeypatch):
     seen = []
 
     def remember(depsgraph, cache):
-        seen.append(read(depsgraph, cache))
-        return seen[-1]
+        values, read_again = read_in_motion(depsgraph, cache)
+        seen.append(values)
+        return values, read_again
 
-    read = export.read_scene
-    monkeypatch.setattr(engine.export, "read_scene", remember)
+    read, read_in_motion = export.read_scene, export.read_scene_in_motion
+    monkeypatch.setattr(export, "read_scene_in_motion", remember)
     bpy.ops.render.render()
     monkeypatch.undo()
     before = flags()
