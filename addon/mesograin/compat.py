@@ -45,14 +45,6 @@ def borrowed_panels():
             yield panel
 
 
-def new_group_socket(tree, name, in_out, kind):
-    """Gives a node group an input or output, `in_out` INPUT or OUTPUT."""
-    if hasattr(tree, "interface"):
-        tree.interface.new_socket(name, in_out=in_out, socket_type=kind)
-    else:
-        (tree.inputs if in_out == "INPUT" else tree.outputs).new(kind, name)
-
-
 def ask_for_layers(image_settings):
     """Makes a render's file an EXR of one part that holds many layers."""
     if hasattr(image_settings, "media_type"):  # which has become a choice of its own

@@ -10,7 +10,7 @@ from mesograin.cycles import reference_cache
 from mesograin.cycles.cache import DEFAULT_LIMIT
 from mesograin.studies import scripting
 from mesograin.ui.compare_panel import properties
-from mesograin.ui.compare_panel.session import folder, session
+from mesograin.ui.compare_panel.session import session
 from mesograin.ui.side_task import pictures
 from mesograin.ui.side_task.session import Session
 
@@ -42,11 +42,11 @@ def test_settings_become_arguments_in_the_order_of_the_tables(settings):
 
 def test_results_go_beside_the_file_or_last_as_long_as_blender(settings, tmp_path):
     scene = bpy.context.scene
-    assert folder(scene) == pathlib.Path(bpy.app.tempdir) / "comparison"
+    assert session.folder(scene) == pathlib.Path(bpy.app.tempdir) / "comparison"
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "grain.blend"))
-    assert folder(scene) == tmp_path / "comparison"
+    assert session.folder(scene) == tmp_path / "comparison"
     settings.out = str(tmp_path / "mine")
-    assert folder(scene) == tmp_path / "mine"
+    assert session.folder(scene) == tmp_path / "mine"
 
 
 def test_without_a_window_the_button_names_the_function():

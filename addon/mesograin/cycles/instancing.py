@@ -44,8 +44,8 @@ class Heap:
 
     def _nodes(self, prototype):
         tree = self._own(bpy.data.node_groups.new("Mesograin heap", "GeometryNodeTree"))
-        compat.new_group_socket(tree, "Geometry", "INPUT", "NodeSocketGeometry")
-        compat.new_group_socket(tree, "Geometry", "OUTPUT", "NodeSocketGeometry")
+        compat.add_group_socket(tree, "Geometry", "INPUT", "NodeSocketGeometry")
+        compat.add_group_socket(tree, "Geometry", "OUTPUT", "NodeSocketGeometry")
         points, instances = tree.nodes.new("NodeGroupInput"), tree.nodes.new("NodeGroupOutput")
         place, shape = tree.nodes.new("GeometryNodeInstanceOnPoints"), tree.nodes.new("GeometryNodeObjectInfo")
         shape.transform_space = "ORIGINAL"

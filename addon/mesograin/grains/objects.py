@@ -65,8 +65,8 @@ def add_pile(placings, shapes, name="Pile"):
 def _instancing(collection):
     """A node group that puts an object of a collection at each point, as its attributes say."""
     tree = bpy.data.node_groups.new(collection.name, "GeometryNodeTree")
-    compat.new_group_socket(tree, "Geometry", "INPUT", "NodeSocketGeometry")
-    compat.new_group_socket(tree, "Geometry", "OUTPUT", "NodeSocketGeometry")
+    compat.add_group_socket(tree, "Geometry", "INPUT", "NodeSocketGeometry")
+    compat.add_group_socket(tree, "Geometry", "OUTPUT", "NodeSocketGeometry")
     nodes, links = tree.nodes, tree.links
     begin, end = nodes.new("NodeGroupInput"), nodes.new("NodeGroupOutput")
     shapes, instances = nodes.new("GeometryNodeCollectionInfo"), nodes.new("GeometryNodeInstanceOnPoints")

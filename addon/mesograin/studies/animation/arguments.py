@@ -2,10 +2,10 @@
 """See `build` and `build_frames`."""
 
 import argparse
-import os
 import re
 from pathlib import Path
 
+from ...command_line import batch
 from ...command_line.parser import Parser
 
 
@@ -20,23 +20,12 @@ def build():
     )
     made.add_argument("scene", type=Path, metavar="SCENE.blend", help="the scene")
     _add_frames(made)
-    made.add_argument(
-        "--jobs", type=int, default=1, metavar="N", help="Blenders side by side (default: 1, which takes all cores)"
-    )
-    made.add_argument(
-        "--blender",
-        default=os.environ.get("MESOGRAIN_BLENDER", "blender"),
-        metavar="PATH",
-        help="Blender's executable (default: MESOGRAIN_BLENDER, or blender)",
-    )
+    batch.add_jobs(made, "Blenders side by side (default: 1, which takes all cores)")
+    batch.add_blender(made)
     made.add_argument("--part", type=part, default=None, metavar="I/N",
                       help="render part I of N alone, counted from 0: every Nth frame")
     made.add_argument("--list", action="store_true", help="print frame, file and whether it is there; render none")
-    made.add_argument(
-        "--emit",
-        choices=("slurm", "parallel"),
-        help="print a script that renders the frames as a Slurm job array or under GNU parallel; render none",
-    )
+    batch.add_emit(made, "print a script that renders the frames")
     made.add_argument("--tasks", type=int, default=None, metavar="N",
                       help="with --emit: into how many tasks the frames are divided (default: one each, at most 1000)")
     return made

@@ -1,16 +1,20 @@
 # The command line of `animate`: Blenders that render frames, watched, with the time that is left; or a script for many.
 """Run as `python3 command.py SCENE.blend`; see --help."""
+import functools
 import shutil
-import signal
 import sys
 import time
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[3]))
 
+from mesograin.command_line import batch  # noqa: E402
+from mesograin.command_line.batch import DONE, FAILED, USAGE  # noqa: E402
 from mesograin.studies.animation import arguments, emit, watched  # noqa: E402
+from mesograin.studies.comparison.progress import duration  # noqa: E402
 
-DONE, FAILED, USAGE, INTERRUPTED = 0, 1, 2, 130
+NAME = "animate"
+complain = functools.partial(batch.complain, NAME)
 
 
 def main(words):
@@ -67,34 +71,12 @@ def render(chosen):
                 what = f"frame {event['done']}: {event['file']}"
             else:
                 what = f"frame {event['failed']} failed: {event['why']}"
-            print(f"[{done}/{count}, about {in_words(left)} left] {what}", flush=True)
+            print(f"[{done}/{count}, about {duration(left)} left] {what}", flush=True)
         elif event.get("code") and not (event["code"] == FAILED and failed):
             code = FAILED
             complain(f"Blender ended with exit code {event['code']}; it last said: {event['last']}", code)
     return FAILED if failed else code
 
 
-def in_words(seconds):
-    minutes, rest = divmod(round(seconds), 60)
-    if minutes < 60:
-        return f"{minutes} min {rest:02d} s" if minutes else f"{rest} s"
-    return f"{minutes // 60} h {minutes % 60:02d} min"
-
-
-def complain(sentence, code):
-    print(f"animate: {sentence}", file=sys.stderr)
-    return code
-
-
-def interrupt(*_):
-    raise KeyboardInterrupt
-
-
 if __name__ == "__main__":
-    # A batch system ends a job so.
-    signal.signal(signal.SIGTERM, interrupt)
-    try:
-        sys.exit(main(sys.argv[1:]))
-    except KeyboardInterrupt:
-        sys.exit(complain("Interrupted; frames that are done stay, and the same command goes on from there.",
-                          INTERRUPTED))
+    batch.main(NAME, main, "Interrupted; frames that are done stay, and the same command goes on from there.")

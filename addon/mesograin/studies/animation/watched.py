@@ -3,12 +3,12 @@
 import json
 import os
 import queue
-import shutil
 import signal
 import subprocess
 import threading
 from pathlib import Path
 
+from ...command_line import batch
 from . import frames
 from .arguments import words_of
 
@@ -27,7 +27,8 @@ def side_by_side(chosen, jobs):
     told, partials, running, readers = queue.SimpleQueue(), set(), [], []
     try:
         for words in jobs:
-            running.append(_start(chosen, words))
+            running.append(batch.start(chosen.blender, Path(frames.__file__).resolve(),
+                                       ["--scene-file", str(chosen.scene), *words_of(chosen), *words]))
             readers.append(threading.Thread(target=_read, args=(running[-1], told, partials), daemon=True))
             readers[-1].start()
         left = len(jobs)
@@ -41,15 +42,6 @@ def side_by_side(chosen, jobs):
             reader.join(PATIENCE_SECONDS)
         for partial in partials:
             partial.unlink(missing_ok=True)
-
-
-def _start(chosen, words):
-    command = [chosen.blender, "--background", "--factory-startup", "--python-exit-code", "1", "--python",
-               str(Path(frames.__file__).resolve()), "--", "--scene-file", str(chosen.scene), *words_of(chosen), *words]
-    if shutil.which("setpriv"):  # it ends when this process is killed and cannot end it
-        command = ["setpriv", "--pdeathsig", "KILL", *command]
-    return subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-                            text=True, errors="replace", start_new_session=True)
 
 
 def _read(process, told, partials):

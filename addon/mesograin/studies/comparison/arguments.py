@@ -1,7 +1,6 @@
 # The command line of `compare`, readable without Blender.
 """See `parse`."""
 
-import argparse
 from pathlib import Path
 
 from ...command_line import parser as shared
@@ -117,7 +116,7 @@ def build():
     parser.add_argument(
         "--mask",
         nargs="+",
-        type=_mask,
+        type=mask_names.parse,
         default=[],
         dest="masks",
         metavar="NAME",
@@ -148,13 +147,6 @@ def parse(words):
     if chosen.controls and chosen.seeds < 2:
         parser.error("--controls needs --seeds 2 or more, since one does not tell its noise")
     return chosen
-
-
-def _mask(text):
-    try:
-        return mask_names.parse(text)
-    except mask_names.MaskError as error:
-        raise argparse.ArgumentTypeError(str(error)) from error
 
 
 if __name__ == "__main__":

@@ -1,10 +1,12 @@
 # The masks of a comparison as words, readable without Blender.
 """See `parse`."""
 
+import argparse
+
 NAMES = ("silhouette", "crop", "mean_deviation", "otsu")
 
 
-class MaskError(ValueError):
+class MaskError(argparse.ArgumentTypeError):
     """A mask's name is not understood; one sentence."""
 
 

@@ -104,15 +104,12 @@ def _count(text):
 
 def _mask(text):
     """('crop', four numbers) or ('file', path)."""
-    if not text.startswith("crop"):
-        path = Path(text)
-        if not path.is_file():
-            raise argparse.ArgumentTypeError(f"crop:LEFT,TOP,RIGHT,BOTTOM or a picture is needed, '{text}' came")
-        return "file", path
-    try:
+    if text.startswith("crop:"):
         return mask_names.parse(text)
-    except mask_names.MaskError as error:
-        raise argparse.ArgumentTypeError(str(error)) from error
+    path = Path(text)
+    if not path.is_file():
+        raise argparse.ArgumentTypeError(f"crop:LEFT,TOP,RIGHT,BOTTOM or a picture is needed, '{text}' came")
+    return "file", path
 
 
 if __name__ == "__main__":

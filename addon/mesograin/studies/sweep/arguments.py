@@ -1,9 +1,9 @@
 # The command line of `sweep`, readable without Blender.
 """See `build`."""
 
-import os
 from pathlib import Path
 
+from ...command_line import batch
 from ...command_line.parser import Parser
 
 
@@ -17,15 +17,8 @@ def build():
     )
     made.add_argument("file", help="the sweep, a TOML file (docs/sweeps.md)")
     made.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder for cases, tables and plots")
-    made.add_argument(
-        "--jobs", type=int, default=1, metavar="N", help="cases side by side (default: 1; Cycles uses all cores)"
-    )
-    made.add_argument(
-        "--blender",
-        default=os.environ.get("MESOGRAIN_BLENDER", "blender"),
-        metavar="PATH",
-        help="Blender's executable (default: MESOGRAIN_BLENDER, or blender)",
-    )
+    batch.add_jobs(made, "cases side by side (default: 1; Cycles uses all cores)")
+    batch.add_blender(made)
     made.add_argument("--case", type=int, metavar="I", help="run case I alone, counted from 0, and do not merge")
     made.add_argument(
         "--group",
@@ -36,9 +29,5 @@ def build():
     made.add_argument("--no-report", action="store_true", help="write the tables, no page and no plots")
     made.add_argument("--list", action="store_true", help="print the cases and run none")
     made.add_argument("--merge", action="store_true", help="merge what is there, write the page and run nothing")
-    made.add_argument(
-        "--emit",
-        choices=("slurm", "parallel"),
-        help="write a script that runs the cases as a Slurm job array or under GNU parallel, and run nothing",
-    )
+    batch.add_emit(made, "write a script that runs the cases")
     return made

@@ -1,18 +1,21 @@
 # The command line of `sweep`: reads the plan, runs what is missing, merges and writes the page.
 """Run as `python3 command.py FILE.toml --out DIR`; see --help."""
+import functools
 import shlex
 import shutil
-import signal
 import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[3]))
 
+from mesograin.command_line import batch  # noqa: E402
+from mesograin.command_line.batch import DONE, FAILED, INTERRUPTED, UNWRITABLE, USAGE  # noqa: E402
 from mesograin.studies.comparison import report_page  # noqa: E402
 from mesograin.studies.sweep import arguments, emit, merge, plan, run  # noqa: E402
 from mesograin.studies.sweep.folder import Folder  # noqa: E402
 
-DONE, FAILED, USAGE, UNWRITABLE, INTERRUPTED = 0, 1, 2, 3, 130
+NAME = "sweep"
+complain = functools.partial(batch.complain, NAME)
 
 
 def main(words):
@@ -98,19 +101,5 @@ def write_script(chosen, swept):
     return DONE
 
 
-def complain(sentence, code):
-    print(f"sweep: {sentence}", file=sys.stderr)
-    return code
-
-
-def interrupt(*_):
-    raise KeyboardInterrupt
-
-
 if __name__ == "__main__":
-    # A batch system ends a job so.
-    signal.signal(signal.SIGTERM, interrupt)
-    try:
-        sys.exit(main(sys.argv[1:]))
-    except KeyboardInterrupt:
-        sys.exit(complain("Interrupted.", INTERRUPTED))
+    batch.main(NAME, main, "Interrupted.")

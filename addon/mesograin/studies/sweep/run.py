@@ -3,12 +3,13 @@
 import concurrent.futures
 import os
 import queue
-import shutil
 import signal
-import subprocess
 import threading
 import time
 from pathlib import Path
+
+from ...command_line import batch
+from ..comparison.progress import duration
 
 COMPARE = Path(__file__).resolve().parents[1] / "comparison" / "command.py"
 
@@ -32,21 +33,6 @@ def arguments(case, out):
         text = ",".join(repr(channel) for channel in value) if isinstance(value, list) else str(value)
         words += ["--set", f"{name}={text}"]
     return words
-
-
-def command(blender, case, out):
-    return [
-        blender,
-        "--background",
-        "--factory-startup",
-        "--python-exit-code",
-        "1",
-        "--python",
-        str(COMPARE),
-        "--",
-        case.scene,
-        *arguments(case, out),
-    ]
 
 
 def run(plan, groups, folder, blender, jobs=1, tell=print):
@@ -104,7 +90,7 @@ def _run_case(case, folder, blender, processes):
         sentence = None
         if not folder.finished(case):  # another sweep may have done it meanwhile
             out = folder.begin(case)
-            code, log = processes.run(command(blender, case, out))
+            code, log = processes.run(blender, COMPARE, [case.scene, *arguments(case, out)])
             sentence = _complaint(case, code, log)
             if sentence is None:
                 folder.finish(case)
@@ -140,14 +126,12 @@ class _Pace:
         """'[3/12, about 40 s left]'."""
         self.done += 1
         self.seconds += seconds
-        left = round(self.seconds / self.done * (self.total - self.done) / self.jobs)
-        text = f"{left} s" if left < 60 else f"{left // 60} min {left % 60:02d} s"
-        return f"[{self.done}/{self.total}, about {text} left]"
+        left = self.seconds / self.done * (self.total - self.done) / self.jobs
+        return f"[{self.done}/{self.total}, about {duration(left)} left]"
 
 
 class _Processes:
-    """Children in sessions of their own, so that ending the sweep ends every one of them; where the system can, they
-    also end when the sweep is killed and cannot end them."""
+    """Blenders that run, so that ending the sweep ends every one of them."""
 
     def __init__(self):
         self._running = set()
@@ -159,20 +143,10 @@ class _Processes:
         if self._ended:
             raise Interrupted
 
-    def run(self, words):
-        if shutil.which("setpriv"):
-            words = ["setpriv", "--pdeathsig", "KILL", *words]
+    def run(self, blender, script, words):
         with self._lock:
             self.go_on()
-            process = subprocess.Popen(
-                words,
-                stdin=subprocess.DEVNULL,
-                stdout=subprocess.PIPE,
-                stderr=subprocess.STDOUT,
-                text=True,
-                errors="replace",
-                start_new_session=True,
-            )
+            process = batch.start(blender, script, words)
             self._running.add(process)
         try:
             log, _ = process.communicate()

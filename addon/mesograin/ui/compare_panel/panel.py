@@ -2,7 +2,6 @@
 import bpy
 
 from ...cycles import reference_cache
-from ...studies.background import job as jobs
 from .. import panels
 from ..side_task import panel as side_task
 from ..side_task import results
@@ -26,15 +25,8 @@ def draw_settings(layout, context):
 
 
 def draw_job(layout, context):
-    """The button, or how far the job is; then what went wrong or was left out."""
-    job = session.task
-    detail = f"{job.step.number} of {job.step.count}: {job.step.what}" if job is not None and job.step else ""
-    side_task.draw_task(layout, context, session, operators.MESOGRAIN_OT_compare, operators.MESOGRAIN_OT_cancel_compare,
-                        "Blender is starting", detail, icon="RESTRICT_RENDER_OFF")
-    if not session.error and job is not None and job.state == jobs.CANCELLED:
-        layout.label(text="Cancelled; rendered references are kept.", icon="INFO")
-    for sentence in job.sentences if job is not None else ():
-        panels.draw_sentence(layout, context, sentence)
+    side_task.draw_job(layout, context, session, operators.MESOGRAIN_OT_compare, operators.MESOGRAIN_OT_cancel_compare,
+                       "rendered references are kept.", icon="RESTRICT_RENDER_OFF")
 
 
 def draw_results(layout, context):

@@ -4,7 +4,6 @@ import math
 import bpy
 
 from ...schema import models
-from ...studies.background import job as jobs
 from ...studies.match import files
 from .. import panels
 from ..side_task import panel as side_task
@@ -29,18 +28,6 @@ def draw_settings(layout, context):
     column.column(heading="Exposure").prop(asked, "free_exposure", text="Unknown")
     column.prop(asked, "size")
     column.prop(asked, "out")
-
-
-def draw_job(layout, context):
-    """The button, or how far the job is; then what went wrong or was left out."""
-    job = session.task
-    detail = f"{job.step.number} of about {job.step.count}: {job.step.what}" if job is not None and job.step else ""
-    side_task.draw_task(layout, context, session, operators.MESOGRAIN_OT_match, operators.MESOGRAIN_OT_cancel_match,
-                        "Blender is starting", detail, icon="EYEDROPPER")
-    if not session.error and job is not None and job.state == jobs.CANCELLED:
-        layout.label(text="Cancelled; the next goes on from here.", icon="INFO")
-    for sentence in job.sentences if job is not None else ():
-        panels.draw_sentence(layout, context, sentence)
 
 
 def draw_results(layout, context):
@@ -90,7 +77,9 @@ class MESOGRAIN_PT_match(panels.MesograinPanel, bpy.types.Panel):
 
     def draw(self, context):
         side_task.draw_settings(self.layout, context, session, draw_settings)
-        draw_job(self.layout, context)
+        side_task.draw_job(self.layout, context, session, operators.MESOGRAIN_OT_match,
+                           operators.MESOGRAIN_OT_cancel_match, "the next goes on from here.", about="about ",
+                           icon="EYEDROPPER")
         draw_results(self.layout, context)
 
 

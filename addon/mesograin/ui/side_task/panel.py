@@ -1,5 +1,6 @@
 # How a long task is shown: its settings, the button that starts it or how far it is, and why there is none.
 from ... import compat
+from ...studies.background import job as jobs
 from ...studies.comparison.progress import duration
 from .. import panels
 
@@ -30,3 +31,15 @@ def draw_task(layout, context, session, start, cancel, before_first_step, detail
         row.operator(start.bl_idname, **button)
     if session.error:
         panels.draw_sentence(layout, context, session.error)
+
+
+def draw_job(layout, context, session, start, cancel, kept, about="", **button):
+    """`draw_task` of a job_session.JobSession, with its step; then what was left out. kept: what is said when it was
+    cancelled. about: before the number of its steps, where that is a guess. button: of `UILayout.operator`."""
+    job = session.task
+    detail = f"{job.step.number} of {about}{job.step.count}: {job.step.what}" if job is not None and job.step else ""
+    draw_task(layout, context, session, start, cancel, "Blender is starting", detail, **button)
+    if not session.error and job is not None and job.state == jobs.CANCELLED:
+        layout.label(text=f"Cancelled; {kept}", icon="INFO")
+    for sentence in job.sentences if job is not None else ():
+        panels.draw_sentence(layout, context, sentence)
