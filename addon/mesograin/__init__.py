@@ -22,8 +22,8 @@ ROOMS = ("compat", "native_module", "grains.shape", "grains.kinds", "grains.pile
          "cycles.reference_cache", "ui.presets", "ui.look", "ui.conversion", "ui.named_things", "ui.panels",
          "ui.node_panels", "ui.notes",
          "ui.grain_tools", "ui.grain_colours", "ui.self_test", "ui.preferences",
-         *(f"ui.side_task.{name}" for name in ("settings", "session", "job_session", "pictures", "operators", "panel",
-                                            "results")),
+         *(f"ui.side_task.{name}"
+           for name in ("settings", "session", "job_session", "pictures", "operators", "panel", "results")),
          *(f"ui.compare_panel.{name}" for name in ("properties", "session", "operators", "panel")),
          *(f"ui.bake_panel.{name}" for name in ("properties", "compared", "session", "operators", "panel")),
          *(f"ui.match_panel.{name}" for name in ("properties", "session", "operators", "panel")))
