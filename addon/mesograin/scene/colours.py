@@ -1,12 +1,16 @@
 # Grains of many colours: what of a material differs from one instance to the next.
+#
+# What is known of n instances comes as {name: numbers}: "random", (n,) from 0 to 1, and by its key each attribute of
+# instancers that was asked for, (n, 4).
 import dataclasses
 
 import bpy
 import numpy as np
-from bpy.props import BoolProperty, EnumProperty, FloatProperty, FloatVectorProperty, PointerProperty
+from bpy.props import (BoolProperty, EnumProperty, FloatProperty, FloatVectorProperty, PointerProperty,
+                       StringProperty)
 
 from .. import compat
-from . import node_colours
+from . import instance_attributes, node_colours
 
 
 @dataclasses.dataclass(frozen=True)
@@ -14,10 +18,11 @@ class Variation:
     """ranges: (parameter, factors at one end, factors at the other end), 3 numbers each."""
 
     ranges: tuple
+    attributes = frozenset()
 
-    def factors(self, randoms):
-        """(parameter, bytes of (n, 3) float32) pairs for (n,) numbers from 0 to 1."""
-        along = randoms[:, None]
+    def factors(self, each):
+        """(parameter, bytes of (n, 3) float32) pairs of n instances."""
+        along = each["random"][:, None]
         return tuple((name, ((1.0 - along) * np.float32(low) + along * np.float32(high)).astype(np.float32).tobytes())
                      for name, low, high in self.ranges)
 
@@ -25,17 +30,40 @@ class Variation:
 @dataclasses.dataclass(frozen=True)
 class NodeVariation:
     """What nodes make of each instance. parameter: which is multiplied; socket: a linked colour input, which outlives
-    no reading; own_colour: of the object that is instanced."""
+    no reading; own: node_colours.of_object's of what is instanced."""
 
     parameter: str
     socket: object
-    own_colour: tuple
+    own: dict
 
-    def factors(self, randoms):
+    @property
+    def attributes(self):
+        """Names of the attributes of instancers that it asks for."""
+        return frozenset(name for kind, name in node_colours.attributes(self.socket) if kind == "INSTANCER")
+
+    def factors(self, each):
         """As Variation's."""
-        places = node_colours.Places(node_colours.of_instances(randoms, self.own_colour))
+        places = node_colours.Places(node_colours.of_instances(each, self.own))
         found = np.clip(node_colours.colour(self.socket, places), 0.0, 100.0).astype(np.float32)
         return ((self.parameter, found.tobytes()),)
+
+
+@dataclasses.dataclass(frozen=True)
+class AttributeVariation:
+    """Attributes of instancers. names: (parameter, name) pairs."""
+
+    names: tuple
+
+    @property
+    def attributes(self):
+        """As NodeVariation's."""
+        return frozenset(name for _, name in self.names)
+
+    def factors(self, each):
+        """As Variation's."""
+        found = ((parameter, each[instance_attributes.key("INSTANCER", name)]) for parameter, name in self.names)
+        return tuple((parameter, np.clip(values[:, :3], 0.0, 100.0).astype(np.float32).tobytes())
+                     for parameter, values in found)
 
 
 def _colour_of_surface(material):
@@ -49,16 +77,20 @@ def _colour_of_surface(material):
     return None
 
 
-def read(material, parameters, own_colour):
-    """Variation or NodeVariation of a bpy.types.Material whose model takes these parameters, or None if it has none.
-    own_colour: of the object that wears it."""
+def read(material, parameters, own):
+    """What varies of a bpy.types.Material whose model takes these parameters, or None. own: node_colours.of_object's of
+    what wears it."""
     settings = material.mesograin_colours
     if not settings.vary:
         return None
     colour = "sigma_a" if "sigma_a" in parameters else "reflectance"
     if settings.source == "NODES":
         socket = _colour_of_surface(material)
-        return None if socket is None else NodeVariation(colour, socket, own_colour)
+        return None if socket is None else NodeVariation(colour, socket, node_colours.complete(own, socket))
+    if settings.source == "ATTRIBUTE":
+        names = ((colour, settings.colour_attribute), ("sigma_s", settings.scattering_attribute))
+        names = tuple((parameter, name) for parameter, name in names if name and parameter in parameters)
+        return AttributeVariation(names) if names else None
     ranges = [(colour, tuple(settings.colour_from), tuple(settings.colour_to))]
     if "sigma_s" in parameters:
         ranges.append(("sigma_s", (settings.scattering_from,) * 3, (settings.scattering_to,) * 3))
@@ -82,8 +114,16 @@ class ColourProperties(bpy.types.PropertyGroup):
     source: EnumProperty(name="Source", default="RANGE", update=_tag, items=(
         ("RANGE", "Range", "Evenly and at random between two ends"),
         ("NODES", "Nodes", "What the colour of the material's Cycles surface is for each: Object Info's Random along a "
-                           "Color Ramp, or its Color"),
+                           "Color Ramp, or its Color, or an Attribute of its instancer"),
+        ("ATTRIBUTE", "Attribute", "What geometry nodes stored by a name on each instance, or a property of that name "
+                                   "of the instancer"),
     ), description="What absorption, or an opaque grain's reflectance, is multiplied by")
+    colour_attribute: StringProperty(name="Absorption", default="", update=_tag,
+                                     description="The attribute of an instance, a number or a colour, by which "
+                                                 "sigma_a, or an opaque grain's reflectance, is multiplied")
+    scattering_attribute: StringProperty(name="Scattering", default="", update=_tag,
+                                         description="The attribute of an instance by which sigma_s is "
+                                                     "multiplied")
     colour_from: FloatVectorProperty(name="Absorption From", default=(0.5, 0.5, 0.5), **_COLOUR,
                                      description="By what sigma_a, or an opaque grain's reflectance, is multiplied at "
                                                  "one end of the range: below 1 a translucent grain is clearer")

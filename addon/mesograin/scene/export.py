@@ -7,10 +7,10 @@ import typing
 import bpy
 import numpy as np
 
-from .. import native_module
+from .. import compat, native_module
 from ..schema import models, parameters
-from . import (automatic, colours, heaps, lens, lights, mesh_lights, meshes, node_colours, plain_materials, properties,
-               scattered, surroundings, textures)
+from . import (automatic, colours, heaps, instance_attributes, lens, lights, mesh_lights, meshes, node_colours,
+               plain_materials, properties, scattered, surroundings, textures)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -348,7 +348,7 @@ class _Reader:
                 found.setdefault(shape, []).append(placings)
         for shape, placings in found.items():
             group = self._group(shape)
-            if group is None or group.needs_random_ids:
+            if group is None or group.varies:
                 return False
             group.place(np.concatenate(placings))
             groups.append(group)
@@ -361,6 +361,7 @@ class _Reader:
         """Of instancers' placings there may be a million: of each is asked only which shape it is, and Blender fills an
         array with their matrices."""
         numbers, groups = {}, []  # {(instanced object, its data): its number}; heaps.Group or None of each
+        worn, readers = [], []  # instance_attributes.Worn of each; objects that tell of instances
         of_instance = array.array("i")
         for instance in depsgraph.object_instances:
             instanced = instance.instance_object
@@ -368,6 +369,8 @@ class _Reader:
             if instance.show_self:
                 shape = instance.object
                 if instanced is None:
+                    if instance_attributes.instancer_of(shape) is not None:
+                        readers.append(shape)
                     self._read(shape, instance.matrix_world)
                 else:
                     # `shape` may be a passing object, in which several that differ in their data follow each other.
@@ -375,13 +378,17 @@ class _Reader:
                     number = numbers.get(key, -1)
                     if number < 0:
                         number = numbers[key] = len(groups)
-                        groups.append(self._group(shape))
+                        group = self._group(shape)
+                        groups.append(group)
+                        worn.append(instance_attributes.Worn(shape, group.attributes if group else ()))
                     if groups[number] is None:
                         self._read(shape, instance.matrix_world)
             of_instance.append(number)
         self._groups += [group for group in groups if group is not None]
         if any(groups):
-            heaps.place(depsgraph.object_instances, np.frombuffer(of_instance, dtype=np.int32), groups)
+            numbers = np.frombuffer(of_instance, dtype=np.int32)
+            for sentence in heaps.place(depsgraph.object_instances, numbers, groups, worn, readers):
+                self._warn(sentence)
 
     def _group(self, shape):
         """heaps.Group of a shape that can be drawn, else None."""
@@ -496,14 +503,23 @@ class _Reader:
             return None
         key = self._key(evaluated_object, slot, material, many=True)
         if key in self._by_instance:
-            return colours.NodeVariation("reflectance", self._by_instance[key], tuple(evaluated_object.color))
+            return colours.NodeVariation("reflectance", self._by_instance[key],
+                                         self._own(evaluated_object, node_colours.attributes(self._by_instance[key])))
         model = dict(self._material(evaluated_object, slot, many=True).values)["model"]
-        variation = colours.read(material, models.CHOICES[model].parameters, tuple(evaluated_object.color))
+        attributes = node_colours.attributes_of(material.node_tree.nodes) if compat.uses_nodes(material) else ()
+        variation = colours.read(material, models.CHOICES[model].parameters, self._own(evaluated_object, attributes))
         if variation is not None and not self._varied:
             self._warn(f"The grains of material '{material.name}' vary in colour, unknown to the reference: "
                        "they are compared in the material's own.")
             return None
         return variation
+
+    @staticmethod
+    def _own(evaluated_object, attributes):
+        """node_colours.of_object's of what is instanced. attributes: (kind, name) pairs; instancers' are each one's."""
+        own = [each for each in attributes if each[0] == "OBJECT"]
+        found = instance_attributes.of_object(evaluated_object, own)
+        return node_colours.of_object(0.5, tuple(evaluated_object.color), tuple(found.items()))
 
     def _key(self, evaluated_object, slot, material, many):
         """What tells how a material looks on an object: its name, then the object's Box and mesh and its colour and
@@ -513,7 +529,8 @@ class _Reader:
             if plain_materials.depends_on_place(material):
                 worn = textures.Box.of(evaluated_object), self._mesh_with(evaluated_object, slot)
             if self._varied and plain_materials.depends_on_object(material):
-                own = (many, evaluated_object.name, tuple(evaluated_object.color))
+                found = instance_attributes.of_object(evaluated_object, plain_materials.attributes(material))
+                own = (many, evaluated_object.name, tuple(evaluated_object.color), tuple(sorted(found.items())))
         return material and material.name_full, worn, own
 
     def _mesh_with(self, evaluated_object, slot):
@@ -532,7 +549,7 @@ class _Reader:
                 box, mesh = worn or (textures.Box(), None)
                 coordinates = plain_materials.AVERAGE
                 if own is not None:
-                    coordinates = None if many else node_colours.of_object(node_colours.random_of(own[1]), own[2])
+                    coordinates = None if many else node_colours.of_object(node_colours.random_of(own[1]), *own[2:])
                 reading = plain_materials.read(material, box, coordinates, self._side, mesh)
                 if reading.by_instance is not None:
                     self._by_instance[key] = reading.by_instance

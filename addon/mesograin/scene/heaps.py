@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 
 from .. import compat, native_module
-from . import meshes
+from . import instance_attributes, meshes
 
 
 MANY = 64
@@ -64,17 +64,19 @@ class Part:
 
 class Group:
     """Where one shape stands. parts: a Part for each of the shape's material slots; none if it is not drawn.
-    needs_random_ids: whether a part's colours vary by Blender's number of each placing."""
+    varies: whether a part's colours differ from placing to placing; attributes: names of those of instancers by which
+    they do."""
 
     def __init__(self, name, parts):
         self.name, self._parts = name, parts
-        self.needs_random_ids = any(part.variation for part in parts)
+        self.varies = any(part.variation for part in parts)
+        self.attributes = frozenset().union(*(part.variation.attributes for part in parts if part.variation))
         self._placings = np.empty((0, 4, 4), dtype=np.float32)
-        self._random_ids = None
+        self._each = None
 
-    def place(self, placings, random_ids=None):
-        """placings: (n, 4, 4) float32, row by row. random_ids: (n,) int32, of groups that need them."""
-        self._placings, self._random_ids = placings, random_ids
+    def place(self, placings, each=None):
+        """placings: (n, 4, 4) float32, row by row. each: {name: (n, ...)} of groups that vary, as colours.py has it."""
+        self._placings, self._each = placings, each
 
     def values(self):
         """([HeapValues], how many placings have no extent or are no numbers)."""
@@ -87,27 +89,33 @@ class Group:
         return heaps, len(placings) - len(kept)
 
     def _factors(self, part, drawn):
-        if part.variation is None or self._random_ids is None:
+        if part.variation is None or self._each is None:
             return ()
-        # As Cycles' Object Info has it: the whole range of 32 bits is from 0 to 1.
-        randoms = self._random_ids.view(np.uint32)[drawn] / np.float32(0xFFFFFFFF)
-        return part.variation.factors(randoms.astype(np.float32))
+        return part.variation.factors({name: values[drawn] for name, values in self._each.items()})
 
 
-def place(instances, numbers, groups):
-    """Gives groups their placings. instances: a dependency graph's; numbers: of each the number of its group in
-    `groups`, a list of Groups and None, or ITSELF or HIDDEN."""
+def place(instances, numbers, groups, shapes, readers):
+    """Gives groups their placings; returns sentences on what is not known of them. instances: a dependency graph's;
+    numbers: of each the number of its group in `groups`, a list of Groups and None, or ITSELF or HIDDEN; shapes:
+    instance_attributes.Worn of each group; readers: as instance_attributes.of_each has them."""
     at_once = compat.frees_first_instances() or (numbers[:2] == ITSELF).all()
     matrices = (_all_matrices if at_once else _each_matrix)(instances, len(numbers))
-    random_ids = None
-    if any(group is not None and group.needs_random_ids for group in groups):
-        random_ids = np.fromiter((each.random_id for each in instances), dtype=np.int32)
+    known, sentences = {}, []
+    if any(group is not None and group.varies for group in groups):
+        numbers_of_each = np.fromiter((each.random_id for each in instances), dtype=np.int32).view(np.uint32)
+        # As Cycles' Object Info has it: the whole range of 32 bits is from 0 to 1.
+        known["random"] = (numbers_of_each / np.float32(0xFFFFFFFF)).astype(np.float32)
+    if any(shape.names for shape in shapes):
+        attributes, sentences = instance_attributes.of_each(instances, numbers, matrices, shapes, readers)
+        known.update(attributes)
     in_order = np.argsort(numbers, kind="stable")
     ends = np.searchsorted(numbers[in_order], np.arange(len(groups) + 1))
     for group, first, end in zip(groups, ends, ends[1:]):
         if group is not None:
             rows = in_order[first:end]
-            group.place(matrices[rows], None if random_ids is None else random_ids[rows])
+            each = {name: values[rows] for name, values in known.items()} if group.varies else None
+            group.place(matrices[rows], each)
+    return sentences
 
 
 def _all_matrices(instances, count):

@@ -4,7 +4,7 @@ import dataclasses
 import bpy
 import numpy as np
 
-from . import images
+from . import images, instance_attributes
 
 
 class Unknown(Exception):
@@ -76,7 +76,7 @@ def feeding(socket):
 
 def by_instance(socket):
     """Whether an input is the same on all of an object, but not for all objects."""
-    places = Places(of_object(0.5, (1.0, 1.0, 1.0)))
+    places = Places(complete(of_object(0.5, (1.0, 1.0, 1.0)), socket))
     try:
         colour(socket, places)
     except Unknown:
@@ -84,14 +84,37 @@ def by_instance(socket):
     return bool(places.used)
 
 
-def of_object(random, own_colour):
-    """Coordinates of one object. random: Object Info's, 0 to 1; own_colour: its own."""
-    return {"random": np.array((random,)), "object colour": np.array((own_colour[:3],))}
+def of_object(random, own_colour, attributes=()):
+    """Coordinates of one object. random: Object Info's, 0 to 1; own_colour: its own; attributes: (name, RGBA) pairs."""
+    return {"random": np.array((random,)), "object colour": np.array((own_colour[:3],)),
+            **{name: np.array((value,)) for name, value in attributes}}
 
 
-def of_instances(randoms, own_colour):
-    """Coordinates of the (n,) instances of one object."""
-    return {"random": randoms, "object colour": np.broadcast_to(np.array(own_colour[:3]), (len(randoms), 3))}
+def of_instances(each, own):
+    """Coordinates of the n instances of one object. each: {name: (n,) or (n, 4)}; own: of_object's."""
+    count = len(each["random"])
+    return {**{name: np.broadcast_to(value, (count, *value.shape[1:])) for name, value in own.items()}, **each}
+
+
+def attributes(socket):
+    """(kind, name) pairs of the Attribute nodes behind an input that ask for what is the same on all of an instance."""
+    link = feeding(socket)
+    if link is None:
+        return frozenset()
+    node = link.from_node
+    own = attributes_of((node,))
+    return own.union(*(attributes(each) for each in node.inputs if each.is_linked))
+
+
+def attributes_of(nodes):
+    """`attributes` of these nodes themselves."""
+    return frozenset((node.attribute_type, node.attribute_name) for node in nodes
+                     if node.type == "ATTRIBUTE" and node.attribute_type in instance_attributes.KINDS)
+
+
+def complete(own, socket):
+    """of_object's coordinates, with 1 in place of attributes that it lacks."""
+    return {**{instance_attributes.key(*each): np.ones((1, 4)) for each in attributes(socket)}, **own}
 
 
 def random_of(name):
@@ -224,10 +247,12 @@ def _object_info(_node, socket, places):
 
 
 def _attribute(node, socket, places):
-    if node.attribute_type not in ("INSTANCER", "OBJECT"):
+    if node.attribute_type not in instance_attributes.KINDS:
         raise Unknown(f"attribute '{node.attribute_name}' of the geometry")
-    value = places.get(f"attribute '{node.attribute_name}'")
-    return _as_colour(value, places.count) if socket.name != "Fac" else value
+    value = places.get(instance_attributes.key(node.attribute_type, node.attribute_name))
+    if socket.name == "Alpha":
+        return value[:, 3]
+    return value[:, :3].mean(axis=1) if socket.name == "Fac" else value[:, :3]
 
 
 def _uv_map(node, _socket, places):

@@ -99,7 +99,7 @@ class Reading:
             return source.from_socket.default_value if source else socket.default_value
         if node_colours.by_instance(socket):
             if self._own is not None:
-                places = node_colours.Places(self._own)
+                places = node_colours.Places(node_colours.complete(self._own, socket))
                 found = node_colours.number(socket, places) if numbers else node_colours.colour(socket, places)[0]
                 return found.tolist()
             if of == "reflectance":
@@ -165,6 +165,11 @@ def depends_on_object(material):
     """Whether objects that wear a plain material may differ."""
     return compat.uses_nodes(material) and any(node.type in ("OBJECT_INFO", "ATTRIBUTE")
                                                for node in material.node_tree.nodes)
+
+
+def attributes(material):
+    """node_colours.attributes of all nodes of a plain material."""
+    return node_colours.attributes_of(material.node_tree.nodes) if compat.uses_nodes(material) else frozenset()
 
 
 def _reflectance(colour):

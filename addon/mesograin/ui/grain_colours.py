@@ -1,9 +1,32 @@
-# Material > Grain > Vary Grains: colours of the grains of a heap.
+# Material > Grain > Vary Grains: colours of the grains of a heap, and what makes attributes of instances known.
 import bpy
 
 from .. import native_module
+from ..scene import instance_attributes
 from ..schema import models
 from .panels import MesograinPanel
+
+
+class MESOGRAIN_OT_add_attribute_reader(bpy.types.Operator):
+    bl_idname = "mesograin.add_attribute_reader"
+    bl_label = "Add Attribute Reader"
+    bl_description = ("Let materials know the attributes that geometry nodes gave instances: adds, for each object "
+                      "that makes such, one that no render shows")
+    bl_options = {"REGISTER", "UNDO"}
+
+    def execute(self, context):
+        depsgraph = context.evaluated_depsgraph_get()
+        instancers = {each.parent.original: None for each in depsgraph.object_instances if each.is_instance}
+        instancers = [each for each in instancers if any(modifier.type == "NODES" for modifier in each.modifiers)]
+        known = {instance_attributes.instancer_of(thing) for thing in context.view_layer.objects}
+        lacking = [each for each in instancers if each not in known]
+        if not lacking:
+            self.report({"INFO"}, "All instances' attributes are known." if instancers else
+                        "No geometry nodes of this scene make instances.")
+            return {"CANCELLED"}
+        for each in lacking:
+            context.scene.collection.objects.link(instance_attributes.add_reader(each))
+        return {"FINISHED"}
 
 
 class MESOGRAIN_PT_colours(MesograinPanel, bpy.types.Panel):
@@ -26,7 +49,12 @@ class MESOGRAIN_PT_colours(MesograinPanel, bpy.types.Panel):
         takes = models.CHOICES[context.material.mesograin.model].parameters
         colour = "Absorption" if "sigma_a" in takes else "Reflectance"
         layout.prop(settings, "source")
-        if settings.source == "NODES":
+        if settings.source != "RANGE":
+            if settings.source == "ATTRIBUTE":
+                layout.prop(settings, "colour_attribute", text=colour)
+                if "sigma_s" in takes:
+                    layout.prop(settings, "scattering_attribute")
+            layout.operator(MESOGRAIN_OT_add_attribute_reader.bl_idname, icon="POINTCLOUD_DATA")
             return
         column = layout.column(align=True)
         column.prop(settings, "colour_from", text=f"{colour} From")
@@ -37,4 +65,5 @@ class MESOGRAIN_PT_colours(MesograinPanel, bpy.types.Panel):
             column.prop(settings, "scattering_to", text="To")
 
 
-register, unregister = bpy.utils.register_classes_factory((MESOGRAIN_PT_colours,))
+register, unregister = bpy.utils.register_classes_factory(
+    (MESOGRAIN_OT_add_attribute_reader, MESOGRAIN_PT_colours))
