@@ -30,7 +30,7 @@ def coloured_by(attribute, kind="INSTANCER", output="Color"):
 
 def group(name):
     tree = bpy.data.node_groups.new(name, "GeometryNodeTree")
-    compat.new_group_socket(tree, "Geometry", "OUTPUT", "NodeSocketGeometry")
+    compat.add_group_socket(tree, "Geometry", "OUTPUT", "NodeSocketGeometry")
     return tree
 
 

@@ -192,7 +192,7 @@ def add_reader(instancer):
     """bpy.types.Object, in no collection yet, that tells of an object's instances: a vertex for each mesh among them,
     with the attributes of whatever instances it, the innermost first. It is seen in no render."""
     tree = bpy.data.node_groups.new(f"Attributes of {instancer.name}", "GeometryNodeTree")
-    compat.new_group_socket(tree, "Geometry", "OUTPUT", "NodeSocketGeometry")
+    compat.add_group_socket(tree, "Geometry", "OUTPUT", "NodeSocketGeometry")
     kinds = ("GeometryNodeObjectInfo", "GeometryNodeInputIndex", "FunctionNodeBooleanMath",
              "GeometryNodeSeparateGeometry", "GeometryNodeRealizeInstances", "GeometryNodeSeparateComponents",
              "NodeGroupOutput")
