@@ -170,9 +170,25 @@ def owner_of_motion_blur_position(scene):
     return next((owner for owner in owners if hasattr(owner, "motion_blur_position")), None)
 
 
-def principled_base():
-    """What lies under the Principled node's coat, as native.Finish has it: up to Blender 3 it is as Burley has it."""
-    return {"coat_shades_base": True} if has_even_lights() else {"retro_reflective": True}
+def principled_layers():
+    """How the Principled node's metal, coat and base are layered, as native.Finish has it: up to Blender 3 as by
+    Burley."""
+    return {"coat_shades_base": True, "metal_whitens": True} if has_even_lights() else {"retro_reflective": True}
+
+
+def facets(node):
+    """Whether the facets of a Principled or Glossy node keep what one bounce loses, as native.Finish has it."""
+    # Up to Blender 3 by random walks among the facets, which are drawn as one bounce.
+    keep = has_even_lights() and node.distribution == "MULTI_GGX"
+    return {"facets_keep_energy": True} if keep else {}
+
+
+def bumps():
+    """How bent normals shade, as native.Finish has it. Where a material may do without, Blender has it of facets."""
+    import bpy
+
+    settings = getattr(bpy.types.Material.bl_rna.properties.get("cycles"), "fixed_type", None)
+    return {"facets_shade_bumps": True} if settings and "use_bump_map_correction" in settings.properties else {}
 
 
 def cells_by_lookup3():

@@ -93,8 +93,12 @@ void bind_finish(py::module_& module) {
                   {std::pair{"metallicity", &finish.metallicity}, std::pair{"normal_strength", &finish.normal_strength},
                    std::pair{"coat", &finish.coat}, std::pair{"coat_roughness", &finish.coat_roughness}})
                taken += take(name, *number);
-             taken += take("retro_reflective", finish.retro_reflective);
-             taken += take("coat_shades_base", finish.coat_shades_base);
+             for (const auto& [name, chosen] : {std::pair{"retro_reflective", &finish.retro_reflective},
+                                                std::pair{"coat_shades_base", &finish.coat_shades_base},
+                                                std::pair{"metal_whitens", &finish.metal_whitens},
+                                                std::pair{"facets_keep_energy", &finish.facets_keep_energy},
+                                                std::pair{"facets_shade_bumps", &finish.facets_shade_bumps}})
+               taken += take(name, *chosen);
              Triple radiance{};
              if (take("radiance", radiance)) {
                finish.radiance = to_vector(radiance);
@@ -108,9 +112,11 @@ void bind_finish(py::module_& module) {
            "reflectance, roughness, metallic, normal, emission: TextureMaps; metallicity=0: the share that is a "
            "conductor; normal_strength=1; coat=0: reflectance of the dielectric over the rest, seen straight on, with "
            "coat_roughness=0.5, the square root of the GGX alpha; coat_shades_base=False: what the coat reflects is "
-           "lost "
-           "to what lies under it; retro_reflective=False: diffuse as Burley has it; radiance=(0, 0, 0) that it sends "
-           "out.");
+           "lost to what lies under it; retro_reflective=False: diffuse as Burley has it; metal_whitens=False: the "
+           "conductor's reflectance rises to 1 at grazing (Schlick); facets_keep_energy=False: what one bounce off "
+           "facets loses is sent on in their lobe (Turquin); facets_shade_bumps=False: what a bent normal shades of "
+           "itself is masked as facets are (Estevez et al.), and nothing bends it back, else by Cycles' former cubic; "
+           "radiance=(0, 0, 0) that it sends out.");
 }
 
 }  // namespace mesograin::python

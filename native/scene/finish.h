@@ -60,11 +60,15 @@ struct Finish {
   TextureMap emission;   ///< multiplies the radiance that it sends out
   double metallicity = 0.0;
   double normal_strength = 1.0;
-  double coat = 0.0;              ///< reflectance of the dielectric over the diffuse share, seen straight on
-  double coat_roughness = 0.5;    ///< as roughness
-  bool retro_reflective = false;  ///< diffuse as Burley (2012) has it, not Lambertian
-  bool coat_shades_base = false;  ///< what the coat reflects is lost to what lies under it
-  glm::dvec3 radiance{0.0};       ///< that it sends out, linear RGB
+  double coat = 0.0;                ///< reflectance of the dielectric over the diffuse share, seen straight on
+  double coat_roughness = 0.5;      ///< as roughness
+  bool retro_reflective = false;    ///< diffuse as Burley (2012) has it, not Lambertian
+  bool coat_shades_base = false;    ///< what the coat reflects is lost to what lies under it
+  bool metal_whitens = false;       ///< the conductor's reflectance rises to 1 at grazing (Schlick 1994)
+  bool facets_keep_energy = false;  ///< what one bounce off facets loses is sent on in their lobe (Turquin 2019)
+  bool facets_shade_bumps = false;  ///< what a bent normal shades of itself is masked as facets are (Estevez et al.
+                                    ///< 2019), and nothing bends it back; else by Cycles' former cubic
+  glm::dvec3 radiance{0.0};         ///< that it sends out, linear RGB
 
   bool operator==(const Finish&) const = default;
 };

@@ -6,6 +6,10 @@
 //   METALLIC            some of it is a conductor
 //   COAT                the rest has a coat
 //   COAT_SHADES_BASE    and lets through what it does not reflect
+//   METAL_WHITENS       the conductor's reflectance rises to 1 at grazing, and a coat is a layer of its own
+//   FACETS_KEEP_ENERGY  what one bounce off the facets loses is sent on in their lobe
+//   FACET_ENERGY        there is a table of what one bounce sends
+//   FACETS_SHADE_BUMPS  what a bent normal shades of itself is masked as facets are
 //   RETRO_REFLECTIVE    the diffuse share is Burley's
 //   EMITS               it sends out light
 #include "models/interface.glsl"
@@ -20,7 +24,8 @@ struct Material {
   vec3 reflectance;
   float roughness;  // the square root of alpha
   float metallicity;
-  float coat;  // reflectance seen straight on
+  float coat;       // reflectance seen straight on
+  float coat_mean;  // reflectance of light from everywhere
   float normal_strength;
   vec3 radiance;
 };
@@ -71,13 +76,23 @@ uniform TextureMap emission_map;
 uniform sampler2D emission_picture;
 #endif
 
+#ifdef FACET_ENERGY
+// Rows by roughness, columns by the root of the viewer's cosine. What facets send of light from everywhere after one bounce: such that absorb
+// nothing, the coat's, the former's mean over viewers.
+uniform sampler2D facet_energy;
+#endif
+
 // Of the point that is shaded, once for all lights.
 vec3 point_reflectance;
 float point_alpha;
 float point_metallicity;
 
+vec3 metal_kept, coat_kept;  // what facets send on beside what one bounce does
+float base_seen;             // through the coat
+
 #ifdef NORMAL_MAP
 vec3 unbent_normal;
+vec3 bent_normal;
 
 // The normal nearest to the bent one whose mirror direction leaves the surface, as Cycles has it: the viewer of a steep map sees no black.
 vec3 with_valid_reflection(vec3 straight, vec3 to_viewer, vec3 bent) {
@@ -101,23 +116,36 @@ vec3 with_valid_reflection(vec3 straight, vec3 to_viewer, vec3 bent) {
 }
 
 // What a bump that a normal tells of shades of itself (Estevez et al., "A Microfacet-Based Shadowing Function to Solve the Bump Terminator
-// Problem", 2019, in Cycles' cubic form).
+// Problem", 2019), or, as Cycles had it before, a cubic of what Chiang et al. clip (2019).
 float lit_share_of_bump(vec3 straight, vec3 bent, vec3 to_light) {
-  float g = dot(straight, to_light) / max(dot(bent, to_light) * dot(straight, bent), 1e-8);
+  float light = dot(straight, to_light);
+  float across = dot(straight, bent);
+#ifdef FACETS_SHADE_BUMPS
+  if (light <= 0.0) return 0.0;
+  float alpha = min(sqrt(0.125 * max(1.0 / max(across * across, 1e-8) - 1.0, 0.0)), 1.0);
+  return 2.0 * light / (light + ggx_smith_root(light, alpha));
+#else
+  float g = light / max(dot(bent, to_light) * across, 1e-8);
   return g >= 1.0 ? 1.0 : max(g * (1.0 + g - g * g), 0.0);
+#endif
 }
 #endif
 
 #ifdef TEXTURED
 void put_on(inout SurfacePoint point) {
 #ifdef NORMAL_MAP
-  unbent_normal = point.normal;
+  unbent_normal = bent_normal = point.normal;
   if (surface_tangent.w == 0.0) return;
   vec3 told = 2.0 * looked_up(normal_picture, normal_map) - 1.0;
   told = vec3(told.xy * material.normal_strength, mix(1.0, told.z, clamp(material.normal_strength, 0.0, 1.0)));
   vec3 along_v = surface_tangent.w * cross(point.normal, surface_tangent.xyz);
   vec3 bent = told.x * surface_tangent.xyz + told.y * along_v + told.z * point.normal;
-  if (dot(bent, bent) > 0.0) point.normal = with_valid_reflection(unbent_normal, point.to_viewer, normalize(bent));
+  if (dot(bent, bent) == 0.0) return;
+  bent_normal = normalize(bent);
+  point.normal = with_valid_reflection(unbent_normal, point.to_viewer, bent_normal);
+#ifndef FACETS_SHADE_BUMPS
+  bent_normal = point.normal;
+#endif
 #endif
 }
 #endif
@@ -129,6 +157,16 @@ vec3 emitted() {
 #else
   return material.radiance;
 #endif
+}
+#endif
+
+#ifdef FACETS_KEEP_ENERGY
+// What to multiply one bounce by for all of them: of light from everywhere facets without loss send `once` after one, on average `mean`, and
+// each bounce absorbs what is not in `reflectance` (Kulla and Conty, "Revisiting Physically Based Shading at Imageworks", 2017, for the bounces'
+// colour; Turquin, "Practical multiple scattering compensation for microfacet models", 2019, for their directions).
+vec3 kept(vec3 reflectance, float once, float mean) {
+  vec3 further = reflectance * mean / (1.0 - reflectance * (1.0 - mean));
+  return 1.0 + further * (1.0 - once) / once;
 }
 #endif
 
@@ -150,6 +188,23 @@ Outwards look_outwards(SurfacePoint point) {
   point_metallicity = material.metallicity;
 #endif
   float mu = clamp(dot(point.normal, point.to_viewer), 0.0, 1.0);
+  metal_kept = coat_kept = vec3(1.0);
+  base_seen = 1.0;
+#ifdef FACET_ENERGY
+  vec2 texels = vec2(textureSize(facet_energy, 0));
+  vec3 sent = texture(facet_energy, (vec2(sqrt(mu), roughness) * (texels - 1.0) + 0.5) / texels).rgb;
+#ifdef FACETS_KEEP_ENERGY
+#ifdef METAL_WHITENS
+  metal_kept = kept(mix(point_reflectance, vec3(1.0), 1.0 / 21.0), sent.r, sent.b);  // Schlick's mean
+#else
+  metal_kept = kept(point_reflectance, sent.r, sent.b);
+#endif
+  coat_kept = kept(vec3(material.coat_mean), sent.r, sent.b);
+#endif
+#ifdef COAT_SHADES_BASE
+  base_seen = clamp(1.0 - sent.g * coat_kept.r, 0.0, 1.0);
+#endif
+#endif
   return Outwards(mu, mu, 1.0);
 }
 
@@ -157,19 +212,25 @@ Outwards look_outwards(SurfacePoint point) {
 float facet_alpha() { return point_alpha; }
 
 vec3 facet_reflectance(float mu_h) {
-  vec3 straight = vec3(0.0);
+  vec3 metal = vec3(0.0);
+  vec3 coat = vec3(0.0);
   float grazing = 0.0;
 #ifdef METALLIC
-  straight += point_metallicity * point_reflectance;
+  metal = point_metallicity * metal_kept;
 #endif
 #ifdef COAT
-  straight += (1.0 - point_metallicity) * material.coat;
+  coat = (1.0 - point_metallicity) * coat_kept;
   // How far from straight on to grazing a dielectric of this reflectance is: Cycles' mixing of colours by Fresnel's formula.
   float root = sqrt(min(material.coat, 0.99));
   float eta = (1.0 + root) / (1.0 - root);
   grazing = (fresnel_reflectance(mu_h, eta) - material.coat) / (1.0 - min(material.coat, 0.99));
 #endif
+#ifdef METAL_WHITENS
+  return metal * mix(point_reflectance, vec3(1.0), pow(1.0 - mu_h, 5.0)) + coat * mix(material.coat, 1.0, grazing);
+#else
+  vec3 straight = metal * point_reflectance + coat * material.coat;
   return straight + grazing * (1.0 - straight);
+#endif
 }
 
 float facets(SurfacePoint point, vec3 half_vector, float mu_i, float mu_o) {
@@ -182,20 +243,14 @@ float facets(SurfacePoint point, vec3 half_vector, float mu_i, float mu_o) {
 }
 #endif
 
-#ifdef COAT_SHADES_BASE
-// Of light from everywhere, that rough facets of this reflectance seen straight on send to a viewer at the cosine mu (Karis, "Physically
-// Based Shading on Mobile", 2014, a fit of Lazarov's).
-float reflected_by_facets(float straight, float roughness, float mu) {
-  vec4 r = roughness * vec4(-1.0, -0.0275, -0.572, 0.022) + vec4(1.0, 0.0425, 1.04, -0.04);
-  float a = min(r.x * r.x, exp2(-9.28 * mu)) * r.x + r.y;
-  vec2 scale_and_bias = vec2(-1.04, 1.04) * a + r.zw;
-  return clamp(straight * scale_and_bias.x + scale_and_bias.y, 0.0, 1.0);
-}
-#endif
-
 vec3 evaluate_model(SurfacePoint point, Outwards outwards, LightSample light) {
   float mu_i = dot(point.normal, light.to_light);
-  if (mu_i <= 0.0) return vec3(0.0);
+#ifdef NORMAL_MAP
+  float diffuse_mu_i = dot(bent_normal, light.to_light);
+#else
+  float diffuse_mu_i = mu_i;
+#endif
+  if (max(mu_i, diffuse_mu_i) <= 0.0) return vec3(0.0);
   float mu_o = outwards.mu;
   vec3 sum = light.to_light + point.to_viewer;
   vec3 half_vector = sum * inversesqrt(max(dot(sum, sum), 1e-12));
@@ -204,19 +259,20 @@ vec3 evaluate_model(SurfacePoint point, Outwards outwards, LightSample light) {
 #ifdef RETRO_REFLECTIVE
   // Burley, "Physically Based Shading at Disney", 2012, section 5.3.
   float at_grazing = 0.5 + 2.0 * mu_h * mu_h * sqrt(point_alpha);
-  diffuse *= (1.0 + (at_grazing - 1.0) * pow(1.0 - mu_i, 5.0)) * (1.0 + (at_grazing - 1.0) * pow(1.0 - mu_o, 5.0));
+  diffuse *= (1.0 + (at_grazing - 1.0) * pow(1.0 - diffuse_mu_i, 5.0)) * (1.0 + (at_grazing - 1.0) * pow(1.0 - mu_o, 5.0));
 #endif
-#ifdef COAT_SHADES_BASE
-  diffuse *= 1.0 - reflected_by_facets(material.coat, sqrt(point_alpha), mu_o);
-#endif
+  diffuse *= base_seen * max(diffuse_mu_i, 0.0);
 #ifdef METALLIC
   diffuse *= 1.0 - point_metallicity;
 #endif
 #ifdef NORMAL_MAP
-  diffuse *= lit_share_of_bump(unbent_normal, point.normal, light.to_light);
+  diffuse *= lit_share_of_bump(unbent_normal, bent_normal, light.to_light);
 #endif
 #if defined(METALLIC) || defined(COAT)
-  float of_facets = facets(point, half_vector, mu_i, mu_o);
+  float of_facets = mu_i > 0.0 ? mu_i * facets(point, half_vector, mu_i, mu_o) : 0.0;
+#if defined(NORMAL_MAP) && defined(FACETS_SHADE_BUMPS)
+  if (dot(unbent_normal, light.to_light) <= 0.0) of_facets = 0.0;
+#endif
 #ifdef MIRRORS_WORLD
   of_facets *= share_of_light(point, light, mu_o);
 #endif
@@ -224,5 +280,5 @@ vec3 evaluate_model(SurfacePoint point, Outwards outwards, LightSample light) {
 #else
   const vec3 specular = vec3(0.0);
 #endif
-  return (portion(DIFFUSE_PORTION, diffuse) + portion(SPECULAR_PORTION, specular)) * light.irradiance * mu_i;
+  return (portion(DIFFUSE_PORTION, diffuse) + portion(SPECULAR_PORTION, specular)) * light.irradiance;
 }

@@ -203,6 +203,19 @@ def test_roughness_and_metal_of_an_image(paint, render, shape):
     assert_as_in_cycles(render, 0.02)
 
 
+@pytest.mark.parametrize("kind, colour, values", [
+    ("Principled", "Base Color", {"Metallic": 1.0}), ("Principled", "Base Color", {"Metallic": 0.3}),
+    ("Glossy", "Color", {})])
+def test_rough_facets_are_as_bright_as_in_cycles(paint, render, kind, colour, values):
+    """With what light that met many facets adds, where this Blender's Cycles has it by default."""
+    glossy = "ShaderNodeBsdfGlossy" if hasattr(bpy.types, "ShaderNodeBsdfGlossy") else "ShaderNodeBsdfAnisotropic"
+    node = surface(paint, glossy if kind == "Glossy" else "ShaderNodeBsdfPrincipled")
+    for name, value in {colour: (0.9, 0.6, 0.3, 1.0), "Roughness": 0.8, **values}.items():
+        node.inputs[name].default_value = value
+    stage(paint, "sphere")
+    assert_as_in_cycles(render, 0.005)
+
+
 def test_what_has_no_texture_has_no_picture(paint):
     surface(paint).inputs["Color"].default_value = (0.2, 0.3, 0.4, 1.0)
     add_cube().data.materials.append(paint)

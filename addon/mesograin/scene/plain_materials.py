@@ -123,7 +123,7 @@ class Reading:
         if bending.type != "NORMAL_MAP" or bending.space != "TANGENT":
             self.leave_out(f"the node '{bending.name}' at its normal")
             return
-        self.set(normal_strength=self.number(bending.inputs["Strength"]))
+        self.set(normal_strength=self.number(bending.inputs["Strength"]), **compat.bumps())
         if bending.inputs["Color"].is_linked:
             self._map(bending.inputs["Color"], "normal", numbers=False)
 
@@ -194,6 +194,7 @@ def _read_diffuse(found, _material, node):
 def _read_glossy(found, _material, node):
     colour = found.colour(node.inputs["Color"])
     found.be_conductor(colour, found.number(node.inputs["Roughness"], "roughness"))
+    found.set(**compat.facets(node))
     found.normal(node)
 
 
@@ -227,9 +228,9 @@ def _read_principled(found, _material, node):
         found.set(metallicity=metallic)
     coat = _straight_reflectance(found, socket)
     if coat > 0.0:
-        found.set(coat=coat, coat_roughness=roughness)
+        found.set(coat=coat)
+    found.set(coat_roughness=roughness, **compat.principled_layers(), **compat.facets(node))
     found.values["masking"] = compat.facets_masking()
-    found.set(**compat.principled_base())
     found.normal(node)
     strength = socket("Emission Strength")
     if strength is not None and (strength.is_linked or strength.default_value > 0.0):

@@ -31,13 +31,13 @@ class MESOGRAIN_OT_add_attribute_reader(bpy.types.Operator):
 
 class MESOGRAIN_PT_colours(MesograinPanel, bpy.types.Panel):
     bl_label = "Vary Grains"
-    bl_context = "material"
+    bl_context = about = "material"
     bl_parent_id = "MESOGRAIN_PT_material"
     bl_options = {"DEFAULT_CLOSED"}
 
     @classmethod
     def poll(cls, context):
-        return context.material is not None and native_module.problem() is None and super().poll(context)
+        return native_module.problem() is None and super().poll(context)
 
     def draw_header(self, context):
         self.layout.prop(context.material.mesograin_colours, "vary", text="")

@@ -24,11 +24,7 @@ def draw_surface(layout, datablock, without_nodes):
 
 class MESOGRAIN_PT_world(MesograinPanel, bpy.types.Panel):
     bl_label = "Surface"
-    bl_context = "world"
-
-    @classmethod
-    def poll(cls, context):
-        return context.world is not None and super().poll(context)
+    bl_context = about = "world"
 
     def draw(self, context):
         draw_surface(self.layout, context.world, "color")
@@ -36,12 +32,11 @@ class MESOGRAIN_PT_world(MesograinPanel, bpy.types.Panel):
 
 class MESOGRAIN_PT_plain_material(MesograinPanel, bpy.types.Panel):
     bl_label = "Surface"
-    bl_context = "material"
+    bl_context = about = "material"
 
     @classmethod
     def poll(cls, context):
-        return (context.material is not None and super().poll(context)
-                and plain_materials.is_plain(context.material))
+        return super().poll(context) and plain_materials.is_plain(context.material)
 
     def draw(self, context):
         draw_surface(self.layout, context.material, "diffuse_color")

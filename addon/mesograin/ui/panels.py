@@ -56,19 +56,17 @@ class MesograinPanel:
     bl_space_type = "PROPERTIES"
     bl_region_type = "WINDOW"
     COMPAT_ENGINES = ENGINES
+    about = ""  # what of the context there must be
 
     @classmethod
     def poll(cls, context):
-        return context.engine in cls.COMPAT_ENGINES
+        return (context.engine in cls.COMPAT_ENGINES
+                and (not cls.about or getattr(context, cls.about) is not None))
 
 
 class MESOGRAIN_PT_material(MesograinPanel, bpy.types.Panel):
     bl_label = "Grain"
-    bl_context = "material"
-
-    @classmethod
-    def poll(cls, context):
-        return context.material is not None and super().poll(context)
+    bl_context = about = "material"
 
     def draw_header_preset(self, _context):
         self.layout.menu(conversion.MESOGRAIN_MT_conversion.bl_idname, text="", icon="NODE_MATERIAL")
@@ -176,10 +174,7 @@ def _profile_label(grain):
 class MESOGRAIN_PT_light(MesograinPanel, bpy.types.Panel):
     bl_label = "Light"
     bl_context = "data"
-
-    @classmethod
-    def poll(cls, context):
-        return context.light is not None and super().poll(context)
+    about = "light"
 
     def draw(self, context):
         layout, light = self.layout, context.light

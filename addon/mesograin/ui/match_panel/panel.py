@@ -67,13 +67,12 @@ def _short(name, entry):
 
 class MESOGRAIN_PT_match(panels.MesograinPanel, bpy.types.Panel):
     bl_label = "Match to Picture"
-    bl_context = "material"
+    bl_context = about = "material"
     bl_options = {"DEFAULT_CLOSED"}
 
     @classmethod
     def poll(cls, context):
-        return (context.material is not None and super().poll(context)
-                and models.CHOICES[context.material.mesograin.model].translucent)
+        return super().poll(context) and models.CHOICES[context.material.mesograin.model].translucent
 
     def draw(self, context):
         side_task.draw_settings(self.layout, context, session, draw_settings)
