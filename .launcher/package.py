@@ -14,7 +14,7 @@ import zipfile
 
 import portable
 
-SUFFIXES = {".py", ".so", ".toml", ".json", ".html", ".j2", ".css", ".js", ".svg", ".png", ".glsl"}
+SUFFIXES = {".py", ".so", ".toml", ".json", ".html", ".j2", ".css", ".js", ".svg", ".png", ".glsl", ".blend", ".txt"}
 
 
 def version_of(source):

@@ -273,4 +273,5 @@ def main():
         bpy.ops.wm.save_as_mainfile(filepath=str(folder / f"{name}.blend"), compress=True)
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -21,7 +21,7 @@ ROOMS = ("compat", "native_module", "grains.shape", "grains.kinds", "grains.pile
          "engine.viewport_text", "engine.engine",
          "cycles.reference_cache", "ui.presets", "ui.look", "ui.conversion", "ui.named_things", "ui.panels",
          "ui.node_panels", "ui.notes",
-         "ui.grain_tools", "ui.grain_colours", "ui.self_test", "ui.preferences",
+         "ui.grain_tools", "ui.grain_colours", "ui.asset_library", "ui.self_test", "ui.preferences",
          *(f"ui.side_task.{name}"
            for name in ("settings", "session", "job_session", "pictures", "operators", "panel", "results")),
          *(f"ui.compare_panel.{name}" for name in ("properties", "session", "operators", "panel")),

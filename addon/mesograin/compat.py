@@ -198,3 +198,20 @@ def cells_by_lookup3():
 
     kinds = bpy.types.ShaderNodeTexSky.bl_rna.properties["sky_type"].enum_items
     return "NISHITA" in {kind.identifier for kind in kinds}
+
+
+def import_by_appending(library):
+    """Makes what is dragged from an asset library a copy, where this Blender asks how: an add-on that is gone takes no
+    links with it."""
+    if hasattr(library, "import_method"):
+        library.import_method = "APPEND_REUSE"
+
+
+def set_modifier_input(modifier, name, value):
+    """Sets an input of a geometry nodes modifier by its name."""
+    group = modifier.node_group
+    if hasattr(group, "interface"):
+        sockets = [item for item in group.interface.items_tree if getattr(item, "in_out", "") == "INPUT"]
+    else:
+        sockets = group.inputs
+    modifier[next(socket.identifier for socket in sockets if socket.name == name)] = value

@@ -90,10 +90,9 @@ def _instancing(collection):
     return tree
 
 
-def pile_of(kinds_of_shapes, count, size, name="Pile", seed=0, segments=12, angularity=0.5, roundness=0.3, **settling):
-    """The object of add_pile of `count` grains. kinds_of_shapes: the kind of each shape that it has, such as three
-    times "sand". size: radius of a ball as large as the mean grain. settling: as pile.settle takes it."""
-    placings = pile.settle(count, size, shapes=len(kinds_of_shapes), seed=seed, **settling)
+def shapes_of(kinds_of_shapes, seed=0, segments=12, angularity=0.5, roundness=0.3):
+    """[bpy.types.Object], in no collection yet: a grain of each kind, such as three times "sand", as large as the unit
+    sphere, for many instances; those of one kind share a material."""
     # Not AUTO, which goes by what was measured of grains alone.
     shared = {kind: material(kind, models.PREFERRED) for kind in dict.fromkeys(kinds_of_shapes)}
     shapes = []
@@ -101,4 +100,12 @@ def pile_of(kinds_of_shapes, count, size, name="Pile", seed=0, segments=12, angu
         data = mesh(kind, seed=seed + number, segments=segments, angularity=angularity, roundness=roundness)
         data.materials.append(shared[kind])
         shapes.append(bpy.data.objects.new(data.name, data))
+    return shapes
+
+
+def pile_of(kinds_of_shapes, count, size, name="Pile", seed=0, segments=12, angularity=0.5, roundness=0.3, **settling):
+    """The object of add_pile of `count` grains. kinds_of_shapes: the kind of each shape that it has, such as three
+    times "sand". size: radius of a ball as large as the mean grain. settling: as pile.settle takes it."""
+    placings = pile.settle(count, size, shapes=len(kinds_of_shapes), seed=seed, **settling)
+    shapes = shapes_of(kinds_of_shapes, seed, segments, angularity, roundness)
     return add_pile(placings, shapes, name)

@@ -11,6 +11,10 @@ READER = "mesograin_reads_instances"
 """The custom property of an object that tells, as vertices of its mesh, what geometry nodes gave each instance of
 another: Blender tells scripts nothing of it, but its nodes do."""
 
+TELLS = "mesograin_tells_of_instance"
+"""The attribute of those vertices of an instancer's own mesh, one for each of its instances, in their order and where
+they stand, that bear the same attributes: nodes that leave these need no reader."""
+
 NEITHER = 1.0
 """What stands for an attribute that Blender does not tell."""
 
@@ -73,17 +77,17 @@ class Worn:
 
 
 class _Table:
-    """What a reader tells. rows: which instances of the dependency graph its vertices are, in order."""
+    """What a mesh tells. rows: which instances of the dependency graph its `vertices`, (n,), are, in order."""
 
-    def __init__(self, rows, layers):
-        self.rows, self.layers = rows, layers
+    def __init__(self, rows, layers, vertices):
+        self.rows, self.layers, self.vertices = rows, layers, vertices
 
     def values(self, rows, name):
         """(rows that it tells, (n, 4) of these), or None without such an attribute."""
         if name not in self.layers or self.layers[name].data_type not in _FIELDS:
             return None
         told = rows[np.isin(rows, self.rows)]
-        return told, _layer(self.layers[name])[-len(self.rows):][np.searchsorted(self.rows, told)]
+        return told, _layer(self.layers[name])[self.vertices][np.searchsorted(self.rows, told)]
 
 
 def of_each(instances, numbers, matrices, shapes, readers):
@@ -98,7 +102,8 @@ def of_each(instances, numbers, matrices, shapes, readers):
         if not np.isin(numbers[rows], asking).any():
             continue
         reader = readers.get(parent.original)
-        table = reader and _read(reader, parent, rows, numbers, matrices, shapes)
+        table = (_read(reader, parent, rows, numbers, matrices, shapes) if reader
+                 else _told_by_itself(parent, rows, matrices))
         if reader is not None and table is None:
             sentences.append(f"'{reader.name}' tells of other instances than '{parent.name}' shows, so their "
                              "attributes are not known.")
@@ -131,15 +136,29 @@ def _read(reader, parent, rows, numbers, matrices, shapes):
     before = int(parent.type == "MESH" and len(parent.data.vertices) > 0)
     if not len(rows) or len(mesh.vertices) != before + len(rows):
         return None
+    first = np.array([shape.first_vertex or (0.0,) * 3 for shape in shapes], dtype=np.float32)[numbers[rows]]
+    ours = np.einsum("nij,nj->ni", matrices[rows, :3, :3], first) + matrices[rows, :3, 3]
+    return _table(rows, mesh, np.arange(before, len(mesh.vertices)), parent, ours)
+
+
+def _told_by_itself(parent, rows, matrices):
+    """The _Table of an instancer whose mesh has vertices that bear TELLS, or None."""
+    mesh = parent.data
+    if parent.type != "MESH" or TELLS not in mesh.attributes or mesh.attributes[TELLS].domain != "POINT":
+        return None
+    vertices = np.flatnonzero(_layer(mesh.attributes[TELLS])[:, 0])
+    return _table(rows, mesh, vertices, parent, matrices[rows, :3, 3]) if len(vertices) == len(rows) else None
+
+
+def _table(rows, mesh, vertices, parent, places):
+    """The _Table of a mesh in an instancer's coordinates, or None if these vertices lie elsewhere in the world."""
     local = np.empty((len(mesh.vertices), 3), dtype=np.float32)
     mesh.vertices.foreach_get("co", local.ravel())
     to_world = np.array(parent.matrix_world, dtype=np.float32)
-    theirs = local[before:] @ to_world[:3, :3].T + to_world[:3, 3]
-    first = np.array([shape.first_vertex or (0.0,) * 3 for shape in shapes], dtype=np.float32)[numbers[rows]]
-    ours = np.einsum("nij,nj->ni", matrices[rows, :3, :3], first) + matrices[rows, :3, 3]
-    if not np.allclose(theirs, ours, rtol=0.0, atol=SAME_PLACE * np.abs(ours).max()):
+    found = local[vertices] @ to_world[:3, :3].T + to_world[:3, 3]
+    if not np.allclose(found, places, rtol=0.0, atol=SAME_PLACE * np.abs(places).max()):
         return None
-    return _Table(rows, mesh.attributes)
+    return _Table(rows, mesh.attributes, vertices)
 
 
 _FIELDS = {

@@ -10,7 +10,7 @@ from .. import native_module
 from ..cycles import reference_cache
 from ..cycles.cache import DEFAULT_LIMIT
 from ..engine import status
-from . import panels, self_test
+from . import asset_library, panels, self_test
 
 
 DEVICE = "MESOGRAIN_GL_DEVICE"  # in the environment, of which the renderer takes it once a process
@@ -112,6 +112,8 @@ class MesograinPreferences(bpy.types.AddonPreferences):
         row.operator(MESOGRAIN_OT_copy_diagnostics.bl_idname, icon="COPYDOWN")
         for sentence in _told:
             panels.draw_sentence(layout, context, sentence, icon="CHECKMARK")
+        if not asset_library.registered(context):
+            layout.operator(asset_library.MESOGRAIN_OT_add_asset_library.bl_idname, icon="ASSET_MANAGER")
         layout.prop(self, "cache_folder")
         layout.prop(self, "cache_limit")
         reference_cache.draw(layout)
