@@ -184,11 +184,12 @@ def facets(node):
 
 
 def bumps():
-    """How bent normals shade, as native.Finish has it. Where a material may do without, Blender has it of facets."""
+    """How bent normals shade, as native.Finish has it: on Blender 5 as facets do, on 4.3 by the cubic still."""
     import bpy
 
-    settings = getattr(bpy.types.Material.bl_rna.properties.get("cycles"), "fixed_type", None)
-    return {"facets_shade_bumps": True} if settings and "use_bump_map_correction" in settings.properties else {}
+    # That shows in no property; scenes' compositing groups came no later.
+    of_facets = "compositing_node_group" in bpy.types.Scene.bl_rna.properties
+    return {"facets_shade_bumps": True} if of_facets else {}
 
 
 def cells_by_lookup3():

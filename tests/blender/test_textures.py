@@ -262,6 +262,8 @@ PATTERNS = {
 def test_a_pattern_in_space_lies_as_in_cycles(paint, render, shape, pattern):
     """By Generated coordinates, on what is flat and where the UVs of what is not lie."""
     kind, properties, inputs = PATTERNS[pattern]
+    if kind == "ShaderNodeTexVoronoi" and not compat.cells_by_lookup3():
+        pytest.skip("this Blender's cells are left out, and that is said")
     tree = paint.node_tree
     node, ramp = tree.nodes.new(kind), tree.nodes.new("ShaderNodeValToRGB")
     for name, value in properties.items():
@@ -270,7 +272,7 @@ def test_a_pattern_in_space_lies_as_in_cycles(paint, render, shape, pattern):
         node.inputs[name].default_value = value
     ramp.color_ramp.elements[0].color, ramp.color_ramp.elements[0].position = (0.8, 0.3, 0.1, 1.0), 0.1
     ramp.color_ramp.elements[1].color, ramp.color_ramp.elements[1].position = (0.05, 0.2, 0.7, 1.0), 0.7
-    tree.links.new(next(out for out in node.outputs if out.enabled and out.name in ("Fac", "Distance")),
+    tree.links.new(next(out for out in node.outputs if out.enabled and out.identifier in ("Fac", "Distance")),
                    ramp.inputs["Fac"])
     tree.links.new(ramp.outputs["Color"], surface(paint).inputs["Color"])
     stage(paint, shape)

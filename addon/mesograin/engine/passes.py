@@ -42,6 +42,9 @@ DENOISING = (DENOISING_NORMAL, DENOISING_ALBEDO)
 PORTIONS = {
     **{name: Pass(name.replace("_", " ").title(), f"mesograin.use_pass_{name}", "RGB", "COLOR")
        for name in properties.PORTIONS},
+    # In the panel it would be cut off in Blender 5's letters.
+    "single_scattering": Pass("Single Scattering", "mesograin.use_pass_single_scattering", "RGB", "COLOR",
+                              "Single Scatter"),
     "emission": Pass("Emit", "use_pass_emit", "RGB", "COLOR", "Emission"),
     "environment": Pass("Env", "use_pass_environment", "RGB", "COLOR", "Environment"),
 }

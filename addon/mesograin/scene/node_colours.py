@@ -252,7 +252,7 @@ def _attribute(node, socket, places):
     value = places.get(instance_attributes.key(node.attribute_type, node.attribute_name))
     if socket.name == "Alpha":
         return value[:, 3]
-    return value[:, :3].mean(axis=1) if socket.name == "Fac" else value[:, :3]
+    return value[:, :3].mean(axis=1) if socket.identifier == "Fac" else value[:, :3]
 
 
 def _uv_map(node, _socket, places):
@@ -348,7 +348,7 @@ def _checker(node, socket, places):
     at = vector(node.inputs["Vector"], places, "generated") * number(node.inputs["Scale"], places)[:, None]
     cells = np.floor((at + 0.000001) * 0.999999).astype(np.int64)
     odd = (cells[:, 0] % 2 == cells[:, 1] % 2) == (cells[:, 2] % 2 != 0)
-    if socket.name == "Fac":
+    if socket.identifier == "Fac":
         return np.where(odd, 1.0, 0.0)
     return np.where(odd[:, None], colour(node.inputs["Color1"], places), colour(node.inputs["Color2"], places))
 

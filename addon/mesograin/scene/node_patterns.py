@@ -140,7 +140,7 @@ def _bricks(node, socket, places):
     with np.errstate(divide="ignore", invalid="ignore"):
         share = np.clip((1.0 - edge / size) / smooth, 0.0, 1.0)
     mortar = np.where(edge >= size, 0.0, np.where(smooth == 0.0, 1.0, share * share * (3.0 - 2.0 * share)))
-    if socket.name == "Fac":
+    if socket.identifier == "Fac":
         return mortar
     first, second, between = (colour(node.inputs[name], places) for name in ("Color1", "Color2", "Mortar"))
     tint, mortar = tint[:, None], mortar[:, None]
@@ -200,4 +200,4 @@ def _magic(node, socket, places):
         made[into] = bent * sign * function(sum(own * each for own, each in zip(signs, made)))
     doubled = np.where(bent != 0.0, 2.0 * bent, 1.0)
     made = 0.5 - np.stack(made, axis=1) / doubled[:, None]
-    return made.mean(axis=1) if socket.name == "Fac" else made
+    return made.mean(axis=1) if socket.identifier == "Fac" else made
