@@ -120,6 +120,29 @@ Answer answer(const BodyMedium& medium, const BodySurface& surface, const Sphere
   return result;
 }
 
+// Less of the world than this is not seen through a grain.
+constexpr double least_seen = 0.002;
+
+// What a sphere lets through of parallel light that is refracted, were nothing reflected: the integral of
+// 2 mu exp(-2 sigma_t mu'), mu' the cosine inside, of which eta^2 mu' dmu' is mu dmu.
+double seen_through(double eta, double sigma_t) {
+  const double across = 2.0 * sigma_t;
+  if (across < 1e-3) return 1.0;
+  const auto beyond = [&](double mu) { return (1.0 + across * mu) * std::exp(-across * mu); };
+  const double least = eta > 1.0 ? refracted_cosine(0.0, eta) : 0.0;
+  return 2.0 * eta * eta * (beyond(least) - beyond(1.0)) / (across * across);
+}
+
+// Where light spreads as it enters, what crosses is in the tables.
+void add_clear(const std::array<BodyMedium, 3>& media, const BodySurface& surface, MaterialInputs& inputs) {
+  if (surface.cosine_entry) return;
+  const glm::dvec3 sigma_t(media[0].rest_sigma_t(), media[1].rest_sigma_t(), media[2].rest_sigma_t());
+  if (seen_through(surface.eta, std::min({sigma_t.r, sigma_t.g, sigma_t.b})) < least_seen) return;
+  inputs.defines.emplace_back("CLEAR");
+  inputs.uniforms["clear_sigma_t"] = glm::vec3(sigma_t);
+  inputs.uniforms["clear_eta"] = static_cast<float>(surface.eta);
+}
+
 }  // namespace
 
 std::vector<double> body_cosines() {
@@ -214,6 +237,7 @@ void add_body_uniforms(const scene::Material& material, double grain_radius, Mat
   }
   inputs.uniforms["body.decay_squared"] = decay_squared;
   inputs.uniforms["body.even_factor"] = static_cast<float>(taken_in / (PI * surface.diffusion.exit_transmittance));
+  add_clear(media, surface, inputs);
 }
 
 }  // namespace mesograin::models

@@ -92,7 +92,7 @@ Advice advise(const Material& material, const Shape& shape) {
             fmt::format("{}: nothing was measured for what encloses no volume, or is empty.", named(preferred()))};
   if (shape.closed && material.sigma_s == glm::dvec3(0.0))
     return {Model::transport, 0.0,
-            fmt::format("{}: nothing is scattered, and no other model shows what is behind a clear grain.",
+            fmt::format("{}: nothing is scattered, and no other model shows what is behind a clear grain of any shape.",
                         named(Model::transport))};
   const double roundness = 36.0 * std::numbers::pi * shape.volume * shape.volume / std::pow(shape.area, 3.0);
   const bool round = roundness > automatic::roundest_other;

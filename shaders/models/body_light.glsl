@@ -4,6 +4,7 @@
 // What is chosen at compile time (physics::add_body, physics::add_planar_body), besides what half_space_light.glsl names:
 //   GREY                 red, green and blue are the same medium, and only one is computed
 //   PLANAR_PROFILE       `body_light` holds a profile's integral over the sphere; else the sphere's difference from the half-space
+#include "models/clear_sphere.glsl"
 #include "models/dielectric.glsl"
 #include "models/interface.glsl"
 #include "models/light_map.glsl"

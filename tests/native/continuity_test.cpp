@@ -199,6 +199,56 @@ TEST_P(Continuity, AnOpaqueGrainStaysAsItIs) {
     }
 }
 
+// What is not scattered crosses: under a sky that is the same all around a grain that absorbs nothing is not to be
+// seen, however little or much of the light is scattered, and one that scatters next to nothing looks as one that
+// scatters nothing.
+TEST_P(Continuity, AGrainThatScattersNothingIsGlass) {
+  scene::World sky;
+  sky.radiance = glm::dvec3(1.0);
+  const auto under_the_sky = [&](const Material& material) {
+    const glm::dmat4 here(1.0);
+    view_.set_scene({{{sphere(), material, here}}, {}, sky});
+    view_.set_camera(camera_at(here, {0.0, 0.0, 1.0}));
+    return draw(view_);
+  };
+  const auto mean = [](const std::vector<float>& pixels) {
+    double sum = 0.0;
+    double covered = 0.0;
+    for (std::size_t i = 0; i < pixels.size(); i += 4) {
+      sum += pixels[i];
+      covered += pixels[i + 3];
+    }
+    return sum / covered;
+  };
+  for (const Boundary boundary : {Boundary::dielectric, Boundary::index_matched}) {
+    Material material;
+    material.model = GetParam();
+    material.boundary = boundary;
+    material.specular = boundary == Boundary::dielectric;
+    material.sigma_s = glm::dvec3(0.0);
+    material.sigma_a = glm::dvec3(0.0);
+    const std::vector<float> glass = under_the_sky(material);
+    EXPECT_NEAR(mean(glass), 1.0, 0.01) << to_json(material);
+    for (const double sigma_s : {1e-6, 1e-4, 0.01, 1.0, 8.0}) {
+      material.sigma_s = glm::dvec3(sigma_s);
+      const std::vector<float> near = under_the_sky(material);
+      EXPECT_NEAR(mean(near), 1.0, 0.04) << to_json(material);
+      EXPECT_LE(step(glass, near), 10.0 * sigma_s) << to_json(material);
+    }
+    // Through an absorbing ball the world is seen as far as its chords say: all in the middle, where they are longest.
+    material.sigma_s = glm::dvec3(0.0);
+    material.specular = false;
+    const std::vector<float> colourless = under_the_sky(material);
+    material.sigma_a = glm::dvec3(0.5, 1.0, 2.0);
+    const std::vector<float> coloured = under_the_sky(material);
+    constexpr std::size_t middle = 4 * (size / 2 * size + size / 2);
+    for (std::size_t channel = 0; channel < 3; ++channel)
+      EXPECT_NEAR(std::log(colourless[middle + channel] / coloured[middle + channel]),
+                  2.0 * material.sigma_a[static_cast<int>(channel)], 0.1)
+          << to_json(material);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Models, Continuity, testing::Values(Model::model_2, Model::model_3), [](const auto& info) {
   return std::string(scene::model_names[static_cast<std::size_t>(info.param)]);
 });
