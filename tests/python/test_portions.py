@@ -75,9 +75,9 @@ MODELS = {
     "model_1": (native.Material(model="model_1", boundary="dielectric", roughness=0.2, g=0.4, **MEDIUM),
                 {"specular", "subsurface", "single_scattering"}),
     "model_2": (native.Material(model="model_2", boundary="dielectric", roughness=0.2, g=0.4, **MEDIUM),
-                {"specular", "subsurface", "single_scattering"}),
+                {"specular", "subsurface", "single_scattering", "transmission"}),
     "model_3": (native.Material(model="model_3", boundary="dielectric", roughness=0.2, g=0.4, **MEDIUM),
-                {"specular", "subsurface", "single_scattering"}),
+                {"specular", "subsurface", "single_scattering", "transmission"}),
     "transport": (native.Material(model="transport", boundary="dielectric", roughness=0.2, sigma_s=(0.3, 0.4, 0.5),
                                   sigma_a=(0.05, 0.1, 0.3)), {"specular", "subsurface", "transmission"}),
 }
