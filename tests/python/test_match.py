@@ -230,9 +230,28 @@ class TestLeastSquares:
             state = numpy.linalg.lstsq(slopes[0], (slopes @ truth + noise)[0], rcond=None)[0]
             fit = least_squares.Fit(state, slopes @ state - slopes @ truth - noise, slopes, True, 1)
             spread = certainty.covariance(fit, numpy.ones((1, 2), bool), numpy.arange(64) // 4,
-                                          random.normal(size=(1, 64)))
+                                          random.normal(size=(1, 64)), numpy.ones((1, 64)), slopes)
             inside += int(abs(state[0] - truth[0]) <= 2.0 * spread[0, 0]**0.5)
         assert 188 <= inside
+
+    def test_intervals_hold_the_truth_of_a_model_that_is_off(self):
+        """Its error is smooth, and so is what the unknowns do, which explain half of it away. With two patterns left,
+        two deviations are 82 % by Student's distribution."""
+        random = numpy.random.default_rng(3)
+        along = numpy.linspace(-1.0, 1.0, 64)
+        patterns = numpy.polynomial.legendre.legvander(along, certainty.PATTERNS - 1)
+        inside, widths = 0, []
+        for _ in range(200):
+            slopes = (patterns @ random.normal(size=(certainty.PATTERNS, 2)))[None]
+            error = patterns @ random.normal(size=certainty.PATTERNS)
+            state = -numpy.linalg.lstsq(slopes[0], error, rcond=None)[0]
+            fit = least_squares.Fit(state, slopes @ state + error, slopes, True, 1)
+            spread = certainty.covariance(fit, numpy.ones((1, 2), bool), numpy.arange(64) // 4, numpy.ones((1, 64)),
+                                          numpy.zeros((1, 64)), slopes)
+            inside += int(abs(state[0]) <= 2.0 * spread[0, 0]**0.5)
+            widths.append(2.0 * spread[0, 0]**0.5 / abs(state[0]))
+        assert 155 <= inside
+        assert numpy.median(widths) < 10.0, "and they say something"
 
 
 def test_noise_is_told_from_shape():

@@ -22,8 +22,9 @@ NOISE_GAIN = 36.0
 class Blocks:
     """mask: (h, w) bool, the pixels that count. target: (h, w, 3), linear radiance.
 
-    counts: pixels of each block; weights: (3, n), by which a difference of means is multiplied; tiles: of each block,
-    the number of a larger part of the picture.
+    counts: pixels of each block; weights: (3, n), by which a difference of means is multiplied; noise: (3, n), what the
+    picture's noise makes of the square of that in the mean; tiles: of each block, the number of a larger part of the
+    picture.
     """
 
     def __init__(self, mask, target):
@@ -37,7 +38,9 @@ class Blocks:
         self._all_counts = counts
         self.counts = counts[self._kept]
         self.means = self.of(target)
-        self.weights = self._weights(mask, target)
+        variance = self._noise(mask, target)
+        self.weights = self._weights(variance)
+        self.noise = self.weights**2 * variance
         self.tiles = _tiles(names[self._kept] // across, names[self._kept] % across)
 
     def of(self, picture):
@@ -54,10 +57,10 @@ class Blocks:
                 for channel in range(3)]
         return numpy.array(sums) / self._all_counts
 
-    def _weights(self, mask, target):
+    def _weights(self, variance):
         typical = numpy.average(self.means, axis=1, weights=self.counts)[:, None]
         allowed = TOLERANCE**2 * (self.means**2 + (DARKEST * typical) ** 2 + 1e-30)
-        return numpy.sqrt(self.counts / SIDE**2 / (allowed + self._noise(mask, target)))
+        return numpy.sqrt(self.counts / SIDE**2 / (allowed + variance))
 
     def _noise(self, mask, target):
         """(3, n): the variance of each mean; that of a block without a whole neighbourhood is the others' mean."""

@@ -8,27 +8,43 @@ from . import least_squares
 UNKNOWING = 3.0
 """Standard deviation of what a picture says nothing about: a factor of twenty."""
 RATIO = 3.0
-"""What lies between the ends of a 95 % interval, as a factor, where a coefficient is still called determined."""
+"""What lies between the ends of an interval, as a factor, where a coefficient is still called determined."""
+PATTERNS = 4
+"""Of so many smooth patterns over a grain a model's error is made: brighter, from one side to the other, from the top
+to the bottom, from the middle to the rim. docs/match.md has how often intervals hold the truth by that."""
 G_RANGE = 0.5
 """The same of g, as a difference."""
 
 
-def covariance(fit, pattern, tiles, even):
+def covariance(fit, pattern, tiles, even, noise, smooth):
     """(unknowns, unknowns): of the state of a least_squares.Fit, with the pattern that it was found with.
 
-    The sum of three: what the residuals' size lets expect of independent errors (Gauss and Newton's); what the state
+    The sum of four: what the residuals' size lets expect of independent errors (Gauss and Newton's); what the state
     would change by if parts of the picture were left out in turn (the delete-a-group jackknife: Efron and Tibshirani,
     "An Introduction to the Bootstrap", 1993, section 11.5; to first order, without a render), which sees errors that
     neighbours share; and what it would change by if the whole picture were brighter or darker by as much as its blocks
-    are off in the mean, which no residual shows. tiles: (n,), the part of each residual. even: (channels, n), the
-    residuals of a picture twice as bright, less those of this one.
+    are off in the mean, which no residual shows; and what the model's own error is, which other unknowns imitate as
+    well as any picture (Kennedy and O'Hagan, "Bayesian calibration of computer models", 2001, section 4.2): in each of
+    its PATTERNS it is as large as in those that are left over. tiles: (n,), the part of each residual. even: (channels,
+    n), the residuals of a picture twice as bright, less those of this one. noise: (channels, n), the mean square of
+    each residual by noise alone. smooth: as fit.jacobian, of a model whose differences are no steps of a table.
     """
     total = numpy.zeros((pattern.shape[1],) * 2)
     for unknowns, channels in least_squares.parts(pattern):
         rows = fit.jacobian[channels][..., unknowns]
         total[numpy.ix_(unknowns, unknowns)] = _covariance(
             rows, fit.residuals[channels], tiles, even[channels])
+        total[numpy.ix_(unknowns, unknowns)] += _imitated(
+            smooth[channels][..., unknowns], fit.residuals[channels], noise[channels])
     return total
+
+
+def _imitated(jacobian, residuals, noise):
+    """Of the error of a model that leaves these residuals and such noise. jacobian: (channels, n, unknowns)."""
+    channels, _, size = jacobian.shape
+    rows = jacobian.reshape(-1, size)
+    left_over = max(numpy.sum(residuals**2) - numpy.sum(noise), 0.0) / max(PATTERNS * channels - size, 1)
+    return numpy.linalg.inv(rows.T @ rows / max(left_over, 1e-12) + numpy.eye(size) / UNKNOWING**2)
 
 
 def _covariance(jacobian, residuals, tiles, even):
@@ -56,7 +72,8 @@ def _jackknife(jacobian, residuals, tiles, prior):
 
 
 def interval(name, value, deviation):
-    """{'value', 'low', 'high', 'determined'}: of 95 %. deviation: standard deviation of the log, of g itself."""
+    """{'value', 'low', 'high', 'determined'}, two deviations either way. deviation: the standard one of the log, of g
+    itself."""
     if name == "g":
         low, high = max(value - 2.0 * deviation, -1.0), min(value + 2.0 * deviation, 1.0)
         return {"value": value, "low": low, "high": high, "determined": high - low <= G_RANGE}

@@ -14,8 +14,9 @@ BESIDE = "beside.png"
 DEFINITIONS = {
     "sigma_a": "absorption coefficient of R, G and B, for a `scale` of 1, in the unit named",
     "sigma_s": "scattering coefficient of R, G and B, for a `scale` of 1, in the unit named",
-    "intervals": "of 95 %, by the picture's derivatives and by what it leaves unexplained; what is wrong about the"
-    " scene itself is not in it. determined: the ends of the interval are less than a factor of 3 apart (g: 0.5)",
+    "intervals": "two standard deviations either way, by the picture's derivatives, by what it leaves unexplained and"
+    " by the model's own error as far as others imitate it; what is wrong about the scene itself is not in it."
+    " determined: the ends of the interval are less than a factor of 3 apart (g: 0.5)",
     "exposure": "factor by which the scene's light was multiplied to be as bright as the picture; 1 if it was known",
     "metrics": "of the picture drawn against the target, over the mask (docs/metrics.md)",
     "corrected_blocks": "relative L1 in blocks of the picture times what Cycles' picture of the last coefficients was"

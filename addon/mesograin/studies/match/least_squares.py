@@ -39,13 +39,12 @@ def minimise(residuals, start, pattern, steps, limits, most_iterations=10, short
     state = numpy.clip(start, least, most)
     found = residuals(state)
     apart = parts(pattern)
-    together = columns(pattern)
     damping = numpy.full(len(apart), FIRST_DAMPING)
     moving = set(range(len(apart)))
     jacobian, iteration = None, 0
     while moving and iteration < most_iterations:
         iteration += 1
-        jacobian = _jacobian(residuals, state, found, pattern, together, steps, most)
+        jacobian = differences(residuals, state, found, pattern, steps, most)
         waiting = set(moving)
         for _ in range(ATTEMPTS):
             trial = state.copy()
@@ -104,9 +103,11 @@ def columns(pattern):
     return lists
 
 
-def _jacobian(residuals, state, found, pattern, together, steps, most):
+def differences(residuals, state, found, pattern, steps, most):
+    """(channels, n, unknowns): the quotients of differences at a state, where the residuals are `found`; the rest as
+    `minimise` has it."""
     jacobian = numpy.zeros((*found.shape, len(state)))
-    for column in together:
+    for column in columns(pattern):
         by = numpy.where(state + steps > most, -steps, steps)
         moved = state.copy()
         moved[column] += by[column]

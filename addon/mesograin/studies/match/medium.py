@@ -24,6 +24,9 @@ MOST_G = 0.95
 STEP_G = 0.03
 STEP = 0.03
 """Of a difference quotient: large against what is left of noise, small against what bends."""
+NOISY_STEP = 0.4
+"""The same where light goes from grain to grain: rays are drawn anew for each medium, and a block is off by that as
+much as a step of 0.03 changes it."""
 
 
 class Medium:
@@ -31,15 +34,15 @@ class Medium:
 
     parameters: of choices.PARAMETERS, searched for. given: {'sigma_a', 'sigma_s': three numbers per unit of length,
     'g', 'eta', 'boundary'}, of which those stay that are not searched for. exposure: whether a factor for the whole
-    picture is searched for, too.
+    picture is searched for, too. step: of difference quotients.
 
     A state is a vector: for each channel its unknowns, then g, then the log of the exposure, where these are searched
     for.
     """
 
-    def __init__(self, parameters, given, exposure=False):
+    def __init__(self, parameters, given, exposure=False, step=STEP):
         self.parameters = tuple(name for name in PARAMETERS if name in parameters)
-        self.exposed = exposure
+        self.exposed, self._step = exposure, step
         self._given = given
         self._each = [name for name in COEFFICIENTS if name in parameters]
         self._shared = [*(["g"] if "g" in parameters else []), *(["exposure"] if exposure else [])]
@@ -56,7 +59,7 @@ class Medium:
     @property
     def steps(self):
         """Of the difference quotients."""
-        steps = numpy.full(self.size, STEP)
+        steps = numpy.full(self.size, self._step)
         if "g" in self._shared:
             steps[CHANNELS * len(self._each)] = STEP_G
         return steps

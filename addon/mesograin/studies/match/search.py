@@ -10,7 +10,7 @@ import numpy
 from ...schema import models
 from . import certainty, least_squares
 from .blocks import Blocks
-from .medium import Medium
+from .medium import NOISY_STEP, STEP, Medium
 from .memory import Memory
 from .subject import SubjectError
 
@@ -125,7 +125,8 @@ class _Search:
         self._request, self._progress = request, progress
         self._model = model_of(request.model)
         given = {**{"g": 0.0}, **subject.values}
-        self._medium = Medium(request.parameters, given, request.exposure)
+        self._medium = Medium(request.parameters, given, request.exposure,
+                              NOISY_STEP if subject.lights_itself else STEP)
         if not self._medium.size:
             raise SubjectError("There is nothing to be searched for: name at least one of sigma_a, sigma_s and g.")
         self._size = subject.grain_size
@@ -268,7 +269,9 @@ class _Search:
     def _found(self, fit):
         medium, native = self._medium, self._native
         blocks = self._blocks
-        spread = certainty.covariance(fit, medium.pattern, blocks.tiles, blocks.means * blocks.weights)
+        noise = blocks.noise * (2.0 if self._corrections else 1.0)  # Cycles' pictures of both have as much
+        spread = certainty.covariance(fit, medium.pattern, blocks.tiles, blocks.means * blocks.weights, noise,
+                                      self._smooth_jacobian(fit))
         intervals = {name: [certainty.interval(name, value, deviation) for value, deviation in channels]
                      for name, channels in medium.told(fit.state, spread).items()}
         coefficients, exposure = medium.coefficients(fit.state), medium.exposure(fit.state)
@@ -280,6 +283,15 @@ class _Search:
             metrics=native.compare(picture, self._target.pixels, mask=self._mask), corrections=self._corrections,
             corrected=self._off(fit.residuals) if self._corrections else None, renders=self._renders,
             remembered=self._known, iterations=fit.iterations, converged=fit.converged, warnings=self._subject.warnings)
+
+    def _smooth_jacobian(self, fit):
+        """The Jacobian of ROUGH_MODEL at what was found: that of a model with tables may have their steps in it."""
+        if self._model == ROUGH_MODEL:
+            return fit.jacobian
+        residuals = self._residuals(ROUGH_MODEL)
+        medium = self._medium
+        return least_squares.differences(residuals, fit.state, residuals(fit.state), medium.pattern, medium.steps,
+                                         medium.limits(fit.state, self._size)[1])
 
     def _off(self, residuals):
         """Relative L1 of means in blocks (docs/metrics.md)."""

@@ -66,6 +66,11 @@ class Subject:
         return self._draw(scene, COVERAGE_SAMPLES)[..., 0]
 
     @property
+    def lights_itself(self):
+        """Whether what is matched are grains that send light to each other."""
+        return bool(self._arrays) and self._scene.exchange != "off"
+
+    @property
     def grain_size(self):
         """The radius of a ball of as much volume as the first of the matched grains, in the scene's unit."""
         number = min(self._instances, default=None)
