@@ -23,7 +23,7 @@ def scene_of_balls(**settings):
     scene.render.film_transparent = True
     scene.mesograin.exchange = "off"
     material = bpy.data.materials.new("Chalk")
-    material.use_nodes = True
+    compat.use_nodes(material)
     material.node_tree.nodes.clear()
     nodes = material.node_tree.nodes
     diffuse, output = nodes.new("ShaderNodeBsdfDiffuse"), nodes.new("ShaderNodeOutputMaterial")

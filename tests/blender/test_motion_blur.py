@@ -37,12 +37,20 @@ def scene_in_motion(what):
     return scene
 
 
+def curves(action):
+    """From Blender 5 on they lie in layers."""
+    if hasattr(action, "fcurves"):
+        return action.fcurves
+    return [curve for layer in action.layers for strip in layer.strips for bag in strip.channelbags
+            for curve in bag.fcurves]
+
+
 def move(thing, path, start, end):
     """Evenly from frame 1 to 5."""
     for frame, value in ((1, start), (5, end)):
         setattr(thing, path, value)
         thing.keyframe_insert(path, frame=frame)
-    for curve in thing.animation_data.action.fcurves:
+    for curve in curves(thing.animation_data.action):
         for point in curve.keyframe_points:
             point.interpolation = "LINEAR"
 

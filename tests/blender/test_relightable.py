@@ -74,7 +74,7 @@ def wear(thing, files, to_light, irradiance):
     with bpy.data.libraries.load(str(files["nodes"])) as (there, wanted):
         wanted.node_groups = there.node_groups
     material = bpy.data.materials.new("Relit")
-    material.use_nodes = True
+    compat.use_nodes(material)
     nodes, links = material.node_tree.nodes, material.node_tree.links
     nodes.clear()
     group = nodes.new("ShaderNodeGroup")
