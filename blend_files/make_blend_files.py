@@ -8,7 +8,9 @@ import bpy
 from mathutils import Matrix, Vector, noise
 
 HERE = pathlib.Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parent / "addon"))
+sys.path[:0] = [str(HERE), str(HERE.parent / "addon")]
+
+from parts import add_ground, add_object, plain_material  # noqa: E402
 
 
 def empty_file():
@@ -34,13 +36,6 @@ def empty_file():
     scene.world.use_nodes = False
     scene.world.color = (0.0, 0.0, 0.0)
     return scene
-
-
-def add_object(name, data, matrix=Matrix()):
-    new = bpy.data.objects.new(name, data)
-    new.matrix_world = matrix
-    bpy.context.scene.collection.objects.link(new)
-    return new
 
 
 def add_sun(name, towards, irradiance):
@@ -171,28 +166,6 @@ def lit_world(scene, colour):
     scene.world.color = colour
     scene.render.film_transparent = False
     scene.view_settings.exposure = 0.0
-
-
-def plain_material(name, colour):
-    """Of Blender's own nodes: a diffuse surface that is no grain."""
-    material = bpy.data.materials.new(name)
-    material.use_nodes = True
-    nodes = material.node_tree.nodes
-    nodes.clear()
-    output, surface = nodes.new("ShaderNodeOutputMaterial"), nodes.new("ShaderNodeBsdfDiffuse")
-    surface.inputs["Color"].default_value = (*colour, 1.0)
-    material.node_tree.links.new(surface.outputs[0], output.inputs["Surface"])
-    material.diffuse_color = (*colour, 1.0)
-    return material
-
-
-def add_ground(half, material):
-    corners = [(-half, -half, 0.0), (half, -half, 0.0), (half, half, 0.0), (-half, half, 0.0)]
-    ground = bpy.data.meshes.new("Ground")
-    ground.from_pydata(corners, [], [(0, 1, 2, 3)])
-    ground.uv_layers.new(name="UVMap").data.foreach_set("uv", [0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 0.0, 1.0])
-    ground.materials.append(material)
-    return add_object("Ground", ground)
 
 
 def make_heap():

@@ -15,7 +15,9 @@ import numpy as np
 from mathutils import Matrix, Vector
 
 DOCS = pathlib.Path(__file__).resolve().parent
-sys.path.insert(0, str(DOCS.parent / "addon"))
+sys.path[:0] = [str(DOCS.parent / "addon"), str(DOCS.parent / "blend_files")]
+
+import parts  # noqa: E402
 
 SIZE = (240, 180)
 BLOCK = 10
@@ -55,9 +57,7 @@ def sun(irradiance, colour, height, around, wide):
     light.energy, light.color, light.angle = irradiance, colour, math.radians(wide)
     rise, turn = math.radians(height), math.radians(around)
     towards = Vector((math.cos(rise) * math.cos(turn), math.cos(rise) * math.sin(turn), math.sin(rise)))
-    placed = bpy.data.objects.new("Sun", light)
-    placed.matrix_world = towards.to_track_quat("Z", "Y").to_matrix().to_4x4()
-    bpy.context.scene.collection.objects.link(placed)
+    parts.add_object("Sun", light, towards.to_track_quat("Z", "Y").to_matrix().to_4x4())
 
 
 def background():
@@ -137,17 +137,6 @@ HEAPS = (
 
 # Scenes
 
-def ground_material(colour):
-    material = bpy.data.materials.new("Ground")
-    material.use_nodes = True
-    nodes = material.node_tree.nodes
-    nodes.clear()
-    output, surface = nodes.new("ShaderNodeOutputMaterial"), nodes.new("ShaderNodeBsdfDiffuse")
-    surface.inputs["Color"].default_value = (*colour, 1.0)
-    material.node_tree.links.new(surface.outputs[0], output.inputs["Surface"])
-    return material
-
-
 def grain_material(preset, changes, millimetres_per_unit):
     """A grain, and Cycles' nodes that mean the same."""
     from mesograin.schema import models, presets
@@ -185,12 +174,7 @@ def pour(heap):
         shapes.append(bpy.data.objects.new(data.name, data))
     placings = pile.settle(heap.count, size, shapes=len(shapes), seed=1)
     scene.collection.objects.link(objects.add_pile(placings, shapes, "Heap"))
-    half = 40.0
-    data = bpy.data.meshes.new("Ground")
-    data.from_pydata([(-half, -half, 0.0), (half, -half, 0.0), (half, half, 0.0), (-half, half, 0.0)], [],
-                     [(0, 1, 2, 3)])
-    data.materials.append(ground_material(heap.ground))
-    scene.collection.objects.link(bpy.data.objects.new("Ground", data))
+    parts.add_ground(40.0, parts.plain_material("Ground", heap.ground))
     heap.light()
     reach = float(np.percentile(np.hypot(*placings.middles[:, :2].T), 90.0))
     top = float(placings.middles[:, 2].max())
@@ -204,10 +188,8 @@ def look_at(reach, top):
     at = Vector((0.0, 0.0, 0.42 * top))
     away = Vector((0.0, -math.cos(math.radians(32.0)), math.sin(math.radians(32.0))))
     place = at + 3.4 * reach * away
-    made = bpy.data.objects.new("Camera", camera)
-    made.matrix_world = Matrix.Translation(place) @ away.to_track_quat("Z", "Y").to_matrix().to_4x4()
-    bpy.context.scene.collection.objects.link(made)
-    bpy.context.scene.camera = made
+    bpy.context.scene.camera = parts.add_object(
+        "Camera", camera, Matrix.Translation(place) @ away.to_track_quat("Z", "Y").to_matrix().to_4x4())
 
 
 # Pictures
@@ -225,16 +207,7 @@ def render(path):
     scene.render.filepath = str(path)
     before = processor_seconds()
     bpy.ops.render.render(write_still=True)
-    return pixels_of(path), processor_seconds() - before
-
-
-def pixels_of(path):
-    image = bpy.data.images.load(str(path))
-    image.colorspace_settings.name = "Non-Color"
-    pixels = np.empty(SIZE[0] * SIZE[1] * image.channels, dtype=np.float32)
-    image.pixels.foreach_get(pixels)
-    bpy.data.images.remove(image)
-    return pixels.reshape(SIZE[1], SIZE[0], -1)
+    return parts.pixels_of(path), processor_seconds() - before
 
 
 def ours(exchange, folder):
@@ -259,7 +232,7 @@ def theirs(heap, folder):
     scene = bpy.context.scene
     took = folder / "cycles.json"
     if took.exists():
-        return [pixels_of(folder / f"cycles_{seed}.exr")[..., :3] for seed in SEEDS], json.loads(took.read_text())
+        return [parts.pixels_of(folder / f"cycles_{seed}.exr")[..., :3] for seed in SEEDS], json.loads(took.read_text())
     pictures, seconds = [], 0.0
     for seed in SEEDS:
         chosen = settings.settings(kinds.KINDS["volume_dielectric"], heap.samples, seed, SIZE)
@@ -275,15 +248,10 @@ def theirs(heap, folder):
 
 # Numbers
 
-def blocks(picture):
-    """Means of blocks of a picture, row by row."""
-    return picture.astype(np.float64).reshape(SIZE[1] // BLOCK, BLOCK, SIZE[0] // BLOCK, BLOCK, -1).mean(axis=(1, 3))
-
-
 def numbers(picture, references, covered):
     """(ratio of totals, relative L1 in blocks, that of the noise of the references' mean), where grains are."""
-    where = blocks(covered[..., None])[..., 0] > 0.5
-    found, first, second = (blocks(each[..., :3])[where] for each in (picture, *references))
+    where = parts.blocks(covered[..., None], BLOCK)[..., 0] > 0.5
+    found, first, second = (parts.blocks(each[..., :3], BLOCK)[where] for each in (picture, *references))
     right = 0.5 * (first + second)
     return (found.sum() / right.sum(), np.abs(found - right).sum() / right.sum(),
             0.5 * np.abs(first - second).sum() / right.sum())
@@ -295,18 +263,6 @@ def shown(picture, exposure):
     return np.where(linear < 0.0031308, 12.92 * linear, 1.055 * linear ** (1.0 / 2.4) - 0.055)
 
 
-def save_beside(name, pictures):
-    gap = np.ones((SIZE[1], 6, 3), dtype=np.float32)
-    joined = np.concatenate([part for picture in pictures for part in (picture, gap)][:-1], axis=1)
-    height, width = joined.shape[:2]
-    image = bpy.data.images.new(name, width, height)
-    image.colorspace_settings.name = "Non-Color"
-    image.pixels.foreach_set(np.concatenate((joined, np.ones((height, width, 1))), axis=-1).astype(np.float32).ravel())
-    image.filepath_raw, image.file_format = str(DOCS / "images" / f"gallery_{name}.jpg"), "JPEG"
-    bpy.context.scene.render.image_settings.quality = 85
-    image.save()
-
-
 def take(heap, folder):
     """The two lines of docs/gallery.md of a Heap: numbers and pictures."""
     pour(heap)
@@ -316,7 +272,8 @@ def take(heap, folder):
     references, seconds = theirs(heap, folder)
     mean = np.mean(references, axis=0)
     exposure = 0.85 / np.percentile(mean[covered > 0.5].mean(axis=-1), 97.0)
-    save_beside(heap.name, [shown(picture, exposure) for picture in (*(each for each, _ in pictures.values()), mean)])
+    looks = [shown(picture, exposure) for picture in (*(each for each, _ in pictures.values()), mean)]
+    parts.save_beside(DOCS / "images" / f"gallery_{heap.name}.jpg", looks, 85)
     cells = []
     for picture, took in pictures.values():
         total, off, noise = numbers(picture, references, covered)

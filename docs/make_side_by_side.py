@@ -10,7 +10,9 @@ import numpy as np
 from mathutils import Euler, Matrix, Vector
 
 DOCS = pathlib.Path(__file__).resolve().parent
-sys.path.insert(0, str(DOCS.parent / "addon"))
+sys.path[:0] = [str(DOCS.parent / "addon"), str(DOCS.parent / "blend_files")]
+
+import parts  # noqa: E402
 
 SIZE = (400, 300)
 BLOCK = 10
@@ -184,40 +186,17 @@ def render(engine, folder, mirrored=False):
     settings.file_format, settings.color_mode, settings.color_depth = "OPEN_EXR", "RGB", "32"
     scene.render.filepath = str(folder / f"{engine}.exr")
     bpy.ops.render.render(write_still=True)
-    linear = pixels_of(scene.render.filepath)
+    linear = parts.pixels_of(scene.render.filepath)[..., :3]
     settings.file_format, settings.color_depth = "PNG", "8"
     looks = str(folder / f"{engine}.png")
     bpy.data.images["Render Result"].save_render(looks)
-    return pixels_of(looks), linear
-
-
-def pixels_of(path):
-    image = bpy.data.images.load(path)
-    image.colorspace_settings.name = "Non-Color"
-    pixels = np.empty(SIZE[0] * SIZE[1] * image.channels, dtype=np.float32)
-    image.pixels.foreach_get(pixels)
-    bpy.data.images.remove(image)
-    return pixels.reshape(SIZE[1], SIZE[0], -1)[..., :3]
+    return parts.pixels_of(looks)[..., :3], linear
 
 
 def difference(ours, theirs):
     """Relative L1 of the means of blocks."""
-    def blocks(picture):
-        return picture.astype(np.float64).reshape(SIZE[1] // BLOCK, BLOCK, SIZE[0] // BLOCK, BLOCK, 3).mean(axis=(1, 3))
-
-    return np.abs(blocks(ours) - blocks(theirs)).sum() / blocks(theirs).sum()
-
-
-def save_beside(name, pictures):
-    gap = np.ones((SIZE[1], 6, 3), dtype=np.float32)
-    joined = np.concatenate((pictures[0], gap, pictures[1]), axis=1)
-    height, width = joined.shape[:2]
-    image = bpy.data.images.new(name, width, height)
-    image.colorspace_settings.name = "Non-Color"
-    image.pixels.foreach_set(np.concatenate((joined, np.ones((height, width, 1))), axis=-1).astype(np.float32).ravel())
-    image.filepath_raw, image.file_format = str(DOCS / "images" / f"scene_{name}.jpg"), "JPEG"
-    bpy.context.scene.render.image_settings.quality = 88
-    image.save()
+    found, right = (parts.blocks(each, BLOCK) for each in (ours, theirs))
+    return np.abs(found - right).sum() / right.sum()
 
 
 def take(make):
@@ -232,7 +211,7 @@ def take(make):
         looks, ours = render("MESOGRAIN", folder)
         full_looks, full = render("CYCLES", folder)
         _, mirrored = render("CYCLES", folder, mirrored=True)
-    save_beside(name, (looks, full_looks))
+    parts.save_beside(DOCS / "images" / f"scene_{name}.jpg", (looks, full_looks), 88)
     for warning in warnings:
         print(f"{name}: {warning}", flush=True)
     return (f"| {make.__doc__.rstrip('.')} | {100.0 * difference(ours, mirrored):.1f} % | "

@@ -1,5 +1,5 @@
 // Light that depends on the direction of a surface's normal: spherical harmonics to order 1, written as mean + slope .
-// n.
+// n, or to order 2.
 #pragma once
 
 #include <array>
@@ -11,25 +11,76 @@
 
 namespace mesograin::heap {
 
-/// For red, green and blue: xyz the slope, w the mean over all normals.
+/// The harmonics of order 2 at a place p, such that a . b = P2 of the angle between, times their squared lengths.
+using SecondOrder = std::array<float, 5>;
+
+inline SecondOrder second_order(const glm::vec3& p) {
+  constexpr float root = 1.7320508F;
+  return {root * p.x * p.y, root * p.y * p.z, root * p.z * p.x, 0.5F * root * (p.x * p.x - p.y * p.y),
+          p.z * p.z - 0.5F * (p.x * p.x + p.y * p.y)};
+}
+
+/// For red, green and blue.
 struct Coefficients {
+  /// xyz the slope, w the mean over all normals.
   std::array<glm::vec4, 3> channels{glm::vec4(0.0F), glm::vec4(0.0F), glm::vec4(0.0F)};
+  std::array<SecondOrder, 3> second{};  ///< of what is told so finely, else 0
 
   glm::vec3 at(const glm::vec3& normal) const {
+    glm::vec3 light = first_at(normal);
+    const SecondOrder basis = second_order(normal);
+    for (std::size_t channel = 0; channel < 3; ++channel)
+      for (std::size_t i = 0; i < basis.size(); ++i) light[static_cast<int>(channel)] += second[channel][i] * basis[i];
+    return light;
+  }
+
+  /// The same where there is no second order.
+  glm::vec3 first_at(const glm::vec3& normal) const {
     const glm::vec4 basis(normal, 1.0F);
     return {glm::dot(channels[0], basis), glm::dot(channels[1], basis), glm::dot(channels[2], basis)};
   }
 
   /// Adds the projection of `light` that is found at one of many normals which are spread evenly; its share of them is
-  /// in it.
-  void add(const glm::vec3& light, const glm::vec3& normal) {
+  /// in it. `fine`: to order 2.
+  void add(const glm::vec3& light, const glm::vec3& normal, bool fine) {
     const glm::vec4 basis(3.0F * normal, 1.0F);
     for (int channel = 0; channel < 3; ++channel) channels[static_cast<std::size_t>(channel)] += light[channel] * basis;
+    if (!fine) return;
+    const SecondOrder more = second_order(normal);
+    for (std::size_t channel = 0; channel < 3; ++channel)
+      for (std::size_t i = 0; i < more.size(); ++i)
+        second[channel][i] += 5.0F * light[static_cast<int>(channel)] * more[i];
   }
 };
 
-inline Coefficients operator*(const Coefficients& coefficients, const glm::vec3& by) {
-  return {{coefficients.channels[0] * by.r, coefficients.channels[1] * by.g, coefficients.channels[2] * by.b}};
+inline Coefficients operator*(Coefficients coefficients, const glm::vec3& by) {
+  for (std::size_t channel = 0; channel < 3; ++channel) {
+    coefficients.channels[channel] *= by[static_cast<int>(channel)];
+    for (float& number : coefficients.second[channel]) number *= by[static_cast<int>(channel)];
+  }
+  return coefficients;
+}
+
+inline Coefficients operator+(Coefficients a, const Coefficients& b) {
+  for (std::size_t channel = 0; channel < 3; ++channel) {
+    a.channels[channel] += b.channels[channel];
+    for (std::size_t i = 0; i < b.second[channel].size(); ++i) a.second[channel][i] += b.second[channel][i];
+  }
+  return a;
+}
+
+inline Coefficients operator-(const Coefficients& a, const Coefficients& b) { return a + b * glm::vec3(-1.0F); }
+
+/// Of each channel the sum of products.
+inline glm::vec3 product(const Coefficients& a, const Coefficients& b) {
+  glm::vec3 sum(0.0F);
+  for (std::size_t channel = 0; channel < 3; ++channel) {
+    float& of_channel = sum[static_cast<int>(channel)];
+    of_channel = glm::dot(a.channels[channel], b.channels[channel]);
+    for (std::size_t i = 0; i < a.second[channel].size(); ++i)
+      of_channel += a.second[channel][i] * b.second[channel][i];
+  }
+  return sum;
 }
 
 /// One for each grain.
@@ -40,13 +91,5 @@ struct Lit {
   Field direct;
   Field crossed;
 };
-
-inline Coefficients operator+(const Coefficients& a, const Coefficients& b) {
-  return {{a.channels[0] + b.channels[0], a.channels[1] + b.channels[1], a.channels[2] + b.channels[2]}};
-}
-
-inline Coefficients operator-(const Coefficients& a, const Coefficients& b) {
-  return {{a.channels[0] - b.channels[0], a.channels[1] - b.channels[1], a.channels[2] - b.channels[2]}};
-}
 
 }  // namespace mesograin::heap

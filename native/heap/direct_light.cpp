@@ -69,10 +69,11 @@ void look_from_node(const Space& space, const Patches::Node& node, const glm::dv
   }
 }
 
-void add_grain(const GrainTable& table, const Look& look, const glm::vec3& left, Coefficients& sum) {
+void add_grain(const GrainTable& table, const Look& look, const glm::vec3& left, bool fine, Coefficients& sum) {
   const Outcome outcome = table.draw(look.mu, look.choice);
   const TurnedFrame frame(look.normal, -look.ray.direction);
-  sum.add(left * look.brings * outcome.weight, table.seen_place(frame * outcome.normal, frame * outcome.direction));
+  sum.add(left * look.brings * outcome.weight, table.seen_place(frame * outcome.normal, frame * outcome.direction),
+          fine);
 }
 
 /// Whether any of these meets a place where a grain was or is that has moved.
@@ -110,9 +111,9 @@ void find_direct_light(const Space& space, const Heap& heap, const Rays& rays, c
         if (left == glm::vec3(0.0F)) continue;
         Coefficients& sum = look.ray.crossed ? lit.crossed[i] : lit.direct[i];
         if (i < grains)
-          add_grain(*space.kind(static_cast<std::uint32_t>(i)).from_light, look, left, sum);
+          add_grain(*space.kind(static_cast<std::uint32_t>(i)).from_light, look, left, rays.fine(space, i), sum);
         else
-          sum.add(left * look.brings, glm::vec3(0.0F));  // as much at every normal
+          sum.add(left * look.brings, glm::vec3(0.0F), false);  // as much at every normal
       }
     }
   });

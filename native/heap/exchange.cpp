@@ -13,9 +13,10 @@ Quality quality_for(std::size_t grains) {
   Quality quality;
   // The noise of a grain's rays is seen where grains are few and large; there they cost no more than those of 10^4 do.
   constexpr std::size_t affordable = 10'000;
-  constexpr std::size_t most = 4;
+  constexpr std::size_t most = 8;
   const auto finer = static_cast<int>(std::clamp(affordable / std::max(grains, std::size_t{1}), std::size_t{1}, most));
   quality.rays *= finer;
+  quality.light_rays *= finer;
   quality.seen_rays *= finer;
   quality.rays = std::clamp(each, coarse.rays, quality.rays);
   quality.light_rays = std::clamp(each, coarse.light_rays, quality.light_rays);

@@ -28,7 +28,7 @@ Quality quality_for(std::size_t grains);
 
 /// For a first picture: within a tenth of what the default finds.
 inline constexpr Quality coarse{
-    .rays = 16, .wall_rays = 32, .light_rays = 16, .seen_rays = 8, .tolerance = 5e-3F, .walks = 512, .quick = true};
+    .rays = 16, .wall_rays = 32, .light_rays = 24, .seen_rays = 8, .tolerance = 5e-3F, .walks = 512, .quick = true};
 
 /// How often each part of a solution was found anew.
 struct Parts {

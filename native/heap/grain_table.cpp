@@ -90,7 +90,7 @@ bool is_grey(const Optics& optics) {
 }  // namespace
 
 GrainTable::GrainTable(const Optics& optics, Sense sense, const transport::Effort& effort, int walks)
-    : walks_(walks), transparent_(optics.transparent()), sigma_t_(optics.sigma_t) {
+    : walks_(walks), opaque_(optics.opaque()), transparent_(optics.transparent()), sigma_t_(optics.sigma_t) {
   if (transparent_)
     for (int channel = 0; channel < 3; ++channel)
       met_[channel] = static_cast<float>(met_from_everywhere(optics.sigma_t[channel]));

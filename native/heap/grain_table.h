@@ -47,6 +47,9 @@ class GrainTable {
   glm::vec3 seen_place(const glm::vec3& normal, const glm::vec3& towards) const;
   float seen_place_scale() const { return seen_place_scale_; }
 
+  /// Whether light leaves where it comes in.
+  bool is_opaque() const { return opaque_; }
+
   /// Where light comes in; of what is not opaque.
   const Entries& came_in() const { return came_in_; }
 
@@ -55,6 +58,7 @@ class GrainTable {
   void trace(const Optics& optics, Sense sense, const transport::Effort& effort);
 
   int walks_;
+  bool opaque_;
   bool transparent_;
   glm::vec3 sigma_t_;
   glm::vec3 met_{1.0F};

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <glm/matrix.hpp>
 #include <mutex>
 #include <numbers>
+#include <numeric>
 #include <utility>
 
 #include "heap/moves.h"
@@ -42,24 +42,56 @@ struct Departing {
   glm::vec3 normal;
 };
 
-/// Scales the weights so that a grain in even light sends out just what its table says, as much at every normal: which
-/// outcomes were drawn and where neither wins light nor turns it.
-void balance(std::vector<Departing>& departing, const glm::vec3& albedo) {
-  for (int channel = 0; channel < 3; ++channel) {
-    glm::dmat4 moments(0.0);
-    for (const Departing& from : departing) {
-      const glm::dvec4 basis(glm::dvec3(from.normal), 1.0);
-      moments += glm::outerProduct(basis, static_cast<double>(from.weight[channel]) * basis);
+constexpr std::size_t most_numbers = 9;
+using Numbers = std::array<double, most_numbers>;
+
+/// What a normal is told by: by four numbers to order 1, by all to order 2.
+Numbers numbers_of(const glm::vec3& normal) {
+  const SecondOrder second = second_order(normal);
+  Numbers numbers{1.0, normal.x, normal.y, normal.z};
+  std::copy(second.begin(), second.end(), numbers.begin() + 4);
+  return numbers;
+}
+
+double product(const Numbers& a, const Numbers& b) { return std::inner_product(a.begin(), a.end(), b.begin(), 0.0); }
+
+/// The first of its inverse's columns, of a matrix that is symmetric and positive (elimination), 0 beyond `count`.
+Numbers first_of_inverse(std::array<Numbers, most_numbers> matrix, std::size_t count) {
+  Numbers right{1.0};
+  for (std::size_t row = 0; row < count; ++row)
+    for (std::size_t below = row + 1; below < count; ++below) {
+      const double factor = matrix[below][row] / matrix[row][row];
+      for (std::size_t column = row; column < count; ++column) matrix[below][column] -= factor * matrix[row][column];
+      right[below] -= factor * right[row];
     }
-    const double sum = moments[3][3];
+  Numbers solved{};
+  for (std::size_t row = count; row-- > 0;)
+    solved[row] = (right[row] - product(matrix[row], solved)) / matrix[row][row];
+  return solved;
+}
+
+/// Scales the weights so that a grain in even light sends out just what its table says, as much at every normal as far
+/// as `count` numbers tell: which outcomes were drawn and where neither wins light nor turns it.
+void balance(std::vector<Departing>& departing, const glm::vec3& albedo, std::size_t count) {
+  constexpr double least = 0.2;
+  for (int channel = 0; channel < 3; ++channel) {
+    std::array<Numbers, most_numbers> moments{};
+    for (const Departing& from : departing) {
+      const Numbers numbers = numbers_of(from.normal);
+      for (std::size_t row = 0; row < count; ++row)
+        for (std::size_t column = 0; column < count; ++column)
+          moments[row][column] += static_cast<double>(from.weight[channel]) * numbers[row] * numbers[column];
+    }
+    const double sum = moments[0][0];
     if (!(sum > 0.0)) continue;
-    // factor . (n, 1) for a ray that leaves at n.
-    const glm::dvec4 even(0.0, 0.0, 0.0, static_cast<double>(albedo[channel]) / sum);
-    glm::dvec4 factor = glm::inverse(moments / sum) * even;
-    const bool sound = glm::length(glm::dvec3(factor)) < 0.8 * factor.w;
-    if (!sound) factor = even;
+    const Numbers even{1.0 / sum};
+    Numbers factors = first_of_inverse(moments, count);
+    const bool sound = std::all_of(departing.begin(), departing.end(), [&](const Departing& from) {
+      return product(factors, numbers_of(from.normal)) > least * even[0];
+    });
+    if (!sound) factors = even;
     for (Departing& from : departing)
-      from.weight[channel] *= static_cast<float>(glm::dot(factor, glm::dvec4(glm::dvec3(from.normal), 1.0)));
+      from.weight[channel] *= albedo[channel] * static_cast<float>(product(factors, numbers_of(from.normal)));
   }
 }
 
@@ -88,6 +120,20 @@ struct Look {
   glm::vec3 towards;
 };
 
+/// One of many places of a ball, seen from one of many sides, all alike.
+struct Seen {
+  explicit Seen(const std::array<float, 5>& point)
+      : normal(transport::isotropic(point[0], point[1])),
+        mu(std::sqrt(point[2])),
+        frame(normal, point[4]),
+        towards(frame * glm::vec3(-std::sqrt(1.0F - point[2]), 0.0F, mu)) {}
+
+  glm::vec3 normal;
+  float mu;
+  TurnedFrame frame;
+  glm::vec3 towards;
+};
+
 /// The rays of a grain through its table, or of a node.
 std::vector<Look> looks_from(const Space& space, std::size_t number, const Rays& rays, std::uint64_t seed) {
   transport::Random random(seed, number);
@@ -101,13 +147,10 @@ std::vector<Look> looks_from(const Space& space, std::size_t number, const Rays&
     looks.reserve(static_cast<std::size_t>(count));
     for (int i = 0; i < count; ++i) {
       const std::array<float, 5> point = spread.point(i);
-      const glm::vec3 normal = transport::isotropic(point[0], point[1]);
-      const float mu = std::sqrt(point[2]);
-      const Outcome outcome = table.draw(mu, point[3]);
-      const TurnedFrame frame(normal, point[4]);
-      looks.push_back({{space.place(grain, frame * outcome.normal), frame * outcome.direction, outcome.weight},
-                       normal,
-                       frame * glm::vec3(-std::sqrt(1.0F - point[2]), 0.0F, mu)});
+      const Seen seen(point);
+      const Outcome outcome = table.draw(seen.mu, point[3]);
+      const glm::vec3 leaves = space.place(grain, seen.frame * outcome.normal);
+      looks.push_back({{leaves, seen.frame * outcome.direction, outcome.weight}, seen.normal, seen.towards});
     }
     return looks;
   }
@@ -135,12 +178,9 @@ std::vector<Look> looks_through(const Space& space, std::size_t number, const Ra
   const int count = rays.of(number);
   looks.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) {
-    const std::array<float, 5> point = spread.point(i);
-    const glm::vec3 normal = transport::isotropic(point[0], point[1]);
-    const float mu = std::sqrt(point[2]);
-    const glm::vec3 inwards = TurnedFrame(normal, point[4]) * glm::vec3(std::sqrt(1.0F - point[2]), 0.0F, -mu);
-    looks.push_back(
-        {{space.place(grain, normal + 2.0F * mu * inwards), inwards, table.crossing(mu)}, normal, -inwards});
+    const Seen seen(spread.point(i));
+    const glm::vec3 leaves = space.place(grain, seen.normal - 2.0F * seen.mu * seen.towards);
+    looks.push_back({{leaves, -seen.towards, table.crossing(seen.mu)}, seen.normal, seen.towards});
   }
   return looks;
 }
@@ -168,8 +208,8 @@ bool touched(const Space& space, const Moves& moves, const std::vector<Look>& lo
   return false;
 }
 
-Found found_by(const Space& space, std::size_t number, const std::vector<Look>& looks, const glm::vec3& radiance,
-               std::uint64_t seed) {
+Found found_by(const Space& space, std::size_t number, const std::vector<Look>& looks, bool fine,
+               const glm::vec3& radiance, std::uint64_t seed) {
   Found found;
   std::vector<Departing> departing;
   std::vector<Ending> endings(looks.size());
@@ -187,7 +227,7 @@ Found found_by(const Space& space, std::size_t number, const std::vector<Look>& 
       endings[i].left[channel] =
           departing[i].weight[channel] > 0.0F ? ray.weight[channel] / departing[i].weight[channel] : 0.0F;
   }
-  if (of_grain) balance(departing, table->albedo());
+  if (of_grain) balance(departing, table->albedo(), fine ? most_numbers : 4);
   found.links.reserve(static_cast<std::size_t>(
       std::count_if(endings.begin(), endings.end(), [](const Ending& ending) { return ending.source.has_value(); })));
   for (std::size_t i = 0; i < departing.size(); ++i) {
@@ -196,7 +236,7 @@ Found found_by(const Space& space, std::size_t number, const std::vector<Look>& 
     if (endings[i].source)
       found.links.push_back(link_to(*endings[i].source, weight, from.normal));
     else
-      (endings[i].crossed ? found.crossed : found.direct).add(weight * radiance, from.normal);
+      (endings[i].crossed ? found.crossed : found.direct).add(weight * radiance, from.normal, fine);
   }
   return found;
 }
@@ -243,15 +283,24 @@ void Links::gather(const Field& sent, Field& answer, const transport::Effort& ef
   transport::run_pieces(effort, (sent.size() + at_once - 1) / at_once, [&](std::size_t piece) {
     for (std::size_t i = piece * at_once; i < std::min(sent.size(), (piece + 1) * at_once); ++i) {
       Coefficients sum;
+      const bool of_fine = !fine.empty() && fine[i];
       for (const Link& link : of[i]) {
         glm::vec3 weight(link.weight[0], link.weight[1], link.weight[2]);
         if (change != nullptr) weight *= change->received[link.from];
-        sum.add(weight * sent[link.from].at(unpacked(link.sent_at)), unpacked(link.leaves_at));
+        const glm::vec3 sent_at = unpacked(link.sent_at);
+        const glm::vec3 light = fine.empty() ? sent[link.from].first_at(sent_at) : sent[link.from].at(sent_at);
+        sum.add(weight * light, unpacked(link.leaves_at), of_fine);
       }
       if (change != nullptr && !change->answered.empty()) sum = sum * change->answered[i];
       answer[i] = sum;
     }
   });
+}
+
+bool Rays::fine(const Space& space, std::size_t number) const {
+  constexpr int least = 64;
+  return number < space.grains().size() && of(number) >= least &&
+         space.kind(static_cast<std::uint32_t>(number)).from_viewer->is_opaque();
 }
 
 Deep find_deep(const Space& space, int ways, const transport::Effort& effort) {
@@ -283,11 +332,18 @@ Deep find_deep(const Space& space, int ways, const transport::Effort& effort) {
 Links find_links(const Space& space, const Rays& rays, const glm::vec3& radiance, Lit& lit,
                  const transport::Effort& effort) {
   const std::size_t count = space.size();
-  Links links{std::vector<std::vector<Link>>(count)};
+  Links links{std::vector<std::vector<Link>>(count), {}};
+  bool any_fine = false;
+  for (std::size_t i = 0; i < count; ++i) {
+    links.fine.push_back(rays.fine(space, i));
+    any_fine = any_fine || links.fine.back();
+  }
+  if (!any_fine) links.fine.clear();
   lit.direct.assign(count, {});
   lit.crossed.assign(count, {});
   for_each(count, effort, [&](std::size_t i) {
-    Found found = found_by(space, i, looks_from(space, i, rays, effort.seed), radiance, effort.seed);
+    Found found =
+        found_by(space, i, looks_from(space, i, rays, effort.seed), rays.fine(space, i), radiance, effort.seed);
     links.of[i] = std::move(found.links);
     lit.direct[i] = found.direct;
     lit.crossed[i] = found.crossed;
@@ -301,7 +357,7 @@ glm::vec3 look_through(const glm::vec3& normal, const glm::vec3& towards) {
 }
 
 Links find_behind(const Space& space, const Rays& rays, const transport::Effort& effort) {
-  Links behind{std::vector<std::vector<Link>>(space.size())};
+  Links behind{std::vector<std::vector<Link>>(space.size()), {}};
   const std::uint64_t seed = effort.seed + behind_seed;
   for_each(space.grains().size(), effort,
            [&](std::size_t i) { behind.of[i] = seen_behind(space, i, looks_through(space, i, rays, seed), seed); });
@@ -316,7 +372,7 @@ std::size_t renew(const Space& space, const Moves& moves, const Rays& rays, cons
     const std::vector<Look> looks = looks_from(space, i, rays, effort.seed);
     const bool moved = i < space.grains().size() && moves.moved(i);
     if (!moved && !touched(space, moves, looks, i, effort.seed)) return;
-    Found anew = found_by(space, i, looks, radiance, effort.seed);
+    Found anew = found_by(space, i, looks, rays.fine(space, i), radiance, effort.seed);
     const std::lock_guard lock(mutex);
     found.emplace_back(i, std::move(anew));
   });

@@ -30,6 +30,7 @@ struct Change {
 
 struct Links {
   std::vector<std::vector<Link>> of;  ///< each grain, then each node of walls
+  std::vector<bool> fine;             ///< of each, whether it is told to order 2; empty: none is
 
   std::size_t count() const;
 
@@ -48,6 +49,10 @@ struct Rays {
   Deep deep{};
 
   int of(std::size_t grain) const { return deep && (*deep)[grain] ? of_deep : of_grain; }
+
+  /// Whether they tell of a grain or node to order 2: order 1 leaves 4 % in a heap of bright opaque balls, whose light
+  /// changes at contacts; of others order 2 tells no more, and few rays tell nothing of it.
+  bool fine(const Space& space, std::size_t number) const;
 };
 
 /// Grains that no light leaves the heap from but by way of more than `ways` others, as far as a few rays of each tell.

@@ -19,26 +19,20 @@ constexpr float least_left = 1e-6F;
 
 glm::dvec3 product(const Field& a, const Field& b) {
   glm::dvec3 sum(0.0);
-  for (std::size_t i = 0; i < a.size(); ++i)
-    for (std::size_t channel = 0; channel < 3; ++channel)
-      sum[static_cast<int>(channel)] += static_cast<double>(glm::dot(a[i].channels[channel], b[i].channels[channel]));
+  for (std::size_t i = 0; i < a.size(); ++i) sum += glm::dvec3(product(a[i], b[i]));
   return sum;
 }
 
 // a += factor b
 void add(Field& a, const glm::dvec3& factor, const Field& b) {
   const glm::vec3 by(factor);
-  for (std::size_t i = 0; i < a.size(); ++i)
-    for (std::size_t channel = 0; channel < 3; ++channel)
-      a[i].channels[channel] += by[static_cast<int>(channel)] * b[i].channels[channel];
+  for (std::size_t i = 0; i < a.size(); ++i) a[i] = a[i] + b[i] * by;
 }
 
 // a = b + factor a
 void scale_and_add(Field& a, const glm::dvec3& factor, const Field& b) {
   const glm::vec3 by(factor);
-  for (std::size_t i = 0; i < a.size(); ++i)
-    for (std::size_t channel = 0; channel < 3; ++channel)
-      a[i].channels[channel] = b[i].channels[channel] + by[static_cast<int>(channel)] * a[i].channels[channel];
+  for (std::size_t i = 0; i < a.size(); ++i) a[i] = b[i] + a[i] * by;
 }
 
 // 0 where there is nothing left to divide.

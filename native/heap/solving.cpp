@@ -1,7 +1,5 @@
-// A stack of heaps and the thread that solves them.
+// Who is told of a heap's light, and when it is given up.
 #include "heap/solving.h"
-
-#include <unistd.h>
 
 #include <algorithm>
 #include <exception>
@@ -9,9 +7,6 @@
 
 namespace mesograin::heap {
 namespace {
-
-// Drawing goes first where there are few cores.
-constexpr int background_niceness = 5;
 
 // A quick answer takes about a tenth of the time.
 constexpr double quick_share = 0.1;
@@ -52,11 +47,6 @@ Solvers& Solvers::instance() {
   return solvers;
 }
 
-Solvers::~Solvers() {
-  thread_.request_stop();
-  wake_.notify_all();
-}
-
 std::shared_ptr<const Solving> Solvers::ask(Heap heap, const std::shared_ptr<const Solving>& before) {
   const std::lock_guard lock(mutex_);
   std::erase_if(held_, [](const std::weak_ptr<Solving>& one) { return one.expired(); });
@@ -70,26 +60,8 @@ std::shared_ptr<const Solving> Solvers::ask(Heap heap, const std::shared_ptr<con
   auto solving = std::make_shared<Solving>(std::make_shared<const Heap>(std::move(heap)), line, std::move(known));
   line->latest = solving;
   held_.push_back(solving);
-  waiting_.push_back(solving);
-  if (!thread_.joinable()) thread_ = std::jthread([this](const std::stop_token& stop) { loop(stop); });
-  wake_.notify_all();
+  waiting_.add(solving);
   return solving;
-}
-
-void Solvers::loop(const std::stop_token& stop) {
-  // Of this thread and those that it starts.
-  if (::nice(background_niceness) < 0) { /* then it competes with drawing */
-  }
-  while (true) {
-    std::weak_ptr<Solving> next;
-    {
-      std::unique_lock lock(mutex_);
-      if (!wake_.wait(lock, stop, [this] { return !waiting_.empty(); })) return;
-      next = std::move(waiting_.back());
-      waiting_.pop_back();
-    }
-    work(next, stop);
-  }
 }
 
 bool Solvers::has_heir(const Line& line, const Heap& heap) {

@@ -7,10 +7,10 @@
 #include <memory>
 #include <mutex>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "heap/solver.h"
+#include "transport/backlog.h"
 
 namespace mesograin::heap {
 
@@ -69,7 +69,6 @@ class Solvers {
   static Solvers& instance();
 
   Solvers() = default;
-  ~Solvers();
   Solvers(const Solvers&) = delete;
   Solvers& operator=(const Solvers&) = delete;
 
@@ -81,7 +80,6 @@ class Solvers {
   std::shared_ptr<const Solving> ask(Heap heap, const std::shared_ptr<const Solving>& before);
 
  private:
-  void loop(const std::stop_token& stop);
   void work(const std::weak_ptr<Solving>& of, const std::stop_token& stop);
 
   /// Whether what was asked for last in this place can be shown in the light of `heap`.
@@ -91,11 +89,10 @@ class Solvers {
   void tell(const std::weak_ptr<Solving>& of, const Line& line, News news);
 
   std::mutex mutex_;
-  std::condition_variable_any wake_;
   std::vector<std::weak_ptr<Solving>> held_;
-  std::vector<std::weak_ptr<Solving>> waiting_;
   int told_ = 0;  // lights; the thread's
-  std::jthread thread_;
+  transport::Backlog<std::weak_ptr<Solving>> waiting_{
+      [this](const std::weak_ptr<Solving>& of, const std::stop_token& stop) { work(of, stop); }};
 };
 
 }  // namespace mesograin::heap

@@ -122,6 +122,15 @@ void append(std::vector<glm::vec4>& numbers, const heap::Coefficients& coefficie
   numbers.insert(numbers.end(), coefficients.channels.begin(), coefficients.channels.end());
 }
 
+bool has_second_order(const heap::Coefficients& coefficients) {
+  return coefficients.second != std::array<heap::SecondOrder, 3>{};
+}
+
+void append_second_order(std::vector<glm::vec4>& numbers, const std::array<heap::SecondOrder, 3>& second) {
+  for (std::size_t i = 0; i < second[0].size(); ++i)
+    numbers.emplace_back(second[0][i], second[1][i], second[2][i], 0.0F);
+}
+
 }  // namespace
 
 void Exchange::set(const Content& content, const scene::Scene& scene) {
@@ -261,6 +270,14 @@ void Exchange::send() {
   for (std::size_t node = 0; node < patches.nodes().size(); ++node) {
     const auto& channels = known_->light->answer[known_grains + node].channels;
     numbers.emplace_back(channels[0].w, channels[1].w, channels[2].w, 0.0F);
+  }
+  for (std::size_t object = 0; object < roles_.size(); ++object) {
+    const Role& role = roles_[object];
+    if (!role.grain || *role.grain >= known_grains) continue;
+    const heap::Coefficients& answer = known_->light->answer[*role.grain];
+    if (!has_second_order(answer)) continue;
+    numbers[object_numbers * (object + 1) - 1].w = static_cast<float>(numbers.size());
+    append_second_order(numbers, answer.second);
   }
   device_.emplace(numbers);
 }

@@ -1,8 +1,7 @@
-// A stack of orders and the thread that works them off.
+// What is done for an order.
 #include "transport/works.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <exception>
@@ -34,9 +33,6 @@ Quality fine(const Body& body, const StoredMedium& medium) {
   const Quality thin = of_thin(medium);
   return densest(medium) * node_spacing(body, thin) < thick_spacing ? thin : of_thick(medium);
 }
-
-// Drawing goes first where there are few cores.
-constexpr int background_niceness = 5;
 
 // Mean free paths between nodes beyond which the light just below the surface is not resolved.
 constexpr double widest_spacing = 1.6;
@@ -88,11 +84,6 @@ Works& Works::instance() {
   return works;
 }
 
-Works::~Works() {
-  thread_.request_stop();
-  wake_.notify_all();
-}
-
 std::shared_ptr<const Computation> Works::ask(Order order) {
   auto computation = std::make_shared<Computation>();
   Job job{std::move(order), {}, {}, {}, computation};
@@ -106,29 +97,8 @@ std::shared_ptr<const Computation> Works::ask(Order order) {
     computation->tell(std::make_shared<StoredTransport>(std::move(*kept)), {}, true);
     return computation;
   }
-  {
-    const std::lock_guard lock(mutex_);
-    jobs_.push_back(std::move(job));
-    if (!thread_.joinable()) thread_ = std::jthread([this](const std::stop_token& stop) { loop(stop); });
-  }
-  wake_.notify_all();
+  jobs_.add(std::move(job));
   return computation;
-}
-
-void Works::loop(const std::stop_token& stop) {
-  // Of this thread and those that it starts.
-  if (::nice(background_niceness) < 0) { /* then it competes with drawing */
-  }
-  while (true) {
-    Job job;
-    {
-      std::unique_lock lock(mutex_);
-      if (!wake_.wait(lock, stop, [this] { return !jobs_.empty(); })) return;
-      job = std::move(jobs_.back());
-      jobs_.pop_back();
-    }
-    work(job, stop);
-  }
 }
 
 std::shared_ptr<Walks> Works::walks(const Job& job, const Quality& quality, const Effort& effort) {

@@ -9,10 +9,9 @@
 #include <memory>
 #include <mutex>
 #include <string>
-#include <thread>
-#include <vector>
 
 #include "scene/mesh.h"
+#include "transport/backlog.h"
 #include "transport/stored_transport.h"
 #include "transport/transport_cache.h"
 #include "transport/walks_shelf.h"
@@ -62,7 +61,6 @@ class Works {
   static Works& instance();
 
   explicit Works(TransportCache cache = TransportCache()) : cache_(std::move(cache)) {}
-  ~Works();
   Works(const Works&) = delete;
   Works& operator=(const Works&) = delete;
 
@@ -78,16 +76,12 @@ class Works {
     std::weak_ptr<Computation> computation;
   };
 
-  void loop(const std::stop_token& stop);
   void work(const Job& job, const std::stop_token& stop);
   std::shared_ptr<Walks> walks(const Job& job, const Quality& quality, const Effort& effort);
 
   TransportCache cache_;
   WalksShelf shelf_;  // of the thread
-  std::mutex mutex_;
-  std::condition_variable_any wake_;
-  std::vector<Job> jobs_;
-  std::jthread thread_;
+  Backlog<Job> jobs_{[this](const Job& job, const std::stop_token& stop) { work(job, stop); }};
 };
 
 }  // namespace mesograin::transport

