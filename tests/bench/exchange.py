@@ -170,8 +170,9 @@ def measure(native, of, count, rounds, wanted, seconds):
                 follow(view, base)
             elif frames is None:
                 frames = over_direct(native, view, scene, camera)
-                dragged = drag(native, view, of, scene, seconds) if seconds else None
-                follow(view, base)
+                if seconds:
+                    dragged = drag(native, view, of, scene, seconds)
+                    follow(view, base)
         del view
     medians = {name: {key: statistics.median(one[key] for one in each) if key != "found" else each[-1][key]
                       for key in each[0]} for name, each in found.items()}
