@@ -85,9 +85,13 @@ def test_a_frame_that_fails_leaves_nothing_and_the_rest_goes_on(scene, run, tmp_
 
 
 def test_what_cannot_be_shared_is_refused_in_a_sentence(scene, run, tmp_path):
+    if hasattr(scene.render.image_settings, "media_type"):  # which is a choice of its own from Blender 5 on
+        scene.render.image_settings.media_type = "VIDEO"
     scene.render.image_settings.file_format = "FFMPEG"
     code, [event] = run()
     assert code == frames.BAD_SCENE and "movie" in event["complaint"]
+    if hasattr(scene.render.image_settings, "media_type"):
+        scene.render.image_settings.media_type = "IMAGE"
     scene.render.image_settings.file_format = "OPEN_EXR"
     (tmp_path / "file").write_text("")
     code, events = run("--out", str(tmp_path / "file" / "grain_"))

@@ -29,7 +29,7 @@ const JOB_TYPE = {
 // Found by the engine, since an extension's modules have another name than an add-on's.
 const RENDER_FRAMES =
     "import bpy, importlib, sys; " +
-    "engine = next(each for each in bpy.types.RenderEngine.__subclasses__() if each.bl_idname == 'MESOGRAIN'); " +
+    "engine = next(each for each in bpy.types.RenderEngine.__subclasses__() if getattr(each, 'bl_idname', '') == 'MESOGRAIN'); " +
     "room = engine.__module__.rsplit('.engine.', 1)[0] + '.studies.animation.frames'; " +
     "sys.exit(importlib.import_module(room).main(sys.argv[sys.argv.index('--') + 1:]))";
 
