@@ -35,11 +35,12 @@ struct Shading {
   bool instanced = false;  ///< one of an array of instances
   bool mirrored = false;   ///< seen in another surface
   Shadows shadows = Shadows::none;
-  bool exchange = false;             ///< light goes from grain to grain
-  bool gathered = false;             ///< and was gathered for each pixel
-  bool world = false;                ///< there is a world to be seen through it
-  bool mirrors_world = false;        ///< or in its facets, and what stands before it
-  bool lights_at_place = false;      ///< the place that is shaded draws its own directions of lights that have a place
+  bool exchange = false;         ///< light goes from grain to grain
+  bool gathered = false;         ///< and was gathered for each pixel
+  bool world = false;            ///< there is a world to be seen through it
+  bool mirrors_world = false;    ///< or in its facets, and what stands before it
+  bool lights_at_place = false;  ///< the place that is shaded draws its own directions of lights that have a place
+  bool near_lights = false;      ///< such lights send each point of a grain that has light maps what they send there
   std::optional<Portion> portion{};  ///< told alone
 };
 

@@ -47,6 +47,7 @@ uniform sampler2D flow_table;
 
 struct BodyFit {
   float cosine;   // between normal and light; negative where something stands in the light
+  float facing;   // the same of the direction from which the light's map shows the grain
   float visible;  // 0 or 1, smooth at the edge of a shadow
   float reached;  // what other objects leave of the light where it meets the surface above the point
   float entered;  // and of what leaves the body at the point, where that came in
@@ -60,7 +61,7 @@ struct BodyFit {
 BodyFit fit_body(SurfacePoint point, Outwards outwards, LightSample light, LightFrame frame) {
   BodyFit fit;
   vec3 position = to_light_space(frame, point.position);
-  float cosine = dot(point.normal, light.to_light);
+  float cosine = dot(point.normal, frame.z_axis);
   // Light inside knows no edge sharper than a mean free path: the look is at a place nearby on the tangent plane, another with every sample.
   vec2 along = body.clear * (2.0 * low_discrepancy(uint(sample_index), pcg4d(uvec4(uvec2(gl_FragCoord.xy), 1u, uint(light.index))).xy) - 1.0);
   vec3 aside = vec3(abs(cosine) * along, -sign(cosine) * dot(to_light_space(frame, point.normal).xy, along));
@@ -87,7 +88,13 @@ BodyFit fit_body(SurfacePoint point, Outwards outwards, LightSample light, Light
   float bent_cosine = (cosine + aside.z / body.radius) * inversesqrt(1.0 + dot(aside, aside) / (body.radius * body.radius));
   float steepness = mix(abs(bent_cosine), entry.normal.z, known * fit.visible);
   fit.radius = clamp((0.5 * way_in / body.radius + uncertainty) / (steepness + uncertainty), 0.125, 2.0);
-  fit.cosine = mix(-abs(cosine), cosine, fit.visible);
+  fit.facing = mix(-abs(cosine), cosine, fit.visible);
+#ifdef NEAR_LIGHTS
+  float own_cosine = dot(point.normal, light.to_light);
+  fit.cosine = mix(-abs(own_cosine), own_cosine, fit.visible);
+#else
+  fit.cosine = fit.facing;
+#endif
 
   fit.mu_o = outwards.mu;
   fit.mu_o_refracted = outwards.mu_refracted;

@@ -65,12 +65,18 @@ void turn_to_light_map(inout LightSample light) {
 LightFrame light_frame(LightSample light) {
   vec4 x_axis = light_frames[light.map].x_axis;
   vec3 map = light_frames[light.map].map.xyz;
+  vec3 z_axis = light.to_light;
+#if defined(NEAR_LIGHTS) && defined(INSTANCED)
+  z_axis = normalize(grain_axes * light_frames[light.map].z_axis.xyz);
+#elif defined(NEAR_LIGHTS)
+  z_axis = light_frames[light.map].z_axis.xyz;
+#endif
 #ifdef INSTANCED
   vec3 x_in_grain = normalize(grain_axes * x_axis.xyz);
-  return LightFrame(x_in_grain, cross(light.to_light, x_in_grain), light.to_light, typical_scale * map.xy, typical_scale * x_axis.w, map.z,
-                    typical_scale, light.index);
+  return LightFrame(x_in_grain, cross(z_axis, x_in_grain), z_axis, typical_scale * map.xy, typical_scale * x_axis.w, map.z, typical_scale,
+                    light.index);
 #else
-  return LightFrame(x_axis.xyz, cross(light.to_light, x_axis.xyz), light.to_light, map.xy, x_axis.w, map.z, 1.0, light.index);
+  return LightFrame(x_axis.xyz, cross(z_axis, x_axis.xyz), z_axis, map.xy, x_axis.w, map.z, 1.0, light.index);
 #endif
 }
 

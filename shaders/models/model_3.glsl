@@ -249,8 +249,8 @@ vec3 single_scattering(Seen seen, vec3 inwards, Draws draws) {
 
   // How fast the light's way in grows along the view ray where that begins: as below a plane that is tilted like the entry above the point,
   // or, where light grazes it, like a sphere a mean free path below the surface.
-  float mu_i = refracted_cosine(abs(fit.cosine), body.eta);
-  float tilted = fit.mu_o_refracted - (fit.cosine < 0.0 ? 2.0 * mu_i * inwards.z : 0.0);
+  float mu_i = refracted_cosine(abs(fit.facing), body.eta);
+  float tilted = fit.mu_o_refracted - (fit.facing < 0.0 ? 2.0 * mu_i * inwards.z : 0.0);
   Spectrum sigma_t = SPECTRUM(single.sigma_t);
   Spectrum steepness = mu_i + sqrt(mu_i * mu_i + 2.0 / max(sigma_t * fit.radius, Spectrum(1e-6)));
   Spectrum rate = max(sigma_t * (1.0 + 2.0 * tilted / steepness), Spectrum(0.0));
@@ -317,6 +317,17 @@ vec3 single_scattering(Seen seen, vec3 inwards, Draws draws) {
 }
 #endif
 
+#if defined(NEAR_LIGHTS) && defined(SINGLE_MARCHED)
+// What is scattered once comes in by the light's map, from one direction: what it would be by the direction of the point itself, over that.
+// The first order of a thick medium is as cosine / (cosine + cosine of the view), inside; a thin one has no such slope.
+Spectrum turned_to_light(BodyFit fit) {
+  float facing = max(fit.facing, 1e-3);
+  float turned = max(fit.cosine, 0.0) * (refracted_cosine(facing, body.eta) + fit.mu_o_refracted) /
+                 (facing * (refracted_cosine(max(fit.cosine, 0.0), body.eta) + fit.mu_o_refracted + 1e-6));
+  return mix(Spectrum(1.0), Spectrum(turned), fit.visible * (1.0 - exp(-SPECTRUM(single.sigma_t) * fit.radius)));
+}
+#endif
+
 vec3 evaluate_model(SurfacePoint point, Outwards outwards, LightSample light) {
   LightFrame frame = light_frame(light);
   BodyFit fit = fit_body(point, outwards, light, frame);
@@ -343,8 +354,8 @@ vec3 evaluate_model(SurfacePoint point, Outwards outwards, LightSample light) {
   LightSample unit_light = LightSample(light.to_light, vec3(1.0), light.index, light.angle, light.map, light.density);
   vec3 sphere = corrected(fit.visible * half_space_light(point, outwards, unit_light).multiple, table.rgb, vec3(flowing));
 #endif
-  float tilt = sqrt(max((1.0 - fit.cosine) * (1.0 + fit.cosine), 0.0));
-  vec3 fit_normal = vec3(normal.xy * (tilt * inversesqrt(max(dot(normal.xy, normal.xy), 1e-12))), fit.cosine);
+  float tilt = sqrt(max((1.0 - fit.facing) * (1.0 + fit.facing), 0.0));
+  vec3 fit_normal = vec3(normal.xy * (tilt * inversesqrt(max(dot(normal.xy, normal.xy), 1e-12))), fit.facing);
   Seen seen = Seen(frame, light.map, fit, position, fit_normal);
   Gathered gathered = gather(seen, Draws(multiple_share, uint(sample_index * multiple_share), offset.xy));
   vec3 radiance = portion(SUBSURFACE_PORTION, on_the_grain(gathered, sphere, lobe, fit.radius));
@@ -352,6 +363,9 @@ vec3 evaluate_model(SurfacePoint point, Outwards outwards, LightSample light) {
   vec3 to_viewer = to_light_space(frame, point.to_viewer);
   vec3 inwards = (fit.mu_o * normal - to_viewer) / body.eta - fit.mu_o_refracted * normal;
   vec3 inside = single_scattering(seen, inwards, Draws(single_share, uint(sample_index * single_share), offset.zw));
+#ifdef NEAR_LIGHTS
+  inside *= turned_to_light(fit);
+#endif
   radiance += portion(SINGLE_SCATTERING_PORTION, fit.transmittance / (body.eta * body.eta) * inside);
 #endif
   radiance *= light.irradiance;

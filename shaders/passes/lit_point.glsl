@@ -4,6 +4,7 @@
 // What else is chosen at compile time:
 //   LIGHTS_AT_PLACE      the place that is shaded draws its own directions of the lights that have a place themselves: an opaque surface at
 //                        each point, a translucent instance for all of it
+//   NEAR_LIGHTS          lights have a place: the light map of each shows the grain from one direction, but each point has its light from where it is
 //   CLEAR, WORLD         the model knows what crosses the grain unscattered, and there is a world to be seen through it
 //   WHOLE_GRAIN          the model knows what light does in all of the grain, but not where it enters
 //   EMITS                the surface sends out light of its own
@@ -29,11 +30,19 @@
 
 layout(std430, binding = DISTANT_LIGHTS_BINDING) readonly buffer Lights { DistantLight lights[]; };
 
-#ifdef LIGHTS_AT_PLACE
+#if defined(LIGHTS_AT_PLACE) || defined(NEAR_LIGHTS)
 layout(std430, binding = LOCAL_LIGHTS_BINDING) readonly buffer LocalLights { DeviceLight local_lights[]; };
 layout(std430, binding = LOCAL_RANDOMS_BINDING) readonly buffer LocalRandoms { vec2 local_randoms[]; };  // where on each light this sample looks
 uniform int local_light_count;
 uniform int distant_light_count;  // those have their shadows first
+
+vec3 middle_of_grain() {
+#ifdef INSTANCED
+  return grain_place;
+#else
+  return vec3(0.0);
+#endif
+}
 #endif
 
 // xyz: the direction towards the viewer if w is 0; if w is 1 the pinhole, in grain space, or for instances from the place amid the scene.
@@ -91,13 +100,31 @@ float light_reaches_surface(LightSample light, SurfacePoint point) {
 }
 #endif
 
+#ifdef NEAR_LIGHTS
+// What a light that has a place sends to the point itself. to_middle: from the grain's middle to the light; an instance's map is drawn from
+// a direction nearby, and the light is taken to lie as far to that side.
+void move_to_point(inout LightSample light, vec3 to_middle, SurfacePoint point) {
+  int number = light.index - distant_light_count;
+  if (number < 0) return;
+  LightDraw drawn = draw_light(local_lights[number], middle_of_grain() + point.on_triangle, local_randoms[number]);
+  light.to_light = normalize(drawn.to_light + light.to_light - to_middle);
+  light.irradiance = drawn.irradiance;
+}
+#endif
+
 vec3 lit_by(SurfacePoint point, Outwards outwards, LightSample light) {
 #if defined(EXCHANGE) && defined(SHADOWS) && (defined(LIGHT_MAPS) || defined(WHOLE_GRAIN))
   look_where_light_came_in(point, light);
 #endif
 #ifdef LIGHT_MAPS
+#ifdef NEAR_LIGHTS
+  vec3 to_middle = light.to_light;
+#endif
 #ifdef INSTANCED
   turn_to_light_map(light);
+#endif
+#ifdef NEAR_LIGHTS
+  move_to_point(light, to_middle, point);
 #endif
 #else
   light.irradiance *= light_reaches_surface(light, point);
@@ -107,15 +134,10 @@ vec3 lit_by(SurfacePoint point, Outwards outwards, LightSample light) {
 
 #ifdef LIGHTS_AT_PLACE
 vec3 locally_lit(SurfacePoint point, Outwards outwards) {
-#ifdef INSTANCED
-  vec3 origin = grain_place;
-#else
-  vec3 origin = vec3(0.0);
-#endif
 #ifdef LIGHT_MAPS
-  vec3 place = origin;
+  vec3 place = middle_of_grain();
 #else
-  vec3 place = origin + point.on_triangle;
+  vec3 place = middle_of_grain() + point.on_triangle;
 #endif
   vec3 sum = vec3(0.0);
   for (int i = 0; i < local_light_count; ++i) {

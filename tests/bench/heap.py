@@ -25,6 +25,10 @@ SUN = ((1.0, 0.4, 1.2), (3.0,) * 3)
 PARAMETERS = {"sigma_a": (0.05,) * 3, "sigma_s": (2.0,) * 3, "eta": 1.3, "roughness": 0.3,
               "reflectance": (0.6, 0.5, 0.4)}
 MODELS_AT = 100_000
+# The most that is asked for: ratios of Lambert's heaps by grains, of models' to Lambert's, of a slider's first picture
+# to a frame; megabytes of a heap of a million; bytes a grain that is one more.
+BARS = {"ratio": {10_000: 8.0, 100_000: 20.0, 1_000_000: 80.0}, "model": {"model_2": 3.0, "model_3": 6.0},
+        "slider": 1.5, "megabytes": 1536.0, "bytes": 300.0}
 GRAINS = [1_000, 10_000, 100_000, 1_000_000]
 
 
@@ -140,6 +144,30 @@ def show(case):
           flush=True)
 
 
+def judged(what, value, most):
+    return f"{what}: {value:.2f}, at most {most:g}: {'met' if value <= most else 'missed'}"
+
+
+def bars(of):
+    """Sentences on what is asked for. of: {(shape, model, grains): case}."""
+    for (shape, model, count), case in of.items():
+        name = f"{shape}, {model}, {count} grains"
+        if model == "lambert" and count in BARS["ratio"]:
+            yield judged(f"{name}: samples of one sphere", case["ratio"], BARS["ratio"][count])
+        if model in BARS["model"] and (shape, "lambert", count) in of:
+            yield judged(f"{name}: times lambert's", case["ratio"] / of[shape, "lambert", count]["ratio"],
+                         BARS["model"][model])
+        if count == MODELS_AT:
+            yield judged(f"{name}: frames from a slider to its picture", case["after_a_slider"], BARS["slider"])
+        if count == 1_000_000:
+            yield judged(f"{name}: peak megabytes, this program's own arrays among them", case["peak_megabytes"],
+                         BARS["megabytes"])
+            if (shape, model, MODELS_AT) in of:
+                more = case["peak_megabytes"] - of[shape, model, MODELS_AT]["peak_megabytes"]
+                yield judged(f"{name}: bytes of the peak for each grain more than {MODELS_AT}",
+                             more * 2.0 ** 20 / (count - MODELS_AT), BARS["bytes"])
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("build", help="the folder of the native module")
@@ -175,10 +203,8 @@ def main():
         if (shape, "lambert", 10_000) in of and (shape, "lambert", 1_000_000) in of:
             growth = of[shape, "lambert", 1_000_000]["ratio"] / of[shape, "lambert", 10_000]["ratio"]
             print(f"{shape}: a hundred times as many grains as 10000 cost {growth:.1f} times as much")
-        for model in options.models:
-            if model != "lambert" and {(shape, "lambert", MODELS_AT), (shape, model, MODELS_AT)} <= set(of):
-                cost = of[shape, model, MODELS_AT]["ratio"] / of[shape, "lambert", MODELS_AT]["ratio"]
-                print(f"{shape}: {MODELS_AT} grains of {model} cost {cost:.2f} times lambert's")
+    for sentence in bars(of):
+        print(sentence)
     print("ratio: to a Lambert sphere that fills the picture; slider: the first picture after a material changed, in"
           f" samples; first: from no scene to a picture; on {cases[0]['device']}")
     if options.json:

@@ -6,8 +6,9 @@ lights.
 
 The truth is traced beside it (mesograin-referee heap): so many paths a pixel, and its own noise in blocks is told.
 Errors are relative L1 in blocks of 8 x 8 pixels of a picture of 96 x 96, over all channels. A sun that balls with a
-refracting surface are lit by is 20 degrees wide: a point's light no path finds. Writes heap_light.json and
-heap_light.html, and prints a line for each.
+refracting surface are lit by is 20 degrees wide: a point's light no path finds. What is drawn with the exchange off is
+also told, in green, beside the share of the truth that met no other ball or went through others unscattered. Writes
+heap_light.json and heap_light.html, and prints a line for each.
 """
 import argparse
 import json
@@ -53,7 +54,7 @@ def light_of(name, material):
 
 
 def truth(native, referee, material, light, paths, folder):
-    """(picture, its noise in blocks over the mean)."""
+    """(picture, its noise in blocks over the mean, its share in green that met no other ball, (h, w, 1))."""
     case, picture = folder / "heap.json", folder / "truth.exr"
     case.write_text(json.dumps({"spheres": str(DATA / "spheres.csv"), "camera": MANIFEST["camera"], "resolution": SIZE,
                                 "material": material, "light": light}))
@@ -62,11 +63,17 @@ def truth(native, referee, material, light, paths, folder):
     channel = dict(zip(names, numpy.moveaxis(pixels, -1, 0)))
     noise = numpy.sqrt(blocks((channel["noise.G"] ** 2)[..., None])) / 8.0
     colours = numpy.stack([channel[name] for name in "RGB"], -1)
-    return colours, float(noise.mean() / channel["G"].mean())
+    return colours, float(noise.mean() / channel["G"].mean()), (channel["direct.G"] + channel["crossed.G"])[..., None]
 
 
 def blocks(picture):
     return picture.reshape(SIZE[1] // 8, 8, SIZE[0] // 8, 8, -1).mean(axis=(1, 3))
+
+
+def how_far(found, right):
+    """(ratio of totals, relative L1 in blocks)."""
+    return (float(found.sum() / right.sum()),
+            float(numpy.abs(blocks(found) - blocks(right)).sum() / blocks(right).sum()))
 
 
 def scene(native, material, model, light, exchange):
@@ -105,16 +112,23 @@ def camera(native):
 
 def measure(native, of, model, exchange, samples):
     """One way to draw a heap against its truth: numbers as a dictionary, and the picture."""
-    material, light, (right, noise) = of
+    material, light, (right, noise, own) = of
     view = native.View(*SIZE)
     view.set_scene(scene(native, material, model, light, exchange))
     view.set_camera(camera(native))
     view.render(samples)
     found = view.read()[..., :3]
-    numbers = {"model": model, "exchange": exchange, "total": float(found.sum() / right.sum()), "truth_noise": noise,
-               "blocks": float(numpy.abs(blocks(found) - blocks(right)).sum() / blocks(right).sum()),
+    total, in_blocks = how_far(found, right)
+    numbers = {"model": model, "exchange": exchange, "total": total, "truth_noise": noise, "blocks": in_blocks,
                "finite": bool(numpy.isfinite(found).all())}
+    if exchange == "off":
+        numbers["own_total"], numbers["own_blocks"] = how_far(found[..., 1:2], own)
     return numbers, found
+
+
+def own_share(case):
+    """What a line says beside: how far light that met one ball alone is from its share of the truth."""
+    return f"  met one ball alone {case['own_total']:.3f} {case['own_blocks']:.1%}" if "own_total" in case else ""
 
 
 def main():
@@ -155,7 +169,7 @@ def main():
                         cases.append(case)
                         drawn.append((f"{model}, {exchange}", found))
                         print(f"{kind:<16}{name:<5}{model:<9}{exchange:<9}{case['total']:>7.3f}{case['blocks']:>7.1%}"
-                              f"  truth's noise {case['truth_noise']:.1%}", flush=True)
+                              f"  truth's noise {case['truth_noise']:.1%}" + own_share(case), flush=True)
                 pictures.append(heap_light_page.pictures_of(kind, name, of[2][0], drawn))
     (options.out / "heap_light.json").write_text(json.dumps(cases, indent=1) + "\n")
     (options.out / "heap_light.html").write_text(heap_light_page.html(

@@ -88,6 +88,8 @@ void write_shading(Writer& writer) {
   // As render::Shading.
   const std::vector<std::string> clear = {"CLEAR", "WORLD", "MANY_TERMS"};
   const std::vector<std::string> cast = {"SHADOWS", "CAST_SHADOWS"};
+  const std::vector<std::string> near = {"NEAR_LIGHTS"};
+  const std::vector<std::string> near_instances = {"INSTANCED", "SHADOWS", "LIGHTS_AT_PLACE", "NEAR_LIGHTS"};
   const std::vector<std::vector<std::string>> shadings = {{"INSTANCED"},
                                                           {"SHADOWS"},
                                                           cast,
@@ -99,6 +101,8 @@ void write_shading(Writer& writer) {
                                                           {"PORTION 5", "EXCHANGE"},
                                                           {"PORTION 8"},
                                                           {"INSTANCED", "SHADOWS", "LIGHTS_AT_PLACE"},
+                                                          near,
+                                                          near_instances,
                                                           clear};
   const std::vector<std::vector<std::string>> mirrors = {{"MIRRORS_WORLD"}, {"MIRRORS_WORLD", "SHADOWS"}};
   std::set<std::string> written;
@@ -131,7 +135,8 @@ void write_shading(Writer& writer) {
     for (const std::vector<std::string>& shading : shadings) {
       if (shading == clear && !scene::traits_of(material.model).mesh) continue;  // who knows no mesh is never clear
       // Light is looked up where it enters, in maps.
-      if (shading == cast && std::find(defines.begin(), defines.end(), "LIGHT_MAPS") != defines.end()) continue;
+      const bool maps = std::find(defines.begin(), defines.end(), "LIGHT_MAPS") != defines.end();
+      if (maps ? shading == cast : shading == near || shading == near_instances) continue;
       std::vector<std::string> all = defines;
       all.insert(all.end(), shading.begin(), shading.end());
       const ShaderSource fragment({"passes/shade.frag", "models/" + model + ".glsl"}, all);

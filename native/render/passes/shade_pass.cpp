@@ -173,6 +173,7 @@ const gl::Program& ShadePass::prepare(const Sample& sample, const DeviceMaterial
   shading.exchange = sample.exchange.any();
   shading.world = world;
   shading.lights_at_place = sample.lights_at_place(material, shading.instanced);
+  shading.near_lights = sample.lighting.any_local() && material.light_maps();
   const gl::Program& program = sample.cache.shading(material, shading);
   material.bind(program);
   if (world || shading.mirrors_world) {
