@@ -128,3 +128,14 @@ def test_what_is_hidden_for_renders_is_not_offered_for_baking():
     bpy.data.objects["Sphere"].hide_viewport = True
     with as_rendered.depsgraph(bpy.context) as depsgraph:
         assert surface.bakeable(depsgraph) == ("Sphere",)
+
+
+def test_an_object_that_was_removed_a_moment_ago_is_none_of_it():
+    make_sphere([((1.0, 1.0, 1.0), 20.0)], segments=16, rings=8)
+    add_cube("Left")
+    bpy.context.evaluated_depsgraph_get()
+    bpy.data.objects.remove(bpy.data.objects["Sphere"])  # the first, which asking the others would not mend
+    assert bpy.context.view_layer.objects[0] is None  # as Blender has it until its layers are updated
+    with as_rendered.depsgraph(bpy.context) as depsgraph:
+        names = {instance.name for instance in export.read_scene(depsgraph, meshes.MeshCache()).instances}
+    assert names == {"Left"}

@@ -45,6 +45,7 @@ def depsgraph(context):
         if thing.hide_get(view_layer=layer) != closed:
             thing.hide_set(closed, view_layer=layer)
 
+    layer.update()  # until then it lists objects that were removed, as None
     # The eye in the outliner, which is the viewport's alone; a render hides what stands model for its parent's corners.
     eyes = {thing: thing.hide_get(view_layer=layer) for thing in layer.objects}
     try:
