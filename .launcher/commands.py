@@ -38,6 +38,7 @@ BENCHMARKS = {
     "shapes": "how far pictures of grains of any shape are from photon Monte Carlo, such as tests/data/shapes holds",
     "match": "how near a match comes to the coefficients of Cycles' pictures: a sphere, sand, a heap",
     "transport": "how long the model transport takes to answer for a new mesh, and after a slider",
+    "programs": "what compiled programs cost of memory, and whether it rests while more are needed",
     "false_alarms": "how often the significance test calls renders different that differ in their seed alone",
 }
 

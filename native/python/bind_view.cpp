@@ -246,6 +246,7 @@ py::dict sent() {
   result["meshes"] = counts.meshes;
   result["materials"] = counts.materials;
   result["programs"] = counts.programs;
+  result["programs_freed"] = counts.programs_freed;
   result["bytes"] = counts.bytes;
   return result;
 }
@@ -259,8 +260,10 @@ void bind_view(py::module_& module) {
   module.def(
       "take_gl_errors", [] { return gl::ContextThread::instance().take_gl_errors(); },
       py::call_guard<py::gil_scoped_release>(), "The OpenGL errors since the last call, oldest first; normally [].");
-  module.def("sent", &sent,
-             "What all views have sent to the device so far: {'meshes', 'materials', 'programs', 'bytes'}.");
+  module.def(
+      "sent", &sent,
+      "What all views have sent to the device so far: {'meshes', 'materials', 'programs', 'programs_freed', 'bytes'}; "
+      "programs_freed of the programs are no longer there, as many others were needed since.");
   module.def("shut_down", &gl::ContextThread::shut_down, py::call_guard<py::gil_scoped_release>(),
              "Frees the device; views made before can no longer be used. Done by itself when Python ends.");
 

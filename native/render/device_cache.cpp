@@ -236,7 +236,7 @@ const gl::Program& DeviceCache::light_map_program(bool tessellated) {
     stages.push_back({GL_TESS_EVALUATION_SHADER, gl::ShaderSource({"passes/light_map.tese"}, {})});
   }
   stages.push_back({GL_FRAGMENT_SHADER, gl::ShaderSource({"passes/light_map.frag"}, {})});
-  return program(tessellated ? "light_map tessellated" : "light_map", stages);
+  return programs_.find(tessellated ? "light_map tessellated" : "light_map", stages);
 }
 
 const gl::Program& DeviceCache::count_program() {
@@ -269,16 +269,14 @@ const gl::Program& DeviceCache::shading(const DeviceMaterial& material, const Sh
 
 const gl::Program& DeviceCache::program(const std::string& name, const gl::ShaderSource& vertex,
                                         const gl::ShaderSource& fragment) {
-  return program(name, {{GL_VERTEX_SHADER, vertex}, {GL_FRAGMENT_SHADER, fragment}});
+  return programs_.find(name, {{GL_VERTEX_SHADER, vertex}, {GL_FRAGMENT_SHADER, fragment}});
 }
 
-const gl::Program& DeviceCache::program(const std::string& name, const std::vector<gl::Stage>& stages) {
-  std::unique_ptr<gl::Program>& slot = programs_[name];
-  if (!slot) {
-    slot = std::make_unique<gl::Program>(name, stages);
-    ++sent_.programs;
-  }
-  return *slot;
+Sent DeviceCache::sent() const {
+  Sent all = sent_;
+  all.programs = programs_.compiled();
+  all.programs_freed = programs_.freed();
+  return all;
 }
 
 }  // namespace mesograin::render

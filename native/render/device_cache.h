@@ -17,6 +17,7 @@
 #include "models/material_inputs.h"
 #include "render/details.h"
 #include "render/portion.h"
+#include "render/program_shelf.h"
 #include "scene/scene.h"
 #include "transport/works.h"
 
@@ -94,6 +95,7 @@ struct Sent {
   std::size_t meshes = 0;
   std::size_t materials = 0;
   std::size_t programs = 0;
+  std::size_t programs_freed = 0;  ///< of these, as others were needed since
   std::size_t bytes = 0;
 };
 
@@ -144,7 +146,10 @@ class DeviceCache {
   /// Frees what no view holds any more.
   void prune();
 
-  const Sent& sent() const { return sent_; }
+  /// Of any view. Frees programs that none has used for long, if there are many.
+  void begin_sample() { programs_.begin_sample(); }
+
+  Sent sent() const;
 
  private:
   struct MeshEntry {
@@ -184,14 +189,13 @@ class DeviceCache {
   std::shared_ptr<const gl::Texture> picture(const scene::TextureMap& map);
   std::shared_ptr<DeviceMaterial> send(scene::Model model, models::MaterialInputs inputs);
 
-  const gl::Program& program(const std::string& name, const std::vector<gl::Stage>& stages);
   const gl::Program& program(const std::string& name, const gl::ShaderSource& vertex, const gl::ShaderSource& fragment);
 
   std::map<const scene::Mesh*, MeshEntry> meshes_;
   std::vector<MaterialEntry> materials_;
   std::vector<PictureEntry> pictures_;
   std::vector<PrototypeEntry> prototypes_;
-  std::map<std::string, std::unique_ptr<gl::Program>> programs_;
+  ProgramShelf programs_;
   Sent sent_;
 };
 

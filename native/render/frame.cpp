@@ -126,6 +126,7 @@ scene::Camera Frame::seen_through(std::uint32_t index) const {
 }
 
 Sample Frame::begin_sample(const GoOn& go_on) {
+  cache_.begin_sample();
   const auto index = static_cast<std::uint32_t>(samples_);
   const std::vector<Draw>& draws = content_->draws();
   const bool own_maps =
