@@ -12,6 +12,7 @@ import statistics
 import sys
 
 import numpy
+import sphere_mesh
 
 SIZE = 400
 RADIUS = 2.4
@@ -23,16 +24,8 @@ PARAMETERS = {"sigma_a": (0.1,) * 3, "sigma_s": (0.9,) * 3, "eta": 1.3, "roughne
 
 def sphere():
     """(positions, normals, triangles) of a smooth UV sphere."""
-    theta = numpy.linspace(0.0, math.pi, RINGS + 1)[:, None]
-    phi = numpy.linspace(0.0, 2.0 * math.pi, SEGMENTS + 1)[None, :]
-    normals = numpy.stack(numpy.broadcast_arrays(
-        numpy.sin(theta) * numpy.cos(phi), numpy.sin(theta) * numpy.sin(phi), numpy.cos(theta)), axis=-1)
-    normals = normals.reshape(-1, 3).astype(numpy.float32)
-    first = (numpy.arange(RINGS)[:, None] * (SEGMENTS + 1) + numpy.arange(SEGMENTS)[None, :]).ravel()
-    below = first + SEGMENTS + 1
-    halves = [(first, below, below + 1), (first, below + 1, first + 1)]
-    triangles = numpy.concatenate([numpy.stack(half, axis=-1) for half in halves])
-    return normals * numpy.float32(RADIUS), normals, triangles.astype(numpy.uint32)
+    positions, normals, triangles = sphere_mesh.sphere(SEGMENTS, RINGS)
+    return positions * numpy.float32(RADIUS), normals, triangles
 
 
 def make_views(native, g):

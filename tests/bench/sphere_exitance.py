@@ -1,5 +1,6 @@
 """What leaves a sphere in parallel light, summed over all directions, and how far it is from the truth."""
 import numpy
+import sphere_mesh
 
 SIZE = 64
 VIEWS = 10
@@ -7,16 +8,7 @@ VIEWS = 10
 
 def sphere(native, segments=256, rings=128):
     """A smooth UV sphere of radius 1."""
-    theta = numpy.linspace(0.0, numpy.pi, rings + 1)[:, None]
-    phi = numpy.linspace(0.0, 2.0 * numpy.pi, segments + 1)[None, :]
-    points = numpy.stack(numpy.broadcast_arrays(
-        numpy.sin(theta) * numpy.cos(phi), numpy.sin(theta) * numpy.sin(phi), numpy.cos(theta)), axis=-1)
-    points = points.reshape(-1, 3).astype(numpy.float32)
-    first = (numpy.arange(rings)[:, None] * (segments + 1) + numpy.arange(segments)[None, :]).ravel()
-    below = first + segments + 1
-    triangles = numpy.concatenate([numpy.stack(half, axis=-1)
-                                   for half in ((first, below, below + 1), (first, below + 1, first + 1))])
-    return native.Mesh(points, points, triangles.astype(numpy.uint32))
+    return native.Mesh(*sphere_mesh.sphere(segments, rings))
 
 
 class Cameras:

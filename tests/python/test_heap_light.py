@@ -3,29 +3,22 @@ blocks is below half a percent, one percent under the low sun)."""
 
 import json
 import pathlib
+import sys
 import time
 
 import mesograin_native as native
 import numpy
 import pytest
 
-DATA = pathlib.Path(__file__).resolve().parents[1] / "data/heaps"
+TESTS = pathlib.Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(TESTS / "bench"))
+import sphere_mesh  # noqa: E402
+
+DATA = TESTS / "data/heaps"
 MANIFEST = json.loads((DATA / "manifest.json").read_text())
 SPHERES = numpy.loadtxt(DATA / "spheres.csv", delimiter=",", skiprows=1)
 IMAGES = {image["file"]: image for image in MANIFEST["images"]}
-
-
-def sphere(segments=64, rings=32):
-    """A mesh of unit radius with the sphere's own normals."""
-    polar = numpy.linspace(0.0, numpy.pi, rings + 1)[:, None]
-    around = numpy.linspace(0.0, 2.0 * numpy.pi, segments, endpoint=False)[None, :]
-    places = numpy.stack([numpy.sin(polar) * numpy.cos(around), numpy.sin(polar) * numpy.sin(around),
-                          numpy.cos(polar) + 0.0 * around], -1).reshape(-1, 3).astype(numpy.float32)
-    i, j = numpy.arange(rings)[:, None], numpy.arange(segments)[None, :]
-    a, b = i * segments + j, i * segments + (j + 1) % segments
-    triangles = numpy.concatenate([numpy.stack(corners, -1).reshape(-1, 3)
-                                   for corners in ((a, a + segments, b), (b, a + segments, b + segments))])
-    return native.Mesh(places, places.copy(), triangles.astype(numpy.uint32))
+ROUND = native.Mesh(*sphere_mesh.sphere(64, 32))
 
 
 def camera():
@@ -53,7 +46,7 @@ def heap(of):
     for axis in range(3):
         transforms[:, axis, axis] = SPHERES[:, 3]
     transforms[:, 3, 3] = 1.0
-    return native.InstanceArray(sphere(), of, transforms)
+    return native.InstanceArray(ROUND, of, transforms)
 
 
 def picture(image, model, exchange, samples=16):
@@ -214,7 +207,7 @@ def test_a_camera_finds_no_light_anew(viewport):
 @pytest.mark.parametrize("change, redone", [
     (lambda array: lit(array, (0.0, 0.5, 0.8)), {"tables": 0, "links": 0, "sources": 2}),
     (lambda array: lit(array.with_material(white(1.2))), {"tables": 2, "links": 1, "sources": 1}),
-    (lambda array: lit(native.InstanceArray(sphere(), array.material, array.transforms * MOVED)),
+    (lambda array: lit(native.InstanceArray(ROUND, array.material, array.transforms * MOVED)),
      {"tables": 0, "links": 2, "sources": 2})],
     ids=["light", "slider", "grains"])
 def test_a_change_finds_anew_what_it_touches(viewport, change, redone):
@@ -252,7 +245,7 @@ def test_a_slider_that_does_not_rest_is_seen_in_the_light_of_a_moment_ago(viewpo
 
 def test_what_is_no_heap_pays_nothing():
     view = native.View(16, 16)
-    view.set_scene(native.Scene(instances=[native.Instance(sphere(), white())], exchange="order_1"))
+    view.set_scene(native.Scene(instances=[native.Instance(ROUND, white())], exchange="order_1"))
     view.set_camera(native.Camera.look_at((0.0, 0.0, 5.0), (0.0, 0.0, 0.0), (0.0, 1.0, 0.0), 40.0))
     assert view.preparing is None
     view.render(1)

@@ -1,10 +1,15 @@
 """Lights of every kind and worlds: from JSON and from Python, drawn on a plane whose irradiance is known."""
 import json
 import math
+import pathlib
+import sys
 
 import mesograin_native as native
 import numpy
 import pytest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "bench"))
+import sphere_mesh  # noqa: E402
 
 SCENE = {
     "geometry": {"shape": "sphere", "radius": 1.0},
@@ -83,19 +88,6 @@ def test_a_plane_is_lit_as_it_must_be():
     assert around == pytest.approx((math.pi, 2.0 * math.pi, 0.5 * math.pi), rel=0.01)
 
 
-def sphere(segments=96, rings=48):
-    """A mesh of unit radius with the sphere's own normals."""
-    polar = numpy.linspace(0.0, math.pi, rings + 1)[:, None]
-    around = numpy.linspace(0.0, 2.0 * math.pi, segments, endpoint=False)[None, :]
-    places = numpy.stack([numpy.sin(polar) * numpy.cos(around), numpy.sin(polar) * numpy.sin(around),
-                          numpy.cos(polar) + 0.0 * around], -1).reshape(-1, 3).astype(numpy.float32)
-    i, j = numpy.arange(rings)[:, None], numpy.arange(segments)[None, :]
-    a, b = i * segments + j, i * segments + (j + 1) % segments
-    triangles = numpy.concatenate([numpy.stack(corners, -1).reshape(-1, 3)
-                                   for corners in ((a, a + segments, b), (b, a + segments, b + segments))])
-    return native.Mesh(places, places.copy(), triangles.astype(numpy.uint32))
-
-
 NEAR = {"point": native.PointLight((1.6, 0, 1.2), (3.0,) * 3),
         "spot": native.SpotLight((1.6, 0, 1.2), (-0.8, 0, -0.6), (3.0,) * 3, angle=0.6, blend=0.5),
         "area": native.AreaLight((1.6, 0, 1.2), (0.24, 0, -0.32), (0, 0.4, 0), (9.0,) * 3)}
@@ -106,7 +98,7 @@ NEAR = {"point": native.PointLight((1.6, 0, 1.2), (3.0,) * 3),
 def test_a_near_light_lights_each_point_of_a_grain_from_where_it_is(kind, of_array):
     """A grain so dense that each point of it answers for itself, as model 1 has it; measured 1 to 2 %, of arrays, whose
     maps are drawn from directions nearby, 2 to 4 %."""
-    mesh, pictures = sphere(), []
+    mesh, pictures = native.Mesh(*sphere_mesh.sphere(96, 48)), []
     for model in ("model_1", "model_2", "model_3"):
         dense = native.Material(model=model, sigma_s=(60.0,) * 3, sigma_a=(90.0,) * 3, boundary="index_matched")
         things = ({"arrays": [native.InstanceArray(mesh, dense, numpy.eye(4)[None])]} if of_array else
