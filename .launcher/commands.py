@@ -30,6 +30,7 @@ PARTS = {
 BENCHMARKS = {
     "frame": "what each model costs relative to lambert: shade pass alone, 400x400, sphere, two lights",
     "heap": "what heaps of a thousand to a million grains cost relative to one lambert sphere, and how much memory",
+    "reading": "how long Blender's main thread reads a hundred thousand scattered grains",
     "drag": "how long a change takes to be seen in a real window, relative to Blender's own redraw in Solid shading",
     "exchange": "what light between grains costs while a scene changes: milliseconds to the first and the final answer",
     "heap_light": "how far light between grains is from path tracing, for kinds and lights; about half an hour",
@@ -281,7 +282,7 @@ class Bench(Command):
     def run(self, words, place):
         name, options = self._chosen(words)
         script = f"tests/bench/{name}.py"
-        if name in ("false_alarms", "match"):
+        if name in ("false_alarms", "match", "reading"):
             return place.in_blender("bench", script, *options)
         return [place.python, SOURCE / script, place.build, *options]
 
