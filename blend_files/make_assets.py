@@ -105,6 +105,23 @@ def make_collections():
     return made
 
 
+def _darken_below(world):
+    """Dark below and bright above: what is clear turns that over, and would be unseen before a world that is even."""
+    world.use_nodes = True
+    tree = world.node_tree
+    places, axes = tree.nodes.new("ShaderNodeTexCoord"), tree.nodes.new("ShaderNodeSeparateXYZ")
+    ramp = tree.nodes.new("ShaderNodeValToRGB")
+    ramp.color_ramp.elements[0].color, ramp.color_ramp.elements[0].position = (0.1, 0.105, 0.115, 1.0), 0.0
+    ramp.color_ramp.elements[1].color, ramp.color_ramp.elements[1].position = (0.6, 0.63, 0.69, 1.0), 0.6
+    half = tree.nodes.new("ShaderNodeMath")
+    half.operation = "MULTIPLY_ADD"
+    half.inputs[1].default_value = half.inputs[2].default_value = 0.5
+    tree.links.new(places.outputs["Generated"], axes.inputs[0])
+    tree.links.new(axes.outputs["Z"], half.inputs[0])
+    tree.links.new(half.outputs[0], ramp.inputs[0])
+    tree.links.new(ramp.outputs[0], tree.nodes["Background"].inputs["Color"])
+
+
 class Photographer:
     """Renders a picture of what is put before it, and gives it to an asset as its preview."""
 
@@ -117,7 +134,8 @@ class Photographer:
         scene.render.image_settings.color_depth = "8"
         scene.render.filepath = self.path
         scene.mesograin.samples = SAMPLES
-        scenes.lit_world(scene, (0.2, 0.21, 0.23))  # it is seen, too: else what is clear were black
+        scenes.lit_world(scene, (0.2, 0.21, 0.23))
+        _darken_below(scene.world)
         scenes.add_sun("Key", (1.0, -0.7, 1.4), 1.8)
         scenes.add_sun("Rim", (-1.0, 1.2, 0.5), 1.2)
 

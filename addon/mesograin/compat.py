@@ -204,15 +204,25 @@ def cells_by_lookup3():
 def import_by_appending(library):
     """Makes what is dragged from an asset library a copy, where this Blender asks how: an add-on that is gone takes no
     links with it."""
-    if hasattr(library, "import_method"):
+    if not hasattr(library, "import_method"):
+        return
+    try:
         library.import_method = "APPEND_REUSE"
+    except TypeError:  # Blender 5 has that no more
+        library.import_method = "APPEND"
 
 
 def set_modifier_input(modifier, name, value):
-    """Sets an input of a geometry nodes modifier by its name."""
+    """Sets an input of a geometry nodes modifier by its name. Blender 5 keeps them apart from the modifier's own
+    properties."""
     group = modifier.node_group
     if hasattr(group, "interface"):
         sockets = [item for item in group.interface.items_tree if getattr(item, "in_out", "") == "INPUT"]
     else:
         sockets = group.inputs
-    modifier[next(socket.identifier for socket in sockets if socket.name == name)] = value
+    identifier = next(socket.identifier for socket in sockets if socket.name == name)
+    inputs = getattr(getattr(modifier, "properties", None), "inputs", None)
+    if inputs is None:
+        modifier[identifier] = value
+    else:
+        getattr(inputs, identifier).value = value

@@ -5,6 +5,7 @@ import pytest
 from test_colours_of_instances import as_cycles_has_it
 from test_export import add_camera, add_object, add_sun, read_scene
 
+from mesograin import compat
 from mesograin.grains import kinds
 from mesograin.schema import presets
 from mesograin.schema.parameters import PARAMETERS
@@ -77,15 +78,8 @@ def ground(**chosen):
 
 def choose(modifier, **values):
     for name, value in values.items():
-        socket = next(each for each in _inputs(modifier.node_group) if each.name == name.replace("_", " "))
-        modifier[socket.identifier] = value
+        compat.set_modifier_input(modifier, name.replace("_", " "), value)
     modifier.id_data.update_tag()
-
-
-def _inputs(group):
-    if hasattr(group, "interface"):
-        return [each for each in group.interface.items_tree if getattr(each, "in_out", "") == "INPUT"]
-    return group.inputs
 
 
 def factors():
