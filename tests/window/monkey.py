@@ -197,7 +197,7 @@ class Monkey:
             worth_a_step = function(self)
             if inspect.isgenerator(worth_a_step):
                 worth_a_step = yield from worth_a_step
-        except AttributeError as refusal:
+        except (AttributeError, RuntimeError) as refusal:
             if not compat.refuses_writing(refusal):
                 raise
             worth_a_step = False
