@@ -90,7 +90,7 @@ Answer answer(const BodyMedium& medium, const BodySurface& surface, const Sphere
     for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += factor * term[i];
   };
   if (orders.multiple) add(half_space, half_space_multiple_exitance(medium, surface, cosines), 1.0);
-  if (orders.single) add(half_space, half_space_single_exitance(medium, surface.eta, cosines), 1.0);
+  if (orders.single > 0.0) add(half_space, half_space_single_exitance(medium, surface.eta, cosines), orders.single);
 
   // What is scattered once leaves by the interface's lobe times the phase function.
   const std::vector<double> mean_phase =
@@ -104,7 +104,7 @@ Answer answer(const BodyMedium& medium, const BodySurface& surface, const Sphere
     const BodyMedium scaled{medium.sigma_a * radius, medium.sigma_s * radius, medium.g};
     std::vector<double> body(cosine_count, 0.0);
     if (orders.multiple) add(body, sphere_multiple_exitance(scaled, surface, cosines), 1.0);
-    if (orders.single && medium.sigma_s > 0.0) add(body, single.exitance(scaled), 1.0);
+    if (orders.single > 0.0 && medium.sigma_s > 0.0) add(body, single.exitance(scaled), orders.single);
     // Where it leaves by a cosine lobe, it is seen like diffused light, but does not flow.
     std::vector<double> all = body;
     if (orders.multiple && surface.cosine_entry) add(all, unscattered.exitance(scaled.rest_sigma_t()), 1.0);

@@ -12,7 +12,7 @@
 namespace mesograin::models {
 
 struct Orders {
-  bool single;
+  double single;  ///< how much of it
   bool multiple;
 };
 

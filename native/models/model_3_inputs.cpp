@@ -137,7 +137,7 @@ MaterialInputs model_3_inputs(const Material& material, double grain_radius) {
   const std::array<BodyMedium, 3> media = body_media(material, grain_radius);
   add_body_uniforms(material, grain_radius, inputs);
   if (half_space) {
-    add_body_difference("body_table", material, grain_radius, {.single = false, .multiple = true}, inputs);
+    add_body_difference("body_table", material, grain_radius, {.single = 0.0, .multiple = true}, inputs);
   } else {
     if (surface.eta != 1.0) inputs.defines.emplace_back("REFRACTION");
     add_dielectric(material, inputs);

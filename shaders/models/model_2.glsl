@@ -11,6 +11,7 @@
 
 #ifdef SEPARATE_SINGLE
 uniform sampler2D single_difference;
+uniform float separate_single;  // how much of it is; the rest is as all that is scattered more often
 #endif
 
 vec3 evaluate_model(SurfacePoint point, Outwards outwards, LightSample light) {
@@ -18,6 +19,9 @@ vec3 evaluate_model(SurfacePoint point, Outwards outwards, LightSample light) {
   HalfSpaceLight half_space = half_space_light(point, outwards, light);
   vec4 difference = look_up_body(body_table, fit);
   vec3 lobe = light.irradiance * flowing_lobe(fit, point, light, flow_at(fit, difference));
+#ifdef SEPARATE_SINGLE
+  half_space.multiple += (1.0 - separate_single) * half_space.single;
+#endif
   vec3 radiance = portion(SUBSURFACE_PORTION, corrected(fit.visible * half_space.multiple, difference.rgb, lobe));
 #ifdef SEPARATE_SINGLE
   vec3 out_of = refract(-point.to_viewer, point.normal, sqrt(material.inverse_eta_squared));
@@ -26,7 +30,7 @@ vec3 evaluate_model(SurfacePoint point, Outwards outwards, LightSample light) {
   float phase = 4.0 * PI * henyey_greenstein(versine, material.absolute_g, material.one_minus_absolute_g);
   vec3 single_lobe = phase * diffused_lobe(fit) * light.irradiance;
   vec3 single = corrected(fit.visible * half_space.single, look_up_body(single_difference, fit).rgb, single_lobe);
-  radiance += portion(SINGLE_SCATTERING_PORTION, single);
+  radiance += portion(SINGLE_SCATTERING_PORTION, separate_single * single);
 #endif
   radiance *= fit.entered;
 #ifdef SPECULAR

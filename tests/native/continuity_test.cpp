@@ -132,9 +132,13 @@ TEST_P(Continuity, NothingJumpsWhereABranchTakesOver) {
         material.sigma_s = glm::dvec3(2.0);
         material.sigma_a = glm::dvec3(sigma_a);
         expect_alike(
-            material, [](Material& m) { m.g = 1e-7; }, 3e-2);
+            material, [](Material& m) { m.g = 1e-17; }, 5e-4);
         expect_alike(
-            material, [](Material& m) { m.g = -1e-7; }, 3e-2);
+            material, [](Material& m) { m.g = 1e-6; }, 5e-4);
+        expect_alike(
+            material, [](Material& m) { m.g = -1e-6; }, 5e-4);
+        expect_alike(
+            material, [](Material& m) { m.g = 1e-3; }, 5e-3);
         expect_alike(
             material, [](Material& m) { m.sigma_a += glm::dvec3(1e-9); }, 1e-3);
         expect_alike(

@@ -65,9 +65,19 @@ std::vector<ExitDirection> about_the_light(double eta, const real3& normal, doub
 std::vector<ExitDirection> exit_directions(double eta, double cosine, double g) {
   const double sine = sine_of_cosine(cosine);
   const real3 normal(sine, 0.0, cosine);
-  constexpr double hardly = 1e-8;
-  return std::abs(g) < hardly ? about_the_normal(eta, normal, real3(cosine, 0.0, -sine))
-                              : about_the_light(eta, normal, g);
+  // One passes into the other: each is good to half a percent only, and a jump in g would show that.
+  constexpr double least_peaked = 1e-8, most_even = 0.1;
+  const double peaked = std::abs(g) < least_peaked ? 0.0 : std::min(std::abs(g) / most_even, 1.0);
+  std::vector<ExitDirection> directions;
+  const auto add = [&](const std::vector<ExitDirection>& some, double share) {
+    for (ExitDirection direction : some) {
+      direction.weight *= share;
+      directions.push_back(direction);
+    }
+  };
+  if (peaked < 1.0) add(about_the_normal(eta, normal, real3(cosine, 0.0, -sine)), 1.0 - peaked);
+  if (peaked > 0.0) add(about_the_light(eta, normal, g), peaked);
+  return directions;
 }
 
 }  // namespace mesograin::physics
