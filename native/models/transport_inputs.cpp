@@ -42,6 +42,26 @@ constexpr double most_similar_g = 0.1;
 
 bool is_walked(const scene::Material& material) { return material.g > most_similar_g; }
 
+// 1 - cosine of 15 degrees. Light that the peak has turned by less counts as unscattered once it is turned by more.
+constexpr double peak_versine = 0.034;
+
+// What of a Henyey-Greenstein function within peak_versine is more than at its edge.
+void add_peak(double g, MaterialInputs& inputs) {
+  const double rest = 1.0 - g;
+  const double at_edge = std::sqrt(rest * rest + 2.0 * g * peak_versine);
+  const double edge = physics::henyey_greenstein(peak_versine, g, rest);
+  const double within = rest * (1.0 + g) / (2.0 * g) * (1.0 / rest - 1.0 / at_edge);
+  const double peak = within - 2.0 * physics::PI * peak_versine * edge;
+  // The integral of 1 - cosine over the peak.
+  const double turned = rest * (1.0 + g) / (4.0 * g * g) * (at_edge + rest * rest / at_edge - 2.0 * rest) -
+                        physics::PI * peak_versine * peak_versine * edge;
+  inputs.uniforms["forward.peak_versine"] = static_cast<float>(peak_versine);
+  inputs.uniforms["forward.edge"] = static_cast<float>(edge);
+  inputs.uniforms["forward.within"] = static_cast<float>(within);
+  inputs.uniforms["forward.peak"] = static_cast<float>(peak);
+  inputs.uniforms["forward.wide_g"] = static_cast<float>(1.0 - (rest - turned) / (1.0 - peak));
+}
+
 // Of the medium itself, per unit of the body.
 void add_forward(const scene::Material& material, const StoredTransport& stored, MaterialInputs& inputs) {
   const glm::dvec3 similar_albedo = stored_medium(material).albedo;
@@ -51,6 +71,7 @@ void add_forward(const scene::Material& material, const StoredTransport& stored,
   const double g = std::min(material.g, physics::HENYEY_GREENSTEIN_LARGEST_G);
   inputs.uniforms["forward.g"] = static_cast<float>(g);
   inputs.uniforms["forward.one_minus_g"] = static_cast<float>(1.0 - g);
+  add_peak(g, inputs);
 }
 
 // A block of nodes for each texel's terms (a grey medium) or for each term, one behind the other along z.

@@ -1,5 +1,8 @@
 // Where a medium scatters forwards: a walk from the viewer into the grain with each sample, lit at each scattering by the light that nothing
 // has scattered yet, refracted as it enters. Walks grow coarser by and by, and the stored source function ends them.
+// The phase function's narrow peak is told apart: light that met nothing else is followed exactly; on the way of light that has also been
+// scattered widely the peak counts as unscattered (Iwabuchi and Suzuki, "Fast and accurate radiance calculations using truncation
+// approximation for anisotropic scattering phase functions", 2009), so that no rare walk finds as much light as thousands of others.
 // Not physical: where refraction gathers light from several places on the surface, one of them is found; what the surface reflected inside before
 // its first scattering comes from a sun that is some degrees wide; light that has left does not come back.
 //
@@ -11,10 +14,15 @@ struct Forward {
   vec3 similar_albedo;
   float g;
   float one_minus_g;
+  float peak_versine;  // 1 - cosine at the peak's edge
+  float edge;          // the phase function there: what is more of it is the peak
+  float within;        // the share of scattering by less than the peak's angle
+  float peak;          // the share of it that is the peak's
+  float wide_g;        // of the rest
 };
 uniform Forward forward;
 
-const int EXACT_SCATTERINGS = 4;  // from then on two of them with one medium, then two with one that scatters less often
+const int EXACT_SCATTERINGS = 4;  // wide ones; from then on two of them with one medium, then two with one that scatters less often
 const float LEAST_KEPT = 0.1;     // of the first direction, by the mean cosine: then the stored source function tells the rest
 const int MOST_STEPS = 40;
 const float LEAST_FLIGHT = 1e-7;       // in mean free paths
@@ -27,14 +35,18 @@ vec3 perpendicular(vec3 direction) {
   return normalize(abs(direction.z) < 0.7 ? vec3(direction.y, -direction.x, 0.0) : vec3(0.0, direction.z, -direction.y));
 }
 
-// The direction after a scattering (the phase function's inverted distribution: Witt, "Multiple scattering in reflection nebulae", 1977, eq. 19).
-vec3 scattered(vec3 direction, float g, float one_minus_g, vec2 random) {
-  float ratio = one_minus_g * (1.0 + g) / (one_minus_g + 2.0 * g * random.x);
-  float cosine = clamp((1.0 + g * g - ratio * ratio) / (2.0 * g), -1.0, 1.0);
-  float sine = sqrt((1.0 - cosine) * (1.0 + cosine));
-  float azimuth = 2.0 * PI * random.y;
+vec3 turned(vec3 direction, float versine, float random) {
+  float sine = sqrt(versine * (2.0 - versine));
+  float azimuth = 2.0 * PI * random;
   vec3 first = perpendicular(direction);
-  return normalize(cosine * direction + sine * (cos(azimuth) * first + sin(azimuth) * cross(direction, first)));
+  return normalize((1.0 - versine) * direction + sine * (cos(azimuth) * first + sin(azimuth) * cross(direction, first)));
+}
+
+// By how much a scattering turns, widest first (the phase function's inverted distribution: Witt, "Multiple scattering in reflection nebulae",
+// 1977, eq. 19).
+float scattered_versine(float g, float one_minus_g, float random) {
+  float ratio = one_minus_g * (1.0 + g) / (one_minus_g + 2.0 * g * random);
+  return clamp((ratio - one_minus_g) * (ratio + one_minus_g) / (2.0 * g), 0.0, 2.0);
 }
 
 // Light on its way from the surface to a place inside, unscattered.
@@ -102,7 +114,10 @@ Spectrum walked_radiance(vec3 place, vec3 direction, vec3 to_light, int light) {
   float one_minus_g = forward.one_minus_g;
   Spectrum sigma_s = SPECTRUM(forward.sigma_s);
   Spectrum sigma_a = SPECTRUM(forward.sigma_a);
-  int scatterings = 0;
+  bool narrow = true;   // the peak alone has scattered what is followed
+  bool whole = true;    // the phase function is the medium's own, or that without its peak
+  int scatterings = 0;  // wide ones
+  bool first_place = true;
   float kept = 1.0;
   bool mirrored = false;
 #ifdef REFRACTION
@@ -139,22 +154,41 @@ Spectrum walked_radiance(vec3 place, vec3 direction, vec3 to_light, int light) {
         sum += left * source_at(place) / SPECTRUM(forward.similar_albedo);
         break;
       }
-      ++scatterings;
       mirrored = false;
-      bool coarser = scatterings >= EXACT_SCATTERINGS && scatterings % 2 == 0;
-      if (coarser) {
-        // What comes from there on is told of the medium that is similar in its first moment (van de Hulst 1980, section 14.1.3).
-        sigma_s /= 1.0 + g;
-      }
-      Unscattered unscattered = unscattered_at(place, to_light, back, scatterings == 1 ? FIRST_TRIES : 1);
+      Unscattered unscattered = unscattered_at(place, to_light, back, first_place ? FIRST_TRIES : 1);
+      first_place = false;
       back = unscattered.back;
-      sum += left * exp(-(sigma_s + sigma_a) * unscattered.way) *
-             (unscattered.irradiance * henyey_greenstein(1.0 - dot(back, direction), g, one_minus_g));
-      direction = scattered(direction, g, one_minus_g, random.yz);
-      kept *= g;
+      float versine = 1.0 - dot(back, direction);
+      float phase = henyey_greenstein(versine, g, one_minus_g);
+      float mean_cosine = whole && !narrow ? forward.wide_g : g;
+      bool coarser = !narrow && scatterings + 1 >= EXACT_SCATTERINGS && scatterings % 2 == 1;
+      // What comes from there on is told of the medium that is similar in its first moment (van de Hulst 1980, section 14.1.3).
+      if (coarser) sigma_s /= 1.0 + mean_cosine;
+      float wide = whole && versine < forward.peak_versine ? forward.edge : phase;
+      Spectrum wide_sigma_s = narrow ? sigma_s * (1.0 - forward.peak) : sigma_s;
+      Spectrum lit = wide * exp(-(wide_sigma_s + sigma_a) * unscattered.way);
+      if (narrow) {
+        lit += (phase - wide) * exp(-(sigma_s + sigma_a) * unscattered.way);
+      } else if (whole) {
+        lit /= 1.0 - forward.peak;
+      }
+      sum += left * (unscattered.irradiance * lit);
+
+      float turn = scattered_versine(g, one_minus_g, random.y * (narrow || !whole ? 1.0 : 1.0 - forward.peak));
+      if (narrow) {
+        narrow = turn < forward.peak_versine && random.w * henyey_greenstein(turn, g, one_minus_g) >= forward.edge;
+      } else if (whole && random.y * (1.0 - forward.peak) > 1.0 - forward.within) {
+        turn = random.w * forward.peak_versine;
+      }
+      direction = turned(direction, turn, random.z);
+      if (narrow) continue;
+      sigma_s = wide_sigma_s;
+      ++scatterings;
+      kept *= whole ? forward.wide_g : g;
       if (coarser) {
-        one_minus_g *= 1.0 + g;
-        g *= g;
+        whole = false;
+        g = mean_cosine * mean_cosine;
+        one_minus_g = 1.0 - g;
       }
       continue;
     }
@@ -165,7 +199,7 @@ Spectrum walked_radiance(vec3 place, vec3 direction, vec3 to_light, int light) {
     vec3 normal = outwards_at(place);
     float cosine = dot(normal, direction);
     float again = fresnel_reflectance(min(cosine, 1.0), 1.0 / stored.eta);
-    if (mirrored && scatterings > 0 && again < 1.0) {
+    if (mirrored && !first_place && again < 1.0) {
       vec3 outside = refract(direction, -normal, stored.eta);
       sum += left * ((1.0 - again) * stored.eta * stored.eta * SUN_SHARPNESS / (2.0 * PI) * exp(SUN_SHARPNESS * (dot(outside, to_light) - 1.0)));
     }
