@@ -5,7 +5,6 @@ import inspect
 import random
 import statistics
 import subprocess
-import sys
 import time
 
 import bpy
@@ -18,7 +17,6 @@ BETWEEN = (0.02, 0.05, 0.15, 0.4)  # s that may pass between two operations
 TOO_LONG = 20.0  # s without an answer that are worth a word
 STEPS_OF_A_DRAG = 6
 MOST_TRIES = 60  # to open a file
-UNINTERRUPTED = 10.0  # s that a thread may keep Python for itself
 
 
 class Monkey:
@@ -29,9 +27,6 @@ class Monkey:
         self.folder = window.folder
         self.random = random.Random(seed)
         self.longest = (0.0, "")  # s in which Blender did not answer, and the operation
-        # A panel's drawing that is interrupted by the beginning of a final render leaves Blender in the belief, for
-        # good, that it draws, and a monkey that lives in a timer can do nothing any more; see compat.refuses_writing.
-        sys.setswitchinterval(UNINTERRUPTED)
 
     # Choices
 
