@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
+#include <glm/exponential.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <optional>
@@ -39,10 +40,11 @@ glm::vec3 inwards(const Nearest& surface, const glm::vec3& place, bool inside) {
 
 }  // namespace
 
-Grid::Grid(const Body& body, int nodes, const Effort& effort) {
+Grid::Grid(const Body& body, int nodes, Spacing spacing, const Effort& effort) {
   const glm::vec3 extent = glm::max(body.upper() - body.lower(), glm::vec3(1e-4F));
-  const float even = std::cbrt(extent.x * extent.y * extent.z / static_cast<float>(nodes));
-  size_ = glm::clamp(glm::ivec3(glm::round(extent / even)) + 1, glm::ivec3(4), glm::ivec3(128));
+  const glm::vec3 shares = spacing == Spacing::even ? extent : glm::sqrt(extent);
+  const glm::vec3 steps = shares * std::cbrt(static_cast<float>(nodes) / (shares.x * shares.y * shares.z));
+  size_ = glm::clamp(glm::ivec3(glm::round(steps)) + 1, glm::ivec3(4), glm::ivec3(128));
   spacing_ = extent / glm::vec3(size_ - 1);
   lower_ = body.lower();
   const std::size_t plane = static_cast<std::size_t>(size_.x) * static_cast<std::size_t>(size_.y);

@@ -17,12 +17,16 @@ struct Corner {
   float weight;
 };
 
+/// How nodes are shared out among the three sides of the body's box: in proportion to a side, or to its root, so that
+/// they are nearer to one another across a thin body, where light changes within shorter ways than along it.
+enum class Spacing { even, nearer_across };
+
 /// Corner nodes lie on the body's box. Used are all nodes of cells that the body reaches into; those that lie outside
 /// it stand for the point of its surface that is nearest to them.
 class Grid {
  public:
-  /// About `nodes` of them in the body's box, spaced nearly evenly.
-  Grid(const Body& body, int nodes, const Effort& effort = {});
+  /// About `nodes` of them in the body's box.
+  Grid(const Body& body, int nodes, Spacing spacing = Spacing::even, const Effort& effort = {});
 
   const glm::ivec3& size() const { return size_; }
   const glm::vec3& lower() const { return lower_; }

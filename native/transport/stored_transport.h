@@ -40,7 +40,7 @@ struct StoredTransport {
   std::size_t nodes() const { return distances.size(); }
 };
 
-/// How far the grid's nodes will be from one another, in units of the body.
+/// How far the grid's nodes will be from one another, in units of the body: the mean of all three sides.
 double node_spacing(const Body& body, const Quality& quality);
 
 /// Traces what `walks`, which have the medium's eta, do not know yet. The answer does not depend on what they know.

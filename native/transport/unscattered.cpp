@@ -16,8 +16,10 @@
 namespace mesograin::transport {
 namespace {
 
-// A ray is given up when so little of it is left.
+// A ray is given up at its next reflection when so little of it is left, and before when it is next to nothing beside
+// what is scattered there.
 constexpr float least_flux = 3e-3F;
+constexpr float least_track = 1e-4F;
 constexpr int most_reflections = 64;
 
 class Tracks {
@@ -48,6 +50,7 @@ class Tracks {
         for (const Corner& corner : corners)
           sums_[static_cast<std::size_t>(corner.node) * count + e] += track * corner.weight;
       }
+      if (flux * *std::max_element(left.begin(), left.end()) < least_track) return;
     }
   }
 

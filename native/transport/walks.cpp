@@ -11,7 +11,7 @@
 namespace mesograin::transport {
 
 Walks::Walks(std::shared_ptr<const Body> body, double eta, const Quality& quality, const Effort& effort)
-    : body_(std::move(body)), eta_(eta), quality_(quality), grid_(*body_, quality.nodes, effort) {}
+    : body_(std::move(body)), eta_(eta), quality_(quality), grid_(*body_, quality.nodes, quality.spacing, effort) {}
 
 void Walks::trace(const std::vector<double>& extinctions, const Effort& effort) {
   std::vector<double> missing;

@@ -20,6 +20,7 @@ struct Quality {
   int light_across = 32;   ///< rays for each direction of light, squared
   int way_across = 16;     ///< rays from each node, squared
   bool many_terms = true;  ///< are stored: a half more of them
+  Spacing spacing = Spacing::even;
 };
 
 class Walks {

@@ -17,21 +17,34 @@ namespace {
 // A fifth of a second on two cores, a few per cent from the final answer.
 constexpr Quality coarse{.nodes = 1500, .light_across = 10, .way_across = 8};
 
-// Half a megabyte of the device's memory for each prototype. The light in thick grains changes within short ways, but
-// hardly anything of it that is sharp in its direction is seen.
+// Half a megabyte of the device's memory for each prototype.
 Quality of_thin(const StoredMedium& medium) { return {.nodes = medium.grey() ? 6600 : 3000}; }
 
-Quality of_thick(const StoredMedium& medium) { return {.nodes = medium.grey() ? 10500 : 5500, .many_terms = false}; }
+// The terminator of a thick grain is sharp, and what is dark beside it shows the noise of few rays and the lack of
+// products (docs/shapes.md).
+Quality of_thick(const StoredMedium& medium) {
+  Quality quality = of_thin(medium);
+  quality.light_across = 96;
+  quality.spacing = Spacing::nearer_across;
+  return quality;
+}
+
+// The light changes within ways that are short beside the grain, and nodes are worth more than products.
+Quality of_thickest(const StoredMedium& medium) {
+  return {.nodes = medium.grey() ? 10500 : 5500, .light_across = 96, .many_terms = false};
+}
 
 double densest(const StoredMedium& medium) { return std::max({medium.sigma_t.r, medium.sigma_t.g, medium.sigma_t.b}); }
 
-// Mean free paths between nodes from which on a grain counts as thick.
+// Mean free paths between nodes from which on a grain counts as thick, and as one of the thickest.
 constexpr double thick_spacing = 0.5;
+constexpr double thickest_spacing = 1.25;
 
 /// `medium` is per unit of the body.
 Quality fine(const Body& body, const StoredMedium& medium) {
   const Quality thin = of_thin(medium);
-  return densest(medium) * node_spacing(body, thin) < thick_spacing ? thin : of_thick(medium);
+  const double spacing = densest(medium) * node_spacing(body, thin);
+  return spacing < thick_spacing ? thin : spacing < thickest_spacing ? of_thick(medium) : of_thickest(medium);
 }
 
 // Mean free paths between nodes beyond which the light just below the surface is not resolved.
@@ -50,7 +63,8 @@ std::string describe_body(const Order& order) {
 }
 
 std::string describe(const Quality& quality) {
-  return fmt::format("nodes: {}\nrays: {} {}\nmany terms: {}\n", quality.nodes, quality.light_across,
+  return fmt::format("nodes: {}, {}\nrays: {} {}\nmany terms: {}\n", quality.nodes,
+                     quality.spacing == Spacing::even ? "even" : "nearer across", quality.light_across,
                      quality.way_across, quality.many_terms);
 }
 
@@ -89,7 +103,8 @@ std::shared_ptr<const Computation> Works::ask(Order order) {
   Job job{std::move(order), {}, {}, {}, computation};
   job.about_body = describe_body(job.order);
   job.about = job.about_body + describe(job.order.medium) + describe(of_thin(job.order.medium)) +
-              describe(of_thick(job.order.medium)) + fmt::format("thick: {}\n", thick_spacing);
+              describe(of_thick(job.order.medium)) + describe(of_thickest(job.order.medium)) +
+              fmt::format("thick: {} {}\n", thick_spacing, thickest_spacing);
   Digest digest;
   digest.add(job.about);
   job.name = digest.name();

@@ -6,7 +6,7 @@
 // What is chosen at compile time (models::transport_inputs), besides what dielectric.glsl names:
 //   CLEAR                so much crosses the grain unscattered that it is seen
 //   WALKED               light scatters forwards: what similarity does not tell is found by walks
-//   MANY_TERMS           a half more of them: the grain is not thick
+//   MANY_TERMS           a half more of them: the grain is not of the thickest
 //   GREY                 red, green and blue are the same medium: a texel of `sources` holds four terms, else one in three colours
 #include "models/dielectric.glsl"
 #include "models/interface.glsl"
