@@ -56,11 +56,11 @@ SampledLights Lighting::sample(std::uint32_t index, std::uint32_t seed, int worl
     const lights::LightDraw drawn = lights::sample(suns_[i], glm::dvec3(0.0), random);
     sampled.distant.push_back({drawn.to_light, drawn.irradiance, suns_[i].angle});
   }
-  const glm::dvec2 offset = seeded_offset(seed + world_seed);
   if (world_light_) sampled.world_density = world_directions * world_light_->density();
   for (int i = 0; world_light_ && i < world_directions; ++i) {
-    const lights::LightDraw drawn = world_light_->draw(
-        r2_point(index * static_cast<std::uint32_t>(world_directions) + static_cast<std::uint32_t>(i), offset));
+    // All pixels share them, so the picture as a whole is as far off as the mean of their irradiance is.
+    const lights::LightDraw drawn = world_light_->draw(scrambled_point(
+        index * static_cast<std::uint32_t>(world_directions) + static_cast<std::uint32_t>(i), seed + world_seed));
     sampled.distant.push_back({drawn.to_light, drawn.irradiance / static_cast<double>(world_directions), world_angle,
                                world_directions * world_light_->density(drawn.to_light)});
   }

@@ -1,4 +1,4 @@
-// Additive recurrences with the generalised golden ratios, and Sobol's first two dimensions.
+// Additive recurrences with the generalised golden ratios, and Sobol's first two dimensions, scrambled as Owen does.
 #include "render/sequence.h"
 
 #include <cmath>
@@ -19,6 +19,26 @@ std::uint64_t mix(std::uint64_t value) {
   return value ^ (value >> 31U);
 }
 
+std::uint32_t reversed(std::uint32_t bits) {
+  bits = ((bits & 0x55555555U) << 1U) | ((bits >> 1U) & 0x55555555U);
+  bits = ((bits & 0x33333333U) << 2U) | ((bits >> 2U) & 0x33333333U);
+  bits = ((bits & 0x0f0f0f0fU) << 4U) | ((bits >> 4U) & 0x0f0f0f0fU);
+  bits = ((bits & 0x00ff00ffU) << 8U) | ((bits >> 8U) & 0x00ff00ffU);
+  return (bits << 16U) | (bits >> 16U);
+}
+
+// Flips each bit or not by a hash of all that are more significant (Owen 1995, by Burley, "Practical Hash-based Owen
+// Scrambling", 2020, section 2; the hash is N. Vegdahl's, "Building a Better LK Hash", 2021).
+std::uint32_t scrambled(std::uint32_t bits, std::uint32_t seed) {
+  bits = reversed(bits);
+  bits ^= bits * 0x3d20adeaU;
+  bits += seed;
+  bits *= (seed >> 16U) | 1U;
+  bits ^= bits * 0x05526c56U;
+  bits ^= bits * 0x53a22864U;
+  return reversed(bits);
+}
+
 }  // namespace
 
 glm::dvec2 r2_point(std::uint32_t index, glm::dvec2 offset) {
@@ -33,8 +53,8 @@ glm::dvec2 r4_point(std::uint32_t index, glm::dvec2 offset) {
 
 glm::dvec2 scrambled_point(std::uint32_t index, std::uint32_t seed) {
   const std::uint64_t scramble = mix(seed);
-  auto first = static_cast<std::uint32_t>(scramble);
-  auto second = static_cast<std::uint32_t>(scramble >> 32U);
+  std::uint32_t first = 0;
+  std::uint32_t second = 0;
   std::uint32_t of_first = 1U << 31U;
   std::uint32_t of_second = 1U << 31U;
   for (; index != 0; index >>= 1U) {
@@ -45,7 +65,8 @@ glm::dvec2 scrambled_point(std::uint32_t index, std::uint32_t seed) {
     of_first >>= 1U;
     of_second ^= of_second >> 1U;
   }
-  return {0x1.0p-32 * first, 0x1.0p-32 * second};
+  return {0x1.0p-32 * scrambled(first, static_cast<std::uint32_t>(scramble)),
+          0x1.0p-32 * scrambled(second, static_cast<std::uint32_t>(scramble >> 32U))};
 }
 
 glm::dvec2 seeded_offset(std::uint32_t seed) {

@@ -1,4 +1,4 @@
-// Low-discrepancy points for antialiasing, for the sun's disc and for lenses.
+// Low-discrepancy points for antialiasing, for the sun's disc, for the world and for lenses.
 #pragma once
 
 #include <cstdint>
@@ -14,8 +14,9 @@ glm::dvec2 r2_point(std::uint32_t index, glm::dvec2 offset);
 glm::dvec2 r4_point(std::uint32_t index, glm::dvec2 offset);
 
 /// Point `index` of a (0,2)-sequence: any run of 2^k points from a multiple of 2^k on is stratified in every way
-/// (Kollig and Keller, "Efficient Multidimensional Sampling", 2002, section 3.2), scrambled by `seed`; in [0, 1)^2.
-/// Without correlation to the recurrences.
+/// (Kollig and Keller, "Efficient Multidimensional Sampling", 2002, section 3.2), scrambled by `seed` as Owen does, by
+/// which the mean of a smooth function over such a run is off by its length to the power of -1.5; in [0, 1)^2. Without
+/// correlation to the recurrences.
 glm::dvec2 scrambled_point(std::uint32_t index, std::uint32_t seed);
 
 /// A pair in [0, 1)^2 that depends on nothing but `seed`.

@@ -74,6 +74,21 @@ TEST(Lens, SamplesAreSpreadOverIt) {
   }
 }
 
+// What all pixels share of a sky: 16 samples of 4 directions.
+TEST(Lens, AFewSamplesHaveTheMeanOfWhatIsSmooth) {
+  for (std::uint32_t seed = 0; seed < 16; ++seed) {
+    double steep = 0.0;
+    double bent = 0.0;
+    for (std::uint32_t i = 64; i < 128; ++i) {
+      const glm::dvec2 point = render::scrambled_point(i, seed);
+      steep += point.y * point.y / 64.0;
+      bent += point.x * point.x * point.y / 64.0;
+    }
+    EXPECT_NEAR(steep, 1.0 / 3.0, 4e-3) << seed;
+    EXPECT_NEAR(bent, 1.0 / 6.0, 6e-3) << seed;
+  }
+}
+
 TEST(Lens, WhatIsInFocusStays) {
   const glm::dmat4 world_to_camera = glm::lookAt(glm::dvec3(1, 2, 5), glm::dvec3(0), glm::dvec3(0, 1, 0));
   const glm::dmat4 camera_to_world = glm::inverse(world_to_camera);
