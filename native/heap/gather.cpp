@@ -10,9 +10,24 @@
 #include <utility>
 
 #include "heap/spread.h"
+#include "lights/world_light.h"
 
 namespace mesograin::heap {
 namespace {
+
+// Less than this of what goes through the middle of a grain is not seen through it.
+constexpr double least_crossing = 0.01;
+
+// Of a sun's disc, edge to edge: looks that go where the grain sends them find a smaller one too seldom.
+constexpr double least_disc = std::numbers::pi / 36.0;
+
+// Clear grains, one behind the other; the last of them is as its neighbours see it.
+constexpr int most_looked_into = 12;
+
+bool found_by_looks(const scene::Light& light) {
+  const auto* sun = std::get_if<scene::DirectionalLight>(&light);
+  return sun != nullptr && sun->angle >= least_disc;
+}
 
 /// What one direction of a light makes a walk send back: of all places that ask for it one is looked at, the likelier
 /// the more it found.
@@ -68,7 +83,11 @@ class Asking {
 }  // namespace
 
 Gather::Gather(Heap heap, std::shared_ptr<const HeapLight> light)
-    : heap_(std::move(heap)), light_(std::move(light)), space_(heap_.grains, light_->kinds), draws_(draws_of(heap_)) {}
+    : heap_(std::move(heap)),
+      light_(std::move(light)),
+      space_(heap_.grains, light_->kinds),
+      draws_(draws_of(heap_)),
+      looks_find_all_(std::all_of(heap_.lights.begin(), heap_.lights.end(), found_by_looks)) {}
 
 glm::vec3 Gather::sent_to(Ray ray, transport::Random& random, bool open) const {
   if (const std::optional<Source> source = space_.follow(ray, random))
@@ -127,6 +146,57 @@ glm::vec3 Gather::look_at_all(std::uint32_t grain, const glm::vec3& place, const
     sum += sent_to({leaves_at, frame * outcome->direction, outcome->weight}, random, true);
   }
   return glm::max(sum / static_cast<float>(rays) + seen_through(grain, normal, towards, random), 0.0F);
+}
+
+bool Gather::sees_into(std::uint32_t grain) const {
+  const Optics& optics = heap_.grains.kinds[space_.grains()[grain].kind];
+  const double thinnest = std::min({optics.sigma_t.r, optics.sigma_t.g, optics.sigma_t.b});
+  return optics.surface == Surface::dielectric && std::exp(-2.0 * thinnest) > least_crossing;
+}
+
+glm::vec3 Gather::look_into(const SeenFacet& seen, const Facets& facets, int rays, transport::Random& random) const {
+  glm::vec3 sum(0.0F);
+  for (int i = 0; i < rays; ++i) sum += found_through(seen, facets, random);
+  sum /= static_cast<float>(rays);
+  const float mu = std::clamp(glm::dot(seen.normal, seen.towards), 0.0F, 1.0F);
+  const GrainTable& table = *space_.kind(seen.grain).from_light;
+  sum += table.lobe_at(mu) * light_->crossed[seen.grain].at(table.seen_place(seen.normal, seen.towards));
+  return glm::max(sum, 0.0F);
+}
+
+glm::vec3 Gather::found_through(SeenFacet seen, const Facets& facets, transport::Random& random) const {
+  glm::vec3 weight(1.0F);
+  for (int through = 0; through < most_looked_into; ++through) {
+    const Grain& grain = space_.grains()[seen.grain];
+    const std::optional<Passage> passage =
+        walk_facets(heap_.grains.kinds[grain.kind], grain.radius, seen, facets, random);
+    if (!passage) return glm::vec3(0.0F);
+    weight *= passage->weight;
+    const std::optional<Meeting> meeting = facets.beyond(seen.grain, passage->place, passage->direction);
+    // What else the grain that is seen makes of the lights is its model's.
+    if (!meeting) return passage->crossed || through > 0 ? weight * far_away(passage->direction) : glm::vec3(0.0F);
+    const bool on = looks_find_all_ && !meeting->wall && sees_into(meeting->number) && through + 1 < most_looked_into;
+    if (!on) {
+      Ray ray{passage->place, passage->direction, weight};
+      const std::optional<Source> source = space_.source(*meeting, ray, random);
+      return source ? ray.weight / source->met * light_->sent[source->number].at(source->normal) : glm::vec3(0.0F);
+    }
+    seen = {meeting->number, meeting->place, meeting->normal, -passage->direction};
+  }
+  return glm::vec3(0.0F);
+}
+
+glm::vec3 Gather::far_away(const glm::vec3& direction) const {
+  glm::dvec3 seen = lights::radiance(heap_.world, glm::dvec3(direction));
+  for (const scene::Light& light : heap_.lights) {
+    if (!found_by_looks(light)) continue;
+    const auto* sun = std::get_if<scene::DirectionalLight>(&light);
+    const glm::dvec3 to_sun = glm::normalize(sun->direction_to_light);
+    const double edge = std::cos(0.5 * sun->angle);
+    if (glm::dot(to_sun, glm::dvec3(direction)) < edge) continue;
+    seen += sun->irradiance / (2.0 * std::numbers::pi * (1.0 - edge));
+  }
+  return seen;
 }
 
 glm::vec3 Gather::seen_through(std::uint32_t grain, const glm::vec3& normal, const glm::vec3& towards,

@@ -9,6 +9,7 @@
 
 #include "heap/draws.h"
 #include "heap/exchange.h"
+#include "heap/facet_walk.h"
 #include "heap/heap.h"
 #include "transport/random.h"
 
@@ -34,7 +35,16 @@ class Gather {
   glm::vec3 look_at_all(std::uint32_t grain, const glm::vec3& place, const glm::vec3& normal, const glm::vec3& towards,
                         int rays, transport::Random& random) const;
 
+  /// Whether so much crosses this grain, whose surface refracts, that look_into() shows more of it.
+  bool sees_into(std::uint32_t grain) const;
+
+  /// What look() shows, through the grain's own facets, and of the world, and of suns wide enough to be found, what
+  /// crosses it unscattered. Where no other light is, the look goes on through other clear grains that it meets.
+  glm::vec3 look_into(const SeenFacet& seen, const Facets& facets, int rays, transport::Random& random) const;
+
  private:
+  glm::vec3 found_through(SeenFacet seen, const Facets& facets, transport::Random& random) const;
+  glm::vec3 far_away(const glm::vec3& direction) const;
   glm::vec3 sent_to(Ray ray, transport::Random& random, bool open) const;
   glm::vec3 seen_through(std::uint32_t grain, const glm::vec3& normal, const glm::vec3& towards,
                          transport::Random& random) const;
@@ -43,6 +53,7 @@ class Gather {
   std::shared_ptr<const HeapLight> light_;
   Space space_;
   std::vector<Draw> draws_;
+  bool looks_find_all_;  // of the light that comes from far away
 };
 
 }  // namespace mesograin::heap

@@ -79,6 +79,10 @@ class Space {
   /// one of the two ways is taken at random.
   std::optional<Source> follow(Ray& ray, transport::Random& random) const;
 
+  /// What sends out light where a ray has met something; nothing, and no weight, where that is not known. `ray` has
+  /// come there.
+  std::optional<Source> source(const Meeting& meeting, Ray& ray, transport::Random& random) const;
+
   /// Radiance that comes against `ray`'s direction because of what grains and walls send out, straight through those
   /// that let it.
   glm::vec3 seen_along(Ray ray, const Field& sent, transport::Random& random) const;
@@ -90,7 +94,6 @@ class Space {
  private:
   /// To where it leaves the grain that it met.
   void cross(Ray& ray, const Meeting& meeting, float cosine) const;
-  std::optional<Source> source(const Meeting& meeting, Ray& ray, transport::Random& random) const;
 
   const std::vector<Grain>& grains_;
   const std::vector<Wall>& walls_;

@@ -1,14 +1,12 @@
-// Free flights are drawn for one channel and weighed for all three by the balance heuristic (Wilkie et al., "Hero
-// wavelength spectral sampling", 2014, eq. 6), so that grey media have no noise in colour.
+// Flights to the sphere's other side, scatterings and what its surface reflects, until light is outside.
 #include "heap/sphere_walk.h"
 
 #include <algorithm>
 #include <cmath>
-#include <glm/common.hpp>
-#include <glm/exponential.hpp>
 #include <glm/geometric.hpp>
 #include <numbers>
 
+#include "heap/flights.h"
 #include "physics/physics.h"
 #include "physics/visible_normals.h"
 #include "transport/directions.h"
@@ -47,23 +45,25 @@ Outcome mirrored(const Optics& optics, const glm::vec3& travelling, Random& rand
 class Inside {
  public:
   Inside(const Optics& optics, Sense sense, Random& random, const Scattered& told)
-      : optics_(optics), sense_(sense), random_(random), told_(told), sigma_t_(optics.sigma_t), albedo_(optics.albedo) {
-    channel_ = std::min(static_cast<int>(3.0F * random.uniform()), 2);
-  }
+      : optics_(optics),
+        sense_(sense),
+        random_(random),
+        told_(told),
+        flights_(glm::vec3(optics.sigma_t), glm::vec3(optics.albedo), random) {}
 
   std::optional<Outcome> follow(glm::vec3 place, glm::vec3 direction) {
     bool scattered = !optics_.transparent();
     for (int step = 0; step < most_steps; ++step) {
       const float along = glm::dot(place, direction);
       const float chord = -along + std::sqrt(std::max(along * along + 1.0F - glm::dot(place, place), 0.0F));
-      const float flight = scattered ? fly(chord) : fly_within(chord);
+      const float flight = scattered ? flights_.fly(chord) : flights_.fly_within(chord);
       if (flight < chord) {
         scattered = true;
         place += flight * direction;
-        if (told_) told_(place, direction, weight_);
+        if (told_) told_(place, direction, flights_.weight());
         direction =
             transport::scattered(direction, static_cast<float>(optics_.g), random_.uniform(), random_.uniform());
-        if (!survives()) return std::nullopt;
+        if (!flights_.survives()) return std::nullopt;
         continue;
       }
       place = glm::normalize(place + chord * direction);
@@ -74,66 +74,13 @@ class Inside {
   }
 
  private:
-  // `passed` of each channel, relative to the density that all three together have for it.
-  void weigh(const glm::vec3& passed, const glm::vec3& density) {
-    weight_ *= passed;
-    density_ *= density;
-    // Only their ratio counts.
-    const float mean = (density_.r + density_.g + density_.b) / 3.0F;
-    if (!(mean > 0.0F)) {
-      weight_ = density_ = glm::vec3(0.0F);
-      return;
-    }
-    weight_ /= mean;
-    density_ /= mean;
-  }
-
-  float fly(float chord) {
-    const float sigma_t = sigma_t_[channel_];
-    const float flight = sigma_t > 0.0F ? -std::log1p(-random_.uniform()) / sigma_t : chord;
-    const glm::vec3 passed = glm::exp(-sigma_t_ * std::min(flight, chord));
-    if (flight < chord)
-      weigh(passed * sigma_t_ * albedo_, passed * sigma_t_);
-    else
-      weigh(passed, passed);
-    return flight;
-  }
-
-  // The first flight ends before the other side.
-  float fly_within(float chord) {
-    const glm::vec3 within =
-        -glm::vec3(std::expm1(-sigma_t_.r * chord), std::expm1(-sigma_t_.g * chord), std::expm1(-sigma_t_.b * chord));
-    if (!(within[channel_] > 0.0F)) {
-      weight_ = glm::vec3(0.0F);
-      return 0.0F;
-    }
-    const float u = random_.uniform();
-    const float sigma_t = sigma_t_[channel_];
-    // A chord of so few mean free paths that its exponential is a straight line.
-    const float flight = sigma_t * chord > 1e-3F ? -std::log1p(-u * within[channel_]) / sigma_t : u * chord;
-    const glm::vec3 passed = glm::exp(-sigma_t_ * flight) * sigma_t_;
-    weigh(passed * albedo_, passed / glm::max(within, 1e-30F));
-    begun_with_ = std::max({weight_.r, weight_.g, weight_.b});
-    return std::min(flight, 0.999999F * chord);
-  }
-
-  bool survives() {
-    const float most = std::max({weight_.r, weight_.g, weight_.b});
-    if (!(most > 0.0F)) return false;
-    const float faint = 0.05F * begun_with_;
-    if (most > faint) return true;
-    if (random_.uniform() * faint >= most) return false;
-    weight_ *= faint / most;
-    return true;
-  }
-
   // Nothing where it is reflected inside, or where `done_`.
   std::optional<Outcome> leave(const glm::vec3& normal, glm::vec3& direction) {
     switch (optics_.surface) {
       case Surface::lambert_lambert:
-        return Outcome{normal, cosine_lobe(normal, random_), weight_};
+        return Outcome{normal, cosine_lobe(normal, random_), flights_.weight()};
       case Surface::lambert_refracted: {
-        if (sense_ == Sense::from_viewer) return Outcome{normal, cosine_lobe(normal, random_), weight_};
+        if (sense_ == Sense::from_viewer) return Outcome{normal, cosine_lobe(normal, random_), flights_.weight()};
         // A view ray is refracted without Fresnel, and radiance is not focused: only what lies in its cone is seen.
         const auto eta = static_cast<float>(optics_.eta);
         const float cosine = glm::dot(normal, direction);
@@ -141,7 +88,7 @@ class Inside {
           done_ = true;
           return std::nullopt;
         }
-        return Outcome{normal, transport::refracted(direction, -normal, 1.0F / eta), eta * eta * weight_};
+        return Outcome{normal, transport::refracted(direction, -normal, 1.0F / eta), eta * eta * flights_.weight()};
       }
       case Surface::dielectric: {
         const float cosine = std::min(glm::dot(normal, direction), 1.0F);
@@ -150,10 +97,10 @@ class Inside {
           return std::nullopt;
         }
         return Outcome{normal, transport::refracted(direction, -normal, static_cast<float>(1.0 / optics_.eta)),
-                       weight_};
+                       flights_.weight()};
       }
       default:
-        return Outcome{normal, direction, weight_};
+        return Outcome{normal, direction, flights_.weight()};
     }
   }
 
@@ -161,12 +108,7 @@ class Inside {
   Sense sense_;
   Random& random_;
   const Scattered& told_;
-  glm::vec3 sigma_t_;
-  glm::vec3 albedo_;
-  glm::vec3 weight_{1.0F};   // of each channel, over the mean density
-  glm::vec3 density_{1.0F};  // with which each channel would have drawn the walk, over their mean
-  float begun_with_ = 1.0F;
-  int channel_;
+  Flights flights_;
   bool done_ = false;
 };
 

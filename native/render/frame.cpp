@@ -175,7 +175,7 @@ bool Frame::draw_seen(const Sample& sample) {
   for (std::size_t first = 0; first < content_->units() || first == 0; first += most_in_stencil) {
     if (!surfaces_.run(sample, arrays_, first)) return false;
     if (first == 0) {
-      if (!update_shadows(sample) || !gather_.run(sample, surfaces_)) return false;
+      if (!update_shadows(sample) || !gather_.run(sample, arrays_, surfaces_)) return false;
       // Rays are not the device's work.
       if (sample.cast) timers_.shade.start();
       shade_.clear(sample);

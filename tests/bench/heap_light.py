@@ -41,7 +41,8 @@ KINDS = {"lambert .3": {"kind": "diffuse", "reflectance": 0.3}, "lambert .8": {"
          **{f"{albedo:.3g} radius {radius}".lstrip("0"): medium(albedo, radius)
             for albedo in (0.9, 0.999) for radius in (1, 3, 10)},
          "coloured": medium((0.999, 0.97, 0.8), (1.0, 3.0, 5.0)),
-         "eta 1.3": medium(0.999, 3, 1.3), "eta 1.5": medium(0.999, 3, 1.5)}
+         "eta 1.3": medium(0.999, 3, 1.3), "eta 1.5": medium(0.999, 3, 1.5),
+         "clear": medium(0.999, 0.2, 1.5)}
 
 
 def light_of(name, material):

@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include "render/cast_work.h"
+#include "render/clear_looks.h"
 
 namespace mesograin::render {
 namespace {
@@ -15,11 +16,13 @@ constexpr int rays_a_sample = 4;
 
 }  // namespace
 
-bool GatherPass::run(const Sample& sample, SurfacePass& surfaces) {
+bool GatherPass::run(const Sample& sample, const ArrayVisibility& arrays, SurfacePass& surfaces) {
   const heap::Gather* gather = sample.exchange.gather();
   ran_ = gather != nullptr && sample.unwrapping == nullptr;
   if (!ran_) return true;
   const auto start = std::chrono::steady_clock::now();
+  std::optional<ClearLooks> clear;
+  if (sample.cast) clear.emplace(arrays.tree(), sample.content, sample.exchange);
   const SeenSurfaces seen = surfaces.seen(sample);
   const std::vector<Exchange::Role>& roles = sample.exchange.roles();
   pixels_.assign(seen.normals.size(), glm::vec4(0.0F));
@@ -39,6 +42,9 @@ bool GatherPass::run(const Sample& sample, SurfacePass& surfaces) {
       if (gather->sees_all(*grain)) {
         const glm::vec3 from_middle(seen.positions[i]);
         pixels_[i] = glm::vec4(gather->look_at_all(*grain, from_middle, normal, towards, rays_a_sample, random), 2.0F);
+      } else if (clear && gather->sees_into(*grain)) {
+        const glm::vec3 into = gather->look_into({*grain, place, normal, towards}, *clear, rays_a_sample, random);
+        pixels_[i] = glm::vec4(into, 1.0F);
       } else {
         pixels_[i] = glm::vec4(gather->look(*grain, normal, towards, rays_a_sample, random), 1.0F);
       }

@@ -7,6 +7,7 @@
 
 #include "gl/program.h"
 #include "gl/texture.h"
+#include "render/passes/array_visibility.h"
 #include "render/passes/sample.h"
 #include "render/passes/surface_pass.h"
 
@@ -14,8 +15,8 @@ namespace mesograin::render {
 
 class GatherPass {
  public:
-  /// After the surfaces are found. False if ended.
-  bool run(const Sample& sample, SurfacePass& surfaces);
+  /// After the surfaces are found. Clear grains are looked into where rays find what is seen. False if ended.
+  bool run(const Sample& sample, const ArrayVisibility& arrays, SurfacePass& surfaces);
 
   /// Whether the last run had anything to gather.
   bool ran() const { return ran_; }

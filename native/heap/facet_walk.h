@@ -1,0 +1,56 @@
+// One walk of light through a grain's own facets, from the place where it is seen to where it leaves: what a clear
+// crystal shows no sphere of its area does.
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <optional>
+
+#include "heap/grains.h"
+#include "heap/optics.h"
+#include "transport/random.h"
+
+namespace mesograin::heap {
+
+/// Grains' surfaces as they are, and walls, as rays (directions of unit length) meet them.
+class Facets {
+ public:
+  Facets() = default;
+  virtual ~Facets() = default;
+  Facets(const Facets&) = delete;
+  Facets& operator=(const Facets&) = delete;
+
+  /// What is met from inside a grain: its own facets alone.
+  virtual std::optional<Meeting> inside(std::uint32_t grain, const glm::vec3& origin,
+                                        const glm::vec3& direction) const = 0;
+
+  /// What is met from a grain's surface on: others, and walls.
+  virtual std::optional<Meeting> beyond(std::uint32_t grain, const glm::vec3& origin,
+                                        const glm::vec3& direction) const = 0;
+
+  /// GGX alpha.
+  virtual float roughness(std::uint32_t grain) const = 0;
+};
+
+/// A dielectric grain as it is seen at a place of its surface.
+struct SeenFacet {
+  std::uint32_t grain;
+  glm::vec3 place;    ///< from where the heap's places are told from
+  glm::vec3 normal;   ///< outwards, unit length
+  glm::vec3 towards;  ///< the viewer, unit length
+};
+
+/// Light as it leaves, against the way that light goes to the viewer.
+struct Passage {
+  glm::vec3 place;
+  glm::vec3 direction;
+  glm::vec3 weight;  ///< linear RGB, of what the viewer sees of that radiance
+  bool crossed;      ///< it went in and came out unscattered
+};
+
+/// Follows a view ray; lengths in `optics` are in `radius`. Where no facet is met, light goes straight on. Nothing,
+/// where all was absorbed or it does not come out.
+std::optional<Passage> walk_facets(const Optics& optics, float radius, const SeenFacet& seen, const Facets& facets,
+                                   transport::Random& random);
+
+}  // namespace mesograin::heap

@@ -1,0 +1,87 @@
+// Rays one by one: they go nowhere near each other.
+#include "render/clear_looks.h"
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <optional>
+
+#include "render/hit_surface.h"
+
+namespace mesograin::render {
+namespace {
+
+// Of the ball around a grain: how far from its own surface a ray begins that may meet it again.
+constexpr float clear_of_itself = 1e-4F;
+
+// What stands in the way and is not meant is passed, so many times.
+constexpr int most_passed = 16;
+
+}  // namespace
+
+struct ClearLooks::Hit {
+  std::size_t object;
+  glm::vec3 place;  // from the anchor
+  glm::vec3 normal;
+  bool front;
+};
+
+ClearLooks::ClearLooks(const CastContent& cast, const Content& content, const Exchange& exchange)
+    : cast_(cast), content_(content), roles_(exchange.roles()) {
+  // Grains are counted in the order of the objects.
+  for (std::size_t object = 0; object < roles_.size(); ++object)
+    if (roles_[object].grain) objects_.push_back(object);
+}
+
+std::size_t ClearLooks::instances() const {
+  return content_.instances() != nullptr ? content_.instances()->count() : 0;
+}
+
+std::optional<ClearLooks::Hit> ClearLooks::first_hit(const glm::vec3& origin, const glm::vec3& direction,
+                                                     std::size_t from, float clearance) const {
+  casting::Packet packet;
+  casting::Hits hits;
+  packet.set(0, origin, direction);
+  packet.from[0] = static_cast<std::uint32_t>(from < instances() ? from : content_.object_number(from - instances()));
+  packet.own[0] = clearance;
+  cast_.first_hits(packet, hits);
+  if (!hits.met[0]) return std::nullopt;
+  const glm::vec4 facing = hit_surface(cast_, content_, packet, hits, 0).normal;
+  return Hit{static_cast<std::size_t>(std::abs(facing.w)) - 1, origin + hits.distance[0] * direction, glm::vec3(facing),
+             facing.w > 0.0F};
+}
+
+std::optional<heap::Meeting> ClearLooks::inside(std::uint32_t grain, const glm::vec3& origin,
+                                                const glm::vec3& direction) const {
+  const std::size_t object = objects_[grain];
+  std::optional<Hit> hit = first_hit(origin, direction, object, clear_of_itself * content_.receiver(object).ball.w);
+  // Others may reach into it.
+  for (int passed = 0; hit && hit->object != object && passed < most_passed; ++passed)
+    hit = first_hit(hit->place, direction, hit->object, 0.0F);
+  if (!hit || hit->object != object || hit->front) return std::nullopt;
+  return heap::Meeting{false, grain, hit->place, hit->normal};
+}
+
+std::optional<heap::Meeting> ClearLooks::beyond(std::uint32_t grain, const glm::vec3& origin,
+                                                const glm::vec3& direction) const {
+  std::optional<Hit> hit = first_hit(origin, direction, objects_[grain], 0.0F);
+  for (int passed = 0; hit && passed < most_passed; ++passed) {
+    const Exchange::Role& role = roles_[hit->object];
+    // One that reaches into the grain that is looked through is not met from inside.
+    if (role.grain && hit->front) return heap::Meeting{false, *role.grain, hit->place, hit->normal};
+    if (role.wall) {
+      const bool against = glm::dot(hit->normal, direction) < 0.0F;
+      return heap::Meeting{true, *role.wall, hit->place, against ? hit->normal : -hit->normal};
+    }
+    hit = first_hit(hit->place, direction, hit->object, 0.0F);
+  }
+  return std::nullopt;
+}
+
+float ClearLooks::roughness(std::uint32_t grain) const {
+  const std::size_t object = objects_[grain];
+  const scene::Material& material = object < instances() ? content_.instances()->group_of(object).source
+                                                         : content_.draws()[object - instances()].look;
+  return static_cast<float>(material.roughness);
+}
+
+}  // namespace mesograin::render

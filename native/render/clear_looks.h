@@ -1,0 +1,40 @@
+// How looks into clear grains go on through a view's content: to a grain's own facets, and to what stands around it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <optional>
+#include <vector>
+
+#include "heap/facet_walk.h"
+#include "render/cast_content.h"
+#include "render/content.h"
+#include "render/exchange.h"
+
+namespace mesograin::render {
+
+/// All that is given must outlive it.
+class ClearLooks : public heap::Facets {
+ public:
+  ClearLooks(const CastContent& cast, const Content& content, const Exchange& exchange);
+
+  std::optional<heap::Meeting> inside(std::uint32_t grain, const glm::vec3& origin,
+                                      const glm::vec3& direction) const override;
+  std::optional<heap::Meeting> beyond(std::uint32_t grain, const glm::vec3& origin,
+                                      const glm::vec3& direction) const override;
+  float roughness(std::uint32_t grain) const override;
+
+ private:
+  struct Hit;
+  std::optional<Hit> first_hit(const glm::vec3& origin, const glm::vec3& direction, std::size_t from,
+                               float clearance) const;
+  std::size_t instances() const;
+
+  const CastContent& cast_;
+  const Content& content_;
+  const std::vector<Exchange::Role>& roles_;
+  std::vector<std::size_t> objects_;  // their numbers, of the grains
+};
+
+}  // namespace mesograin::render
