@@ -4,7 +4,7 @@ import mesograin_native as native
 import numpy
 import pytest
 
-from test_heap_light import sphere
+from test_heap_light import ROUND
 
 GREY = numpy.array((0.8, 0.8, 0.8))
 RED = numpy.array((0.8, 0.05, 0.05))
@@ -20,7 +20,7 @@ def picture(sky, sun, exchange):
     paper = native.Mesh(paper, None, numpy.array([[0, 1, 2], [0, 2, 3]], numpy.uint32))
     raised = numpy.eye(4)
     raised[2, 3] = 1.0
-    instances = [native.Instance(sphere(), native.Material(model="lambert", reflectance=tuple(GREY)), raised),
+    instances = [native.Instance(ROUND, native.Material(model="lambert", reflectance=tuple(GREY)), raised),
                  native.Instance(paper, native.Material(model="lambert", reflectance=tuple(RED)), numpy.eye(4))]
     lights = [native.DirectionalLight(tuple(TO_SUN), (sun,) * 3)] if sun else []
     view = native.View(SIZE, SIZE)
