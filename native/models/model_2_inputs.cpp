@@ -22,7 +22,8 @@ double separate_share(const scene::Material& material, const BodySurface& surfac
   // Jensen's dipole stands for all orders at once; the better dipole never holds the first.
   if (material.profile == scene::Profile::better_dipole) return 1.0;
   if (material.profile != scene::Profile::half_space) return 0.0;
-  return std::min(std::abs(material.g) / least_separate_g, 1.0);
+  const double share = std::min(std::abs(material.g) / least_separate_g, 1.0);
+  return share * share * (3.0 - 2.0 * share);  // smoothly: matching asks for derivatives
 }
 
 }  // namespace

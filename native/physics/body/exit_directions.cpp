@@ -66,7 +66,7 @@ std::vector<ExitDirection> exit_directions(double eta, double cosine, double g) 
   const double sine = sine_of_cosine(cosine);
   const real3 normal(sine, 0.0, cosine);
   // One passes into the other: each is good to half a percent only, and a jump in g would show that.
-  constexpr double least_peaked = 1e-8, most_even = 0.1;
+  constexpr double least_peaked = 1e-8, most_even = 0.03;
   const double peaked = std::abs(g) < least_peaked ? 0.0 : std::min(std::abs(g) / most_even, 1.0);
   std::vector<ExitDirection> directions;
   const auto add = [&](const std::vector<ExitDirection>& some, double share) {
