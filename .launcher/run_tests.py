@@ -21,8 +21,7 @@ SOURCE = pathlib.Path(__file__).resolve().parent.parent
 PARTS = ("lint", "physics", "native", "python", "blender", "window")
 # Most suites keep one core busy, so two run side by side: the longest first, last what shares its work out by itself.
 LANES = 2
-SIDE_BY_SIDE = ("blender", "python", "native", "physics", "lint")
-ALONE = ("window",)  # an artist's clock: drawing is timed
+ORDER = ("window", "blender", "python", "native", "physics", "lint")
 FATAL = "Fatal Python error"
 MOST_CALLS = 8  # of a crash
 LIMIT = 40 * 60  # seconds for one suite; only a hang takes so long
@@ -166,16 +165,15 @@ class Runner:
         self.report(result, log)
 
     def run_parts(self, parts):
-        """Runs what may run side by side, then what may not."""
-        for lanes, group in ((LANES, SIDE_BY_SIDE), (1, ALONE)):
-            suites = [suite for part in group if part in parts for suite in self.suites_of(part)]
-            with concurrent.futures.ThreadPoolExecutor(lanes) as pool:
-                try:
-                    for done in [pool.submit(self.run_suite, suite) for suite in suites]:
-                        done.result()
-                except KeyboardInterrupt:
-                    self.interrupt()
-                    raise
+        """Runs every suite of these parts."""
+        suites = [suite for part in ORDER if part in parts for suite in self.suites_of(part)]
+        with concurrent.futures.ThreadPoolExecutor(LANES) as pool:
+            try:
+                for done in [pool.submit(self.run_suite, suite) for suite in suites]:
+                    done.result()
+            except KeyboardInterrupt:
+                self.interrupt()
+                raise
 
     def suites_of(self, part):
         suites = suites_of(part, self.options)

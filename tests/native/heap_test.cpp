@@ -27,6 +27,10 @@ scene::MeshPointer bumpy(int segments = 64, int rings = 32) {
   return std::make_shared<scene::Mesh>(positions, std::vector<glm::vec3>(), sphere.triangles());
 }
 
+// For light maps: Mesa 22 reallocates the vertices of a tessellated mesh with every patch, which the address sanitizer
+// makes a copy of all.
+scene::MeshPointer few_triangles() { return bumpy(32, 16); }
+
 scene::MeshPointer square(float half) {
   return std::make_shared<scene::Mesh>(
       std::vector<glm::vec3>{{-half, -half, 0}, {half, -half, 0}, {half, half, 0}, {-half, half, 0}},
@@ -108,13 +112,13 @@ class HeapTest : public testing::Test {
   void TearDown() override { EXPECT_TRUE(gl::ContextThread::instance().take_gl_errors().empty()); }
 };
 
-void expect_array_as_one_by_one(scene::Model model, double most_in_blocks, Visibility visibility) {
+void expect_array_as_one_by_one(const scene::MeshPointer& mesh, scene::Model model, double most_in_blocks,
+                                Visibility visibility) {
   scene::Material material;
   material.model = model;
   material.sigma_a = {0.05, 0.2, 0.6};
   material.sigma_s = glm::dvec3(2.0);
   material.roughness = 0.3;
-  const scene::MeshPointer mesh = bumpy();
   const std::vector<scene::Light> lights = {sun({1.0, 0.3, 0.6}, 3.0), sun({-1.0, 0.3, -1.0}, 1.0)};
   scene::Scene one_by_one{{}, lights};
   for (const glm::dmat4& place : eight_places()) one_by_one.instances.push_back({mesh, material, place});
@@ -128,16 +132,16 @@ void expect_array_as_one_by_one(scene::Model model, double most_in_blocks, Visib
 
 TEST_F(HeapTest, AnArrayOfOpaqueGrainsIsAsOneByOne) {
   for (const Visibility visibility : {Visibility::drawn, Visibility::cast}) {
-    expect_array_as_one_by_one(scene::Model::lambert, 0.01, visibility);
-    expect_array_as_one_by_one(scene::Model::model_1, 0.012, visibility);
+    expect_array_as_one_by_one(bumpy(), scene::Model::lambert, 0.01, visibility);
+    expect_array_as_one_by_one(bumpy(), scene::Model::model_1, 0.012, visibility);
   }
 }
 
 // Their light maps are from directions near the light's.
 TEST_F(HeapTest, AnArrayOfTranslucentGrainsIsNearlyAsOneByOne) {
   for (const Visibility visibility : {Visibility::drawn, Visibility::cast}) {
-    expect_array_as_one_by_one(scene::Model::model_2, 0.035, visibility);
-    expect_array_as_one_by_one(scene::Model::model_3, 0.035, visibility);
+    expect_array_as_one_by_one(few_triangles(), scene::Model::model_2, 0.035, visibility);
+    expect_array_as_one_by_one(few_triangles(), scene::Model::model_3, 0.035, visibility);
   }
 }
 
@@ -183,7 +187,7 @@ TEST_F(HeapTest, WhatIsCastIsWhatIsDrawn) {
     EXPECT_NEAR(of_hollows.total, 1.0, 0.004);
   }
   // Rays from the lights.
-  const Difference of_translucent = found(bumpy(), scene::Model::model_2);
+  const Difference of_translucent = found(few_triangles(), scene::Model::model_2);
   EXPECT_LT(of_translucent.blocks, 0.005);
   EXPECT_NEAR(of_translucent.total, 1.0, 0.002);
 }
