@@ -9,7 +9,8 @@ from mesograin.scene import export
 
 GRAINS = 100000
 RADIUS = 0.012
-PATIENT = 180.0  # seconds: on a machine that does other things
+PATIENT = 180.0  # s without any progress: on a machine that does other things
+IDLE_DRAWS = 25  # at most, of a viewport that waits for light between grains: an artist's, and panels' that move
 
 
 def open_scatter(window):
@@ -33,17 +34,34 @@ def open_scatter(window):
 
 
 def drawn(window):
-    """Waits for a picture, and says how long that took."""
-    started = time.monotonic()
+    """Waits for a picture, and says how long that took; what is waited for needs no redraws."""
+    started = moved = time.monotonic()
+    seen, idle, view_draw = None, [], engine.MesograinRenderEngine._view_draw
+
+    def counted(self, *arguments):
+        waits = self._session is not None and self._session.waits
+        view_draw(self, *arguments)
+        if waits and self._session.waits:
+            idle.append(1)
 
     def there():
+        nonlocal seen, moved
         latest = status.get(status.VIEWPORT)
         live = [session for session in engine._sessions if not session.stopped and session.has_scene]
+        so_far = latest and latest.samples, [(each.samples, each.preparing) for each in live]
+        if so_far != seen:
+            seen, moved = so_far, time.monotonic()
+        assert time.monotonic() - moved < PATIENT, f"no progress for {PATIENT} s; {status.complaints()}"
         at_rest = not any(each.busy or each.preparing is not None for each in live)
         return latest is not None and latest.samples >= 2 and at_rest
 
-    yield from window.until(there, PATIENT)
+    engine.MesograinRenderEngine._view_draw = counted
+    try:
+        yield from window.until(there, 5 * PATIENT)
+    finally:
+        engine.MesograinRenderEngine._view_draw = view_draw
     print(f"{window.check}: a picture after {time.monotonic() - started:.2f} s", flush=True)
+    assert len(idle) <= IDLE_DRAWS, f"{len(idle)} redraws showed nothing new"
 
 
 def check_a_heap_of_100000_answers(window):

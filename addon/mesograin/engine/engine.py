@@ -14,6 +14,9 @@ from . import motion, passes, status, viewport, viewport_text
 # How long a final render may go without looking whether it was cancelled, and without showing how far it is.
 POLL_SECONDS = 0.05
 SHOW_SECONDS = 0.5
+# How often a viewport that waits for light between grains is asked for news. Redraws for that would take the processor
+# from what is waited for: Blender's own cost more than ours.
+LOOK_SECONDS = 0.05
 
 _sessions = weakref.WeakSet()
 
@@ -186,8 +189,10 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
                 pixels = session.picture()  # at rest nothing new would come
             if pixels is not None:
                 self._take(pixels, region, scene)
-            if session.busy or pixels is not None:  # the text line of a redraw is what was said before it
-                self.tag_redraw()
+            if pixels is not None or (session.busy and not session.waits):
+                self.tag_redraw()  # the text line of a redraw is what was said before it
+            elif session.waits and not bpy.app.timers.is_registered(_look):
+                bpy.app.timers.register(_look, first_interval=LOOK_SECONDS)
         if self._texture is not None:
             self._draw_texture(scene, region)
 
@@ -248,6 +253,25 @@ def _line(samples, target, warnings):
         return f"Sample {samples}/{target}"
     more = f" (and {len(warnings) - 1} more: Render Properties > Sampling)" if len(warnings) > 1 else ""
     return f"Sample {samples}/{target} | {warnings[0]}{more}"
+
+
+def _look():
+    """Redraws the viewports once one that waits has something new; gives when to look again, if any still waits."""
+    waiting = [session for session in _sessions if session.waits]
+    try:
+        news = [session for session in waiting if session.look()]
+    except _sentences():  # which the redraw says
+        news = waiting
+    if news:
+        _redraw_viewports()
+    return LOOK_SECONDS if len(news) < len(waiting) else None
+
+
+def _redraw_viewports():
+    for window in bpy.context.window_manager.windows:
+        for area in window.screen.areas:
+            if area.type == "VIEW_3D" and area.spaces.active.shading.type == "RENDERED":
+                area.tag_redraw()
 
 
 def _redraw_panels():
@@ -327,6 +351,8 @@ def register():
 def unregister():
     for event, handler in HANDLERS:
         getattr(bpy.app.handlers, event).remove(handler)
+    if bpy.app.timers.is_registered(_look):
+        bpy.app.timers.unregister(_look)
     _stop_sessions()
     for panel in compat.borrowed_panels():
         panel.COMPAT_ENGINES.discard(MesograinRenderEngine.bl_idname)

@@ -106,6 +106,16 @@ class Session:
         return self._task is not None or self._preparing or self._fade is not None
 
     @property
+    def waits(self):
+        """Whether redraws would show nothing new until more is known of what the view draws: `look` tells when."""
+        return self._preparing and self._task is None and self._fade is None and self._kept is None
+
+    def look(self):
+        """Whether a session that waits has a reason for a redraw. Starts samples of what has become known."""
+        self._keep_busy()
+        return not self.waits
+
+    @property
     def preparing(self):
         """The share that is done of what will make the picture better; None if there is nothing."""
         return self._view.preparing
@@ -122,6 +132,7 @@ class Session:
     def stop(self):
         """Ends the work under way and frees the view; the session cannot be used afterwards."""
         self._interrupt()
+        self._preparing = False
         self._view = self._values = self._next_scene = self._next_camera = self._kept = None
         self.cache.forget()
         self.stopped = True
