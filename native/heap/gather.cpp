@@ -15,9 +15,6 @@
 namespace mesograin::heap {
 namespace {
 
-// Less than this of what goes through the middle of a grain is not seen through it.
-constexpr double least_crossing = 0.01;
-
 // Of a sun's disc, edge to edge: looks that go where the grain sends them find a smaller one too seldom.
 constexpr double least_disc = std::numbers::pi / 36.0;
 
@@ -148,11 +145,7 @@ glm::vec3 Gather::look_at_all(std::uint32_t grain, const glm::vec3& place, const
   return glm::max(sum / static_cast<float>(rays) + seen_through(grain, normal, towards, random), 0.0F);
 }
 
-bool Gather::sees_into(std::uint32_t grain) const {
-  const Optics& optics = heap_.grains.kinds[space_.grains()[grain].kind];
-  const double thinnest = std::min({optics.sigma_t.r, optics.sigma_t.g, optics.sigma_t.b});
-  return optics.surface == Surface::dielectric && std::exp(-2.0 * thinnest) > least_crossing;
-}
+bool Gather::sees_into(std::uint32_t grain) const { return heap_.grains.kinds[space_.grains()[grain].kind].clear(); }
 
 glm::vec3 Gather::look_into(const SeenFacet& seen, const Facets& facets, int rays, transport::Random& random) const {
   glm::vec3 sum(0.0F);

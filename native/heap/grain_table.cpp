@@ -90,7 +90,10 @@ bool is_grey(const Optics& optics) {
 }  // namespace
 
 GrainTable::GrainTable(const Optics& optics, Sense sense, const transport::Effort& effort, int walks)
-    : walks_(walks), opaque_(optics.opaque()), transparent_(optics.transparent()), sigma_t_(optics.sigma_t) {
+    : walks_(walks),
+      fine_(optics.opaque() || optics.clear()),
+      transparent_(optics.transparent()),
+      sigma_t_(optics.sigma_t) {
   if (transparent_)
     for (int channel = 0; channel < 3; ++channel)
       met_[channel] = static_cast<float>(met_from_everywhere(optics.sigma_t[channel]));
@@ -118,6 +121,7 @@ void GrainTable::trace(const Optics& optics, Sense sense, const transport::Effor
   std::vector<std::vector<Outcome>> kept(entries);
   std::vector<std::array<glm::dvec3, lobe_nodes>> leaving(entries);
   std::vector<std::vector<Entries::Passage>> passages(entries);
+  std::vector<glm::dvec2> along(entries, glm::dvec2(0.0));
   transport::run_pieces(effort, entries, [&](std::size_t entry) {
     transport::Random random(effort.seed, entry);
     std::vector<Outcome> walks;
@@ -137,6 +141,9 @@ void GrainTable::trace(const Optics& optics, Sense sense, const transport::Effor
       const float leaves = std::clamp(glm::dot(outcome->normal, outcome->direction), 0.0F, 1.0F);
       leaving[entry][static_cast<std::size_t>(std::min(static_cast<int>(leaves * lobe_nodes), lobe_nodes - 1))] +=
           glm::dvec3(light);
+      const glm::vec3 travelling(std::sqrt(std::max(0.0F, 1.0F - squared)), 0.0F, -mu);
+      along[entry] += static_cast<double>(mean(light)) *
+                      glm::dvec2(glm::dot(outcome->normal, travelling), glm::dot(outcome->direction, travelling));
       walks.push_back(*outcome);
     }
     albedos_[entry] = glm::vec3(sum / static_cast<double>(walks_));
@@ -174,6 +181,11 @@ void GrainTable::trace(const Optics& optics, Sense sense, const transport::Effor
     exitance += lobe_at(mu) * (2.0F * mu / steps);
   }
   for (glm::vec3& node : lobe_) node /= exitance;
+  if (optics.surface == Surface::dielectric) {
+    glm::dvec2 sum(0.0);
+    for (const glm::dvec2& of_entry : along) sum += of_entry;
+    find_seen_place(sum);
+  }
   if (!transparent_) return;
   double square = 0.0;
   double all_seen = 0.0;
@@ -187,8 +199,21 @@ void GrainTable::trace(const Optics& optics, Sense sense, const transport::Effor
   seen_place_scale_ = static_cast<float>(std::sqrt(all_seen / square));
 }
 
+void GrainTable::find_seen_place(const glm::dvec2& along) {
+  // Sent out evenly, normal . direction is on average two thirds.
+  constexpr double between = 2.0 / 3.0;
+  // Of a sum p of the two the mean square is 1, and its mean cosine p . way is to be greatest: M^-1 along, M their
+  // means of products.
+  const glm::dvec2 best(along.x - between * along.y, along.y - between * along.x);
+  const double square = best.x * best.x + best.y * best.y + 2.0 * between * best.x * best.y;
+  if (!(square > 0.0)) return;
+  // A place that faces the viewer, so that two media's numbers are told by the same.
+  const double sign = between * best.x + best.y < 0.0 ? -1.0 : 1.0;
+  seen_by_ = glm::vec2(best * (sign / std::sqrt(square)));
+}
+
 glm::vec3 GrainTable::seen_place(const glm::vec3& normal, const glm::vec3& towards) const {
-  if (!transparent_) return normal;
+  if (!transparent_) return seen_by_.x * normal + seen_by_.y * towards;
   const float mu = std::clamp(glm::dot(normal, towards), 0.0F, 1.0F);
   return seen_place_scale_ * (normal - static_cast<float>(seen_depth(sigma_t_, mu)) * towards);
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
 #include <vector>
@@ -43,12 +44,17 @@ class GrainTable {
 
   /// By what four numbers know a place of the surface that is seen from a direction: the mean place of what is seen
   /// there if it is sent out evenly, in a transparent grain some way below the surface; scaled so that its mean square
-  /// is that of normals.
+  /// is that of normals. Of a surface that refracts, which sends on light by its direction as much as by its place:
+  /// what of both tells most of where light came from.
   glm::vec3 seen_place(const glm::vec3& normal, const glm::vec3& towards) const;
   float seen_place_scale() const { return seen_place_scale_; }
 
-  /// Whether light leaves where it comes in.
-  bool is_opaque() const { return opaque_; }
+  /// Of what is not transparent: how much of the normal and of the direction is in seen_place().
+  const glm::vec2& seen_by() const { return seen_by_; }
+
+  /// Whether what it sends out depends on where light came from by more than order 1 tells: where light leaves where it
+  /// came in, and where it goes on as through a lens.
+  bool is_fine() const { return fine_; }
 
   /// Where light comes in; of what is not opaque.
   const Entries& came_in() const { return came_in_; }
@@ -57,8 +63,12 @@ class GrainTable {
   void take_albedo(const GrainTable& grey, int channel);
   void trace(const Optics& optics, Sense sense, const transport::Effort& effort);
 
+  /// Of light from everywhere, the mean cosines with its way of the normal and of the direction in which it leaves: the
+  /// best of all sums of the two, of given mean square.
+  void find_seen_place(const glm::dvec2& along);
+
   int walks_;
-  bool opaque_;
+  bool fine_;
   bool transparent_;
   glm::vec3 sigma_t_;
   glm::vec3 met_{1.0F};
@@ -68,6 +78,7 @@ class GrainTable {
   std::array<glm::vec3, lobe_nodes> lobe_{};
   Entries came_in_;
   float seen_place_scale_ = 1.0F;
+  glm::vec2 seen_by_{1.0F, 0.0F};
 };
 
 /// Tables that were made before are kept, by what they were made of. Each has random numbers of its own, so that the

@@ -300,7 +300,7 @@ void Links::gather(const Field& sent, Field& answer, const transport::Effort& ef
 bool Rays::fine(const Space& space, std::size_t number) const {
   constexpr int least = 64;
   return number < space.grains().size() && of(number) >= least &&
-         space.kind(static_cast<std::uint32_t>(number)).from_viewer->is_opaque();
+         space.kind(static_cast<std::uint32_t>(number)).from_viewer->is_fine();
 }
 
 Deep find_deep(const Space& space, int ways, const transport::Effort& effort) {

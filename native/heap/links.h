@@ -51,7 +51,8 @@ struct Rays {
   int of(std::size_t grain) const { return deep && (*deep)[grain] ? of_deep : of_grain; }
 
   /// Whether they tell of a grain or node to order 2: order 1 leaves 4 % in a heap of bright opaque balls, whose light
-  /// changes at contacts; of others order 2 tells no more, and few rays tell nothing of it.
+  /// changes at contacts, and a fifth too much light in one of clear glass under a sun, which goes on forward; of
+  /// others order 2 tells no more, and few rays tell nothing of it.
   bool fine(const Space& space, std::size_t number) const;
 };
 

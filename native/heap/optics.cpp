@@ -2,6 +2,7 @@
 #include "heap/optics.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace mesograin::heap {
 namespace {
@@ -28,6 +29,12 @@ Surface surface_of(const scene::Material& material) {
 }
 
 }  // namespace
+
+bool Optics::clear() const {
+  constexpr double least_crossing = 0.01;
+  const double thinnest = std::min({sigma_t.r, sigma_t.g, sigma_t.b});
+  return surface == Surface::dielectric && std::exp(-2.0 * thinnest) > least_crossing;
+}
 
 Optics optics_of(const scene::Material& material, double radius) {
   Optics optics;

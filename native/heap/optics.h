@@ -28,6 +28,9 @@ struct Optics {
   /// Whether light may go straight through without meeting anything.
   bool transparent() const { return surface == Surface::index_matched; }
 
+  /// Whether its surface refracts and 1 % of the light or more goes through its middle, in some channel.
+  bool clear() const;
+
   bool operator==(const Optics&) const = default;
 };
 

@@ -261,7 +261,10 @@ void Exchange::send() {
     const std::vector<glm::vec2>& offsets = table.came_in().offsets();
     numbers.emplace_back(optics.transparent() ? glm::vec3(optics.sigma_t) : glm::vec3(1e30F),
                          offsets.empty() ? 0.0F : table.seen_place_scale());
+    const std::size_t lobe = numbers.size();
     for (const glm::vec3& node : table.lobe()) numbers.emplace_back(node, 0.0F);
+    numbers[lobe].w = table.seen_by().x;
+    numbers[lobe + 1].w = table.seen_by().y;
     for (std::size_t pair = 0; pair < offsets.size(); pair += 2) numbers.emplace_back(offsets[pair], offsets[pair + 1]);
   }
   const heap::Patches none;

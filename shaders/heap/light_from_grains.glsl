@@ -10,8 +10,8 @@
 // Of each object: red, green and blue of what it answers, and of what is seen straight through it (xyz: the slope over the normal or the look,
 // w: the mean over all of them); x: where its kind is, y: which wall it is, if any, z: its radius, w: where the second order of
 // what it answers is, or 0. Of each kind: mean free paths across its
-// radius, and whether it is known where light comes in (models/entries.glsl); the lobe of its answer at the middles of intervals of the cosine;
-// those entries.
+// radius, and whether it is known where light comes in (models/entries.glsl); the lobe of its answer at the middles of intervals of the cosine
+// (w of the first two: how much of the normal and of the direction to the viewer is in seen_place, of what is not transparent); those entries.
 layout(std430, binding = HEAP_LIGHT_BINDING) readonly buffer HeapLight { vec4 heap_light[]; };
 
 const int OBJECT_NUMBERS = 7;
@@ -41,7 +41,7 @@ uniform sampler2D gathered;  // w: 1 where a grain was looked at, 2 if what ligh
 vec3 seen_place(int kind, vec3 normal, vec3 to_viewer, float mu) {
   vec3 sigma_t = heap_light[kind].rgb;
   float depth = min(2.0 * mu * (sigma_t.r + sigma_t.g + sigma_t.b) / 3.0, 60.0);
-  if (heap_light[kind].w == 0.0 || sigma_t.r > 1e29) return normal;
+  if (sigma_t.r > 1e29) return heap_light[kind + 1].w * normal + heap_light[kind + 2].w * to_viewer;
   float along = depth < 0.05 ? mu * (1.0 - depth / 6.0) : 2.0 * mu * (1.0 / depth - 1.0 / (exp(depth) - 1.0));
   return heap_light[kind].w * (normal - along * to_viewer);
 }

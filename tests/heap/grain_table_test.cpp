@@ -95,6 +95,40 @@ TEST(GrainTable, OutcomesAreEquallyHeavyAndSumUp) {
   EXPECT_NEAR(sum.r, table.albedo().r, 1e-4F);
 }
 
+TEST(GrainTable, FourNumbersOfWhatRefractsSendOnAsMuchForwardAsWalksDo) {
+  const glm::vec3 normal(0.0F, 0.0F, 1.0F);
+  for (const double radius : {0.2, 1.0, 3.0, 30.0}) {
+    const GrainTable table(medium(Surface::dielectric, glm::dvec3(radius), glm::dvec3(0.999)), Sense::from_light, {});
+    constexpr int steps = 256;
+    double forward = 0.0;
+    double told = 0.0;
+    for (int i = 0; i < steps; ++i)
+      for (int choice = 0; choice < GrainTable::outcomes; ++choice) {
+        const float squared = (static_cast<float>(i) + 0.5F) / steps;
+        const float mu = std::sqrt(squared);
+        const glm::vec3 travelling(std::sqrt(1.0F - squared), 0.0F, -mu);
+        const Outcome outcome = table.draw(mu, (static_cast<float>(choice) + 0.5F) / GrainTable::outcomes);
+        constexpr double share = 1.0 / (steps * GrainTable::outcomes);
+        forward += share * static_cast<double>(outcome.weight.g * glm::dot(outcome.direction, travelling));
+        const glm::vec3 place = table.seen_place(outcome.normal, outcome.direction);
+        told += share * static_cast<double>(outcome.weight.g * glm::dot(place, travelling));
+      }
+    // What is sent out in proportion to 1 + 3 told place . travelling, in directions of a cosine's lobe.
+    double square = 0.0;
+    double along = 0.0;
+    for (int i = 0; i < steps; ++i) {
+      const float cosine = std::sqrt((static_cast<float>(i) + 0.5F) / steps);
+      const glm::vec3 direction(std::sqrt(1.0F - cosine * cosine), 0.0F, cosine);
+      const glm::vec3 place = table.seen_place(normal, direction);
+      square += static_cast<double>(glm::dot(place, place)) / steps;
+      along += static_cast<double>(glm::dot(place, direction)) / steps;
+    }
+    EXPECT_NEAR(square, 1.0, 1e-4) << radius;
+    EXPECT_NEAR(told * along, forward, 0.02) << radius;
+    EXPECT_GT(along, 0.0) << radius;
+  }
+}
+
 TEST(GrainTable, IsFiniteAtExtremes) {
   for (const Surface surface : {Surface::lambert, Surface::mirror, Surface::index_matched, Surface::dielectric,
                                 Surface::lambert_lambert, Surface::lambert_refracted})
