@@ -10,12 +10,13 @@
 
 #include "transport/octahedron.h"
 #include "transport/random.h"
+#include "transport/sights.h"
 
 namespace mesograin::transport {
 namespace {
 
 // Terms that the light is solved for; fewer of them are stored.
-constexpr int solved_terms = 32;
+constexpr int solved_terms = 48;
 
 int stored_terms(const StoredMedium& medium, const Quality& quality) {
   const int grey = quality.many_terms ? 24 : 16;
@@ -28,11 +29,11 @@ struct Terms {
   Lights lobes;    ///< a row a term, a column a texel of the octahedral map
 };
 
-/// The directions of the row space that most of `rows` is in, a column each: subspace iteration from random directions
-/// (Halko, Martinsson and Tropp, "Finding structure with randomness", 2011, algorithm 4.4).
-Eigen::MatrixXf leading_directions(const Lights& rows, int count) {
+/// The directions of the row space that most of sights * rows is in, a column each: subspace iteration from random
+/// directions (Halko, Martinsson and Tropp, "Finding structure with randomness", 2011, algorithm 4.4).
+Eigen::MatrixXf leading_directions(const Sights& sights, const Lights& rows, int count) {
   constexpr int more = 8;
-  constexpr int turns = 4;
+  constexpr int turns = 2;
   Random random(1, 0);
   Eigen::MatrixXf basis(rows.cols(), count + more);
   for (Eigen::Index i = 0; i < basis.size(); ++i) basis.data()[i] = random.uniform() - 0.5F;
@@ -41,40 +42,35 @@ Eigen::MatrixXf leading_directions(const Lights& rows, int count) {
            Eigen::MatrixXf::Identity(columns.rows(), columns.cols());
   };
   for (int turn = 0; turn < turns; ++turn) {
-    const Eigen::MatrixXf seen = rows * basis;
-    basis = orthonormal(rows.transpose() * seen);
+    const Lights amounts = rows * basis;
+    const Lights seen = sights * amounts;
+    const Lights back = sights.transpose() * seen;
+    basis = orthonormal(rows.transpose() * back);
   }
-  const Eigen::MatrixXf seen = rows * basis;
+  const Lights amounts = rows * basis;
+  const Lights seen = sights * amounts;
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXf> solver(seen.transpose() * seen);
   return basis * solver.eigenvectors().rightCols(count);
 }
 
-/// The terms that leave least out, solid angles of texels considered (principal components). So that light which hardly
-/// enters, for it grazes a flat grain, is told well too, directions count by the root of what they let in. They are
-/// found from a part of the rows.
-Terms principal_terms(const Lights& light, int terms) {
+/// The root of what each direction counts: by its solid angle, and, so that light which hardly enters, for it grazes a
+/// flat grain, is told well too, by the root of what it lets in.
+Eigen::RowVectorXf direction_weights(const Lights& light) {
   const std::array<float, octahedron_texels> angles = octahedron_solid_angles();
   const Eigen::ArrayXf entered = light.colwise().norm().transpose().array();
-  const Eigen::RowVectorXf weights =
-      (Eigen::Map<const Eigen::ArrayXf>(angles.data(), octahedron_texels) / entered.max(1e-3F * entered.mean()))
-          .sqrt()
-          .matrix()
-          .transpose();
-  const Lights weighed = light.array().rowwise() * weights.array();
-  constexpr Eigen::Index enough_rows = 4000;
-  const Eigen::Index stride = 1 + light.rows() / enough_rows;
-  Lights part(light.rows() / stride, light.cols());
-  for (Eigen::Index row = 0; row < part.rows(); ++row) part.row(row) = weighed.row(row * stride);
-  const Eigen::MatrixXf vectors = leading_directions(part, terms);
-  return {weighed * vectors, (vectors.array().colwise() / weights.transpose().array()).matrix().transpose()};
+  return (Eigen::Map<const Eigen::ArrayXf>(angles.data(), octahedron_texels) / entered.max(1e-3F * entered.mean()))
+      .sqrt()
+      .matrix()
+      .transpose();
 }
 
-/// Takes the terms apart anew, so that the first of them say most of what leaves the body.
-Terms fewer_terms(const Terms& all, const Eigen::VectorXf& row_weights, int terms) {
-  const Eigen::MatrixXf weighed = all.amounts.array().colwise() * row_weights.array();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXf> solver(weighed.transpose() * weighed);
-  const Eigen::MatrixXf vectors = solver.eigenvectors().rightCols(terms);
-  return {all.amounts * vectors, vectors.transpose() * all.lobes};
+/// The terms that leave least out of what is seen of `light`: principal components of pictures, from all sides and
+/// in light from everywhere. What is noise at single nodes, hidden or far below the surface counts little there.
+Terms principal_terms(const Sights& sights, const Lights& light, int terms) {
+  const Eigen::RowVectorXf weights = direction_weights(light);
+  const Lights weighed = light.array().rowwise() * weights.array();
+  const Eigen::MatrixXf vectors = leading_directions(sights, weighed, terms);
+  return {weighed * vectors, (vectors.array().colwise() / weights.transpose().array()).matrix().transpose()};
 }
 
 // Unscattered light from everywhere is known: what a place sees of the outside, in which radiance is eta^2 less. It
@@ -129,24 +125,20 @@ StoredTransport compute_transport(Walks& walks, const StoredMedium& medium, cons
   for (const double sigma_t : extinctions) exchanges.push_back(walks.exchange(sigma_t));
 
   // Channels have lobes of their own: light in a thick one is sharper in its direction than in a thin one.
-  const auto nodes = static_cast<Eigen::Index>(grid.places().size());
   stored.lobes.resize(static_cast<std::size_t>(kept * channels) * octahedron_texels);
   for (int channel = 0; channel < channels; ++channel) {
     const std::size_t e = extinction_of[static_cast<std::size_t>(channel)];
-    Lights unscattered = walks.unscattered(extinctions[e]);
-    calibrate(unscattered, exchanges[e], medium.eta);
-    Terms terms = principal_terms(unscattered, solved_terms);
-    const Lights light =
-        solve_multiple(exchanges[e], medium.albedo[channel], terms.amounts,
+    Lights light = walks.unscattered(extinctions[e]);
+    calibrate(light, exchanges[e], medium.eta);
+    const Sights seen = sights(body, grid, medium.eta, extinctions[e], effort);
+    const Terms first = principal_terms(seen, light, solved_terms);
+    const Lights solved =
+        solve_multiple(exchanges[e], medium.albedo[channel], first.amounts,
                        part_of(effort, 0.8 + 0.2 * channel / channels, 0.8 + 0.2 * (channel + 1) / channels));
-    terms.amounts = static_cast<float>(medium.albedo[channel]) * light;
-    Eigen::VectorXf weights(nodes);
-    for (Eigen::Index node = 0; node < nodes; ++node) {
-      // What is deep is seen little.
-      const float depth = grid.depths()[static_cast<std::size_t>(node)] * static_cast<float>(extinctions[e]);
-      weights[node] = 0.05F + std::exp(-0.5F * depth);
-    }
-    terms = fewer_terms(terms, weights, kept);
+    // What is scattered again is told by these terms well enough, and all that is not is known.
+    light += (solved - first.amounts) * first.lobes;
+    Terms terms = principal_terms(seen, light, kept);
+    terms.amounts *= static_cast<float>(medium.albedo[channel]);
     const auto index = [&](std::size_t count, int term, std::size_t of) {
       return (static_cast<std::size_t>(term) * count + of) * static_cast<std::size_t>(channels) +
              static_cast<std::size_t>(channel);
