@@ -10,7 +10,7 @@
 namespace mesograin::render {
 namespace {
 
-constexpr int across = 4, high = 2;
+constexpr int across = 4, high = 2;  // as many have one mind whether a ray follows (shaders/models/mirrored_world.glsl)
 static_assert(across * high == static_cast<int>(casting::rays_in_packet));
 
 bool has_part(const Exchange::Role& role) { return role.grain || role.wall; }

@@ -4,6 +4,7 @@
 //
 // What is chosen at compile time:
 //   MIRRORS_WORLD        the surface has facets, and there is a world, or something that may stand before it
+//   SHADOWS              something may: a ray follows
 #include "models/interface.glsl"
 #include "models/pixel_random.glsl"
 #include "physics/prelude.glsl"
@@ -30,6 +31,23 @@ struct Mirrored {
   vec3 from;      // unit length
 };
 
+#ifdef SHADOWS
+// What a surface mirrors this much of, a ray always follows; what it mirrors less of, as often as it is less, to count as much more (Arvo and
+// Kirk, "Particle Transport and Image Synthesis", 1990, Russian roulette).
+const float MIRRORED_FOR_SURE = 0.1;
+const float FOLLOWED_AT_LEAST = 0.0625;
+
+// What a ray counts, 0 if none follows. Neighbours are of one mind: those that go together as rays (native/render/cast_mirrors.cpp) and, on
+// software renderers, as fragments.
+float follow(vec3 passed) {
+  float likely = clamp(max(passed.r, max(passed.g, passed.b)) / MIRRORED_FOR_SURE, FOLLOWED_AT_LEAST, 1.0);
+  uvec4 offset = pcg4d(uvec4(uvec2(gl_FragCoord.xy) / uvec2(4u, 2u), 5u, 0u));
+  // The golden ratio's sequence, beside those of the dimensions that pixels draw from.
+  float random = float((2654435769u * uint(sample_index) + offset.x) >> 8u) * (1.0 / 16777216.0);
+  return random < likely ? 1.0 / likely : 0.0;
+}
+#endif
+
 Mirrored mirrored_world(SurfacePoint point, float mu_o) {
   float alpha = facet_alpha();
   vec2 random = low_discrepancy_beside_pixel(uint(sample_index), pcg4d(uvec4(uvec2(gl_FragCoord.xy), 4u, 0u)).xy);
@@ -48,6 +66,9 @@ Mirrored mirrored_world(SurfacePoint point, float mu_o) {
   float passed = 2.0 * visibility * mu_i * (mu_o + ggx_smith_root(mu_o, alpha));
   float share = own / (own + drawn_density_of_world(mirrored.from));
   mirrored.passed = passed * facet_reflectance(mu_h);
+#ifdef SHADOWS
+  mirrored.passed *= follow(mirrored.passed);
+#endif
   mirrored.radiance = share * mirrored.passed * seen_of_world(mirrored.from);
   return mirrored;
 }
