@@ -6,6 +6,8 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "physics/physics.h"
 #include "transport/directions.h"
@@ -21,6 +23,8 @@ namespace {
 constexpr float least_flux = 3e-3F;
 constexpr float least_track = 1e-4F;
 constexpr int most_reflections = 64;
+// And one that leaves and enters again for ever, after so many entries.
+constexpr int most_beams = 64;
 
 class Tracks {
  public:
@@ -65,23 +69,45 @@ class Tracks {
   float step_;
 };
 
-void follow(const Body& body, float eta, glm::vec3 place, glm::vec3 direction, float flux, std::vector<float>& left,
-            Tracks& tracks, Random& random) {
+// Light on its way into the body, and what of it is left for each extinction.
+struct Beam {
+  glm::vec3 place;
+  glm::vec3 direction;
+  float flux;
+  std::vector<float> left;
+};
+
+/// Where light that comes from `place` outside, reflected or refracted out, enters a body that is not convex (again).
+void enter(const Body& body, float eta, const glm::vec3& place, const glm::vec3& direction, float flux,
+           const std::vector<float>& left, std::vector<Beam>& beams) {
+  if (flux * *std::max_element(left.begin(), left.end()) < least_flux) return;
+  const std::optional<Hit> hit = body.first_hit(place, direction);
+  const float cosine = hit ? std::min(-glm::dot(hit->normal, direction), 1.0F) : 0.0F;
+  if (cosine <= 0.0F) return;
+  const auto entered = static_cast<float>(1.0 - physics::fresnel_reflectance(cosine, eta));
+  beams.push_back({place + hit->distance * direction, refracted(direction, hit->normal, eta), flux * entered, left});
+}
+
+void follow(const Body& body, float eta, Beam beam, Tracks& tracks, Random& random, std::vector<Beam>& beams) {
   for (int reflection = 0; reflection <= most_reflections; ++reflection) {
-    const std::optional<Hit> hit = body.first_hit(place, direction);
-    if (!hit || glm::dot(hit->normal, direction) <= 0.0F) return;
-    tracks.add(place, direction, hit->distance, flux, left, random);
+    const std::optional<Hit> hit = body.first_hit(beam.place, beam.direction);
+    if (!hit || glm::dot(hit->normal, beam.direction) <= 0.0F) return;
+    tracks.add(beam.place, beam.direction, hit->distance, beam.flux, beam.left, random);
+    beam.place += hit->distance * beam.direction;
     if (eta == 1.0F) {
-      const std::optional<glm::vec3> entry = body.next_entry(place + hit->distance * direction, direction);
+      const std::optional<glm::vec3> entry = body.next_entry(beam.place, beam.direction);
       if (!entry) return;
-      place = *entry;
+      beam.place = *entry;
       continue;
     }
-    const float cosine = std::min(glm::dot(hit->normal, direction), 1.0F);
-    flux *= static_cast<float>(physics::fresnel_reflectance(cosine, 1.0 / eta));
-    if (flux * *std::max_element(left.begin(), left.end()) < least_flux) return;
-    place += hit->distance * direction;
-    direction = glm::normalize(direction - 2.0F * cosine * hit->normal);
+    const float cosine = std::min(glm::dot(hit->normal, beam.direction), 1.0F);
+    const auto reflected = static_cast<float>(physics::fresnel_reflectance(cosine, 1.0 / eta));
+    if (reflected < 1.0F)
+      enter(body, eta, beam.place, refracted(beam.direction, -hit->normal, 1.0F / eta), beam.flux * (1.0F - reflected),
+            beam.left, beams);
+    beam.flux *= reflected;
+    if (beam.flux * *std::max_element(beam.left.begin(), beam.left.end()) < least_flux) return;
+    beam.direction = glm::normalize(beam.direction - 2.0F * cosine * hit->normal);
   }
 }
 
@@ -105,8 +131,15 @@ void unscattered_light(const Body& body, const Grid& grid, double eta, const std
       const float cosine = std::clamp(-glm::dot(hit->normal, towards), 0.0F, 1.0F);
       const auto entered = static_cast<float>(1.0 - physics::fresnel_reflectance(cosine, eta));
       const glm::vec3 inwards = eta == 1.0 ? towards : refracted(towards, hit->normal, index);
-      std::vector<float> left(extinctions.size(), 1.0F);
-      follow(body, index, start + hit->distance * towards, inwards, entered, left, tracks, random);
+      const glm::vec3 place = start + hit->distance * towards;
+      const std::vector<float> whole(extinctions.size(), 1.0F);
+      std::vector<Beam> beams = {{place, inwards, entered, whole}};
+      if (eta != 1.0) enter(body, index, place, towards + 2.0F * cosine * hit->normal, 1.0F - entered, whole, beams);
+      for (int turn = 0; turn < most_beams && !beams.empty(); ++turn) {
+        Beam beam = std::move(beams.back());
+        beams.pop_back();
+        follow(body, index, std::move(beam), tracks, random, beams);
+      }
     }
     std::vector<float> radiance = tracks.take();
     const float share = incidence.area() / (count * count * 4.0F * std::numbers::pi_v<float>);

@@ -1,7 +1,7 @@
 // The model `transport`: what light does inside this very mesh, found beforehand by rays in it and stored as the source function at nodes of a
 // grid, for light from anywhere. The view ray is followed through the grain, and once more from where it is reflected inside.
-// Not physical: a rough surface is smooth from inside; light that has left does not come back; scattering is isotropic, by similarity, but where
-// it is walked.
+// Not physical: a rough surface is smooth from inside; scattered light that has left does not come back; scattering is isotropic, by similarity,
+// but where it is walked.
 //
 // What is chosen at compile time (models::transport_inputs), besides what dielectric.glsl names:
 //   CLEAR                so much crosses the grain unscattered that it is seen
