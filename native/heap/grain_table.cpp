@@ -91,7 +91,7 @@ bool is_grey(const Optics& optics) {
 
 GrainTable::GrainTable(const Optics& optics, Sense sense, const transport::Effort& effort, int walks)
     : walks_(walks),
-      fine_(optics.opaque() || optics.clear()),
+      fine_(optics.opaque() || (optics.clear() && optics.lens)),
       transparent_(optics.transparent()),
       sigma_t_(optics.sigma_t) {
   if (transparent_)
@@ -181,7 +181,7 @@ void GrainTable::trace(const Optics& optics, Sense sense, const transport::Effor
     exitance += lobe_at(mu) * (2.0F * mu / steps);
   }
   for (glm::vec3& node : lobe_) node /= exitance;
-  if (optics.surface == Surface::dielectric) {
+  if (optics.surface == Surface::dielectric && optics.lens) {
     glm::dvec2 sum(0.0);
     for (const glm::dvec2& of_entry : along) sum += of_entry;
     find_seen_place(sum);

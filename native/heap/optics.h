@@ -22,6 +22,7 @@ struct Optics {
   double g = 0.0;
   double eta = 1.0;
   double roughness = 0.0;  ///< of a mirror
+  bool lens = true;        ///< what refracts is as round as the sphere: no crystal, whose facets throw light back
 
   bool opaque() const { return surface == Surface::lambert || surface == Surface::mirror; }
 

@@ -28,6 +28,9 @@ constexpr double least_roundness = 0.02;
 // Of a mesh that stands for a ball.
 constexpr double roundness_of_balls = 0.95;
 
+// Of one that refracts as a ball does; what is less round is a crystal.
+constexpr double roundness_of_lenses = 0.7;
+
 Shape shape_of(const scene::Mesh& mesh) {
   double area = 0.0;
   double volume = 0.0;
@@ -102,8 +105,9 @@ class Gatherer {
     if (!shape(*mesh).grain || !(radius > 0.0)) return;
     balls = balls && shape(*mesh).roundness > roundness_of_balls;
     roles.back().grain = static_cast<std::uint32_t>(grains.grains.size());
-    grains.grains.push_back(
-        {glm::vec3(ball), static_cast<float>(radius), grains.kind(heap::optics_of(material, rounded(radius)))});
+    heap::Optics optics = heap::optics_of(material, rounded(radius));
+    optics.lens = shape(*mesh).roundness > roundness_of_lenses;
+    grains.grains.push_back({glm::vec3(ball), static_cast<float>(radius), grains.kind(optics)});
   }
 
   void add_wall(const Draw& draw, const glm::dvec3& anchor) {

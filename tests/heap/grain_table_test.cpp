@@ -129,6 +129,15 @@ TEST(GrainTable, FourNumbersOfWhatRefractsSendOnAsMuchForwardAsWalksDo) {
   }
 }
 
+TEST(GrainTable, CrystalsAreNoLenses) {
+  Optics crystal = medium(Surface::dielectric, glm::dvec3(0.2), glm::dvec3(0.999));
+  crystal.lens = false;
+  const GrainTable table(crystal, Sense::from_light, {});
+  const glm::vec3 normal(0.0F, 0.0F, 1.0F);
+  EXPECT_EQ(table.seen_place(normal, glm::vec3(0.6F, 0.0F, 0.8F)), normal);
+  EXPECT_FALSE(table.is_fine());
+}
+
 TEST(GrainTable, IsFiniteAtExtremes) {
   for (const Surface surface : {Surface::lambert, Surface::mirror, Surface::index_matched, Surface::dielectric,
                                 Surface::lambert_lambert, Surface::lambert_refracted})
