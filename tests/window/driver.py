@@ -5,6 +5,7 @@ import importlib
 import json
 import pathlib
 import sys
+import time
 import traceback
 
 import bpy
@@ -44,6 +45,13 @@ def quit_blender():
     return None
 
 
+def rest():
+    """What Blender's main loop does for itself where nothing happens, unless events are simulated: else it would take a
+    processor from what is waited for."""
+    time.sleep(0.005)
+    return 0.0
+
+
 def main():
     import addon_utils
 
@@ -62,6 +70,7 @@ def main():
         except StopIteration:
             return quit_blender()
 
+    bpy.app.timers.register(rest, persistent=True)
     bpy.app.timers.register(step, first_interval=1.0, persistent=True)
 
 

@@ -26,7 +26,12 @@ def launch(module, folder, size, timeout, options=(), environment=None, checks=(
     addons.mkdir(parents=True)
     (addons / "mesograin").symlink_to(ADDON)
     environment = {**os.environ, "BLENDER_USER_SCRIPTS": str(addons.parent), **(environment or {})}
-    run = subprocess.run(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-                         timeout=timeout, check=False)
+    with subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as run:
+        try:
+            output, _ = run.communicate(timeout=timeout)
+        except subprocess.TimeoutExpired:
+            # What xvfb-run started; by itself it leaves Blender to go on for ever.
+            subprocess.run(["pkill", "-KILL", "-P", str(run.pid)], check=False)
+            output = run.communicate()[0] + f"\nended after {timeout} s"
     results = folder / "results.json"
-    return (json.loads(results.read_text()) if results.exists() else {}), run.stdout
+    return (json.loads(results.read_text()) if results.exists() else {}), output
