@@ -17,7 +17,7 @@ ROOMS = ("compat", "native_module", "grains.shape", "grains.kinds", "grains.pile
          "scene.mesh_lights", "scene.images", "scene.node_colours", "scene.node_patterns", "scene.node_skies",
          "scene.unwrapped", "scene.colours", "scene.surroundings",
          "scene.textures", "scene.plain_materials", "scene.thick_layer", "scene.export",
-         "engine.status", "engine.motion", "engine.identities", "engine.passes", "engine.viewport",
+         "engine.status", "engine.writing", "engine.motion", "engine.identities", "engine.passes", "engine.viewport",
          "engine.viewport_text", "engine.engine",
          "cycles.reference_cache", "ui.presets", "ui.look", "ui.conversion", "ui.named_things", "ui.panels",
          "ui.node_panels", "ui.notes",

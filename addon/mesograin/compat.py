@@ -131,8 +131,8 @@ def draw_progress(layout, owner, name, text):
 
 def refuses_writing(error):
     """Whether an AttributeError or RuntimeError says that Blender lets timers write nothing at present: so it is while
-    an engine written in Python renders, and, where that began amid the drawing of a panel, for good: Blender 3.4 was
-    seen to take no more then, however often its panels were drawn anew."""
+    an engine written in Python renders, and for good where that began amid the drawing of a panel (engine/writing.py
+    mends that)."""
     return any(part in str(error) for part in ("Writing to ID classes in this context", "can't modify blend data"))
 
 

@@ -1,8 +1,10 @@
 # What an impatient artist does while something renders: switches, reloads, saves, cancels. Nothing breaks, and the
 # picture that follows is right.
+import threading
+
 import addon_utils
 import bpy
-from mesograin.engine import status
+from mesograin.engine import engine, status, writing
 from mesograin.schema import models
 from mesograin.studies.background import job as jobs
 from mesograin.ui.bake_panel import session as baking
@@ -115,5 +117,60 @@ def check_cancel_at_once(window):
             task.wait()
             assert session.error == ""
     assert not list(window.folder.glob("never*"))
+    yield from window.restore()
+    yield from settle(window, area)
+
+
+def check_timers_may_write_after_a_render_that_began_amid_a_panels_drawing(window):
+    area = yield from window.open("sphere")
+    scene = bpy.context.scene
+    scene.render.resolution_x, scene.render.resolution_y, scene.mesograin.samples = 32, 32, 1
+    bpy.context.preferences.view.render_display_type = "NONE"
+    properties = yield from window.render_properties(area)
+    began, drawing, rendering, drawn = (threading.Event() for _ in range(4))
+
+    class SlowPanel(bpy.types.Panel):
+        bl_idname, bl_label, bl_order = "MESOGRAIN_PT_slow", "Slow", 0
+        bl_space_type, bl_region_type, bl_context = "PROPERTIES", "WINDOW", "render"
+
+        def draw(self, _context):
+            if began.is_set() and not drawn.is_set():
+                drawing.set()
+                rendering.wait(10.0)
+                drawn.set()
+
+    def before(*_arguments):  # in the render's thread
+        began.set()
+        properties.tag_redraw()
+        drawing.wait(10.0)
+
+    def render(self, depsgraph):
+        rendering.set()
+        drawn.wait(10.0)
+        threading.Event().wait(0.2)  # until that panel was drawn, to the last of it
+        original(self, depsgraph)
+
+    original, engine.MesograinRenderEngine._render = engine.MesograinRenderEngine._render, render
+    refusals, allow = [], writing.allow
+    writing.allow = lambda: refusals.append(allow())
+    bpy.utils.register_class(SlowPanel)
+    bpy.app.handlers.render_pre.append(before)
+    try:
+        yield from window.seconds(0.5)
+        with window.override(area):
+            bpy.ops.render.render("INVOKE_DEFAULT")
+        yield from window.until(drawn.is_set)
+        yield from window.until(lambda: not bpy.app.is_job_running("RENDER"))
+    finally:
+        bpy.app.handlers.render_pre.remove(before)
+        engine.MesograinRenderEngine._render = original
+    yield from window.seconds(2.0 * writing.LOOK_SECONDS)
+    writing.allow = allow
+    print(f"{window.check}: refused {len(refusals)} times", flush=True)
+    if writing.refused():
+        allow()  # lest what follows fails too
+        raise AssertionError("Blender still lets timers write nothing")
+    scene.render.resolution_percentage = 50
+    bpy.utils.unregister_class(SlowPanel)
     yield from window.restore()
     yield from settle(window, area)
