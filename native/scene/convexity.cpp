@@ -1,10 +1,13 @@
-// Looks at every edge from both of its triangles. A closed surface that is convex at every edge can still wind around
-// itself (a star polygon's prism does), which no mesh of a grain is known to do.
+// Looks at every edge from both of its triangles, and whether all hangs together: two balls are convex at every edge. A
+// closed surface that is convex at every edge can still wind around itself (a star polygon's prism does), which no mesh
+// of a grain is known to do.
 #include "scene/convexity.h"
 
 #include <cstdint>
 #include <glm/geometric.hpp>
 #include <map>
+#include <numeric>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -16,6 +19,22 @@ namespace {
 // Of the mesh's reach: how far a neighbour's corner may stand above a triangle's plane.
 constexpr double tolerance = 1e-5;
 
+// Which of the vertices hang together by edges.
+class Pieces {
+ public:
+  explicit Pieces(std::size_t vertices) : parents_(vertices) { std::iota(parents_.begin(), parents_.end(), 0U); }
+
+  void join(std::uint32_t a, std::uint32_t b) { parents_[of(a)] = of(b); }
+
+  std::uint32_t of(std::uint32_t vertex) {
+    while (parents_[vertex] != vertex) vertex = parents_[vertex] = parents_[parents_[vertex]];
+    return vertex;
+  }
+
+ private:
+  std::vector<std::uint32_t> parents_;
+};
+
 }  // namespace
 
 bool is_convex(const Mesh& mesh) {
@@ -25,6 +44,7 @@ bool is_convex(const Mesh& mesh) {
     glm::dvec3 opposite;
     int triangles;
   };
+  Pieces pieces(numbers.size());
   std::map<std::pair<std::uint32_t, std::uint32_t>, Side> sides;  // by edge, as one of its triangles goes along it
   // Triangles without area, such as at a sphere's poles, are no part of the surface.
   const auto collapsed = [&](const glm::uvec3& triangle) {
@@ -38,7 +58,9 @@ bool is_convex(const Mesh& mesh) {
       Side& side = sides.try_emplace({from, to}, Side{{}, 0}).first->second;
       side.opposite = glm::dvec3(mesh.positions()[triangle[(corner + 2) % 3]]);
       ++side.triangles;
+      pieces.join(from, to);
     }
+  std::optional<std::uint32_t> piece;
   bool closed = true;
   bool flat = true;
   for (const glm::uvec3& triangle : mesh.triangles()) {
@@ -47,6 +69,9 @@ bool is_convex(const Mesh& mesh) {
         glm::cross(glm::dvec3(mesh.positions()[triangle.y]) - a, glm::dvec3(mesh.positions()[triangle.z]) - a);
     const double area = glm::length(across);
     if (area == 0.0 || collapsed(triangle)) continue;
+    const std::uint32_t its = pieces.of(numbers[triangle.x]);
+    if (piece.value_or(its) != its) return false;
+    piece = its;
     for (int corner = 0; corner < 3; ++corner) {
       const std::uint32_t from = numbers[triangle[corner]];
       const std::uint32_t to = numbers[triangle[(corner + 1) % 3]];

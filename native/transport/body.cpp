@@ -14,6 +14,7 @@
 
 #include "base/error.h"
 #include "embree/first_hit.h"
+#include "scene/convexity.h"
 #include "transport/axes.h"
 #include "transport/directions.h"
 #include "transport/random.h"
@@ -113,7 +114,7 @@ struct Body::Device {
   RTCScene scene = nullptr;
 };
 
-Body::Body(const scene::Mesh& mesh, const glm::dmat3& linear) {
+Body::Body(const scene::Mesh& mesh, const glm::dmat3& linear) : convex_(scene::is_convex(mesh)) {
   // Vertices that differ in normals or UVs alone are one.
   const auto before = [](const glm::vec3& a, const glm::vec3& b) {
     return std::array{a.x, a.y, a.z} < std::array{b.x, b.y, b.z};

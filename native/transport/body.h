@@ -53,6 +53,9 @@ class Body {
   double volume() const { return volume_; }
   double area() const { return area_; }
 
+  /// Whether nothing that has left it meets it again.
+  bool convex() const { return convex_; }
+
  private:
   struct Device;
 
@@ -67,6 +70,7 @@ class Body {
   double unit_ = 1.0;
   double volume_ = 0.0;
   double area_ = 0.0;
+  bool convex_;
   std::shared_ptr<const Device> device_;
 };
 

@@ -80,7 +80,7 @@ struct Beam {
 /// Where light that comes from `place` outside, reflected or refracted out, enters a body that is not convex (again).
 void enter(const Body& body, float eta, const glm::vec3& place, const glm::vec3& direction, float flux,
            const std::vector<float>& left, std::vector<Beam>& beams) {
-  if (flux * *std::max_element(left.begin(), left.end()) < least_flux) return;
+  if (body.convex() || flux * *std::max_element(left.begin(), left.end()) < least_flux) return;
   const std::optional<Hit> hit = body.first_hit(place, direction);
   const float cosine = hit ? std::min(-glm::dot(hit->normal, direction), 1.0F) : 0.0F;
   if (cosine <= 0.0F) return;

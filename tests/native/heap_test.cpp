@@ -330,6 +330,13 @@ TEST_F(HeapTest, AHollowObjectShadesItself) {
   std::vector<glm::uvec3> triangles = ball.triangles();
   triangles.emplace_back(triangles[0].x, triangles[0].y, triangles[0].x);  // without area
   EXPECT_TRUE(scene::is_convex(scene::Mesh(nearly, ball.normals(), triangles)));
+  // Two balls are convex at each edge and shade one another all the same.
+  std::vector<glm::vec3> both = ball.positions();
+  for (const glm::vec3& position : ball.positions()) both.push_back(position + glm::vec3(3.0F, 0.0F, 0.0F));
+  std::vector<glm::uvec3> twice = ball.triangles();
+  for (const glm::uvec3& triangle : ball.triangles())
+    twice.push_back(triangle + static_cast<unsigned>(ball.positions().size()));
+  EXPECT_FALSE(scene::is_convex(scene::Mesh(both, {}, twice)));
   // Two walls at a right angle; a light along the ground meets the standing one's back.
   const auto walls = std::make_shared<scene::Mesh>(
       std::vector<glm::vec3>{{0, -9, 0}, {9, -9, 0}, {9, 9, 0}, {0, 9, 0}, {0, -9, 9}, {0, 9, 9}},

@@ -21,6 +21,19 @@ inline std::vector<glm::uvec3> box_triangles() {
           {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
 }
 
+/// Two boxes, one above the other, `gap` between them; each 2 wide and deep and `height` high.
+inline scene::Mesh plates(float height, float gap) {
+  std::vector<glm::vec3> positions;
+  std::vector<glm::uvec3> triangles;
+  for (const float middle : {-0.5F * (gap + height), 0.5F * (gap + height)}) {
+    const auto first = static_cast<unsigned>(positions.size());
+    for (const glm::vec3& corner : box_positions())
+      positions.emplace_back(corner.x, corner.y, middle + 0.5F * height * corner.z);
+    for (const glm::uvec3& triangle : box_triangles()) triangles.push_back(triangle + first);
+  }
+  return {positions, {}, triangles};
+}
+
 /// A cube from -1 to 1.
 inline scene::Mesh cube() { return {box_positions(), {}, box_triangles()}; }
 
