@@ -15,6 +15,9 @@
 namespace mesograin::transport {
 namespace {
 
+// Directions that are looked at beside those that are to be found.
+constexpr int surplus = 8;
+
 // Terms that the light is solved for; fewer of them are stored.
 constexpr int solved_terms = 48;
 
@@ -29,28 +32,35 @@ struct Terms {
   Lights lobes;    ///< a row a term, a column a texel of the octahedral map
 };
 
-/// The directions of the row space that most of sights * rows is in, a column each: subspace iteration from random
-/// directions (Halko, Martinsson and Tropp, "Finding structure with randomness", 2011, algorithm 4.4).
-Eigen::MatrixXf leading_directions(const Sights& sights, const Lights& rows, int count) {
-  constexpr int more = 8;
-  constexpr int turns = 2;
-  Random random(1, 0);
-  Eigen::MatrixXf basis(rows.cols(), count + more);
-  for (Eigen::Index i = 0; i < basis.size(); ++i) basis.data()[i] = random.uniform() - 0.5F;
+/// What is found of the row space of some lights: directions of it, a column each, and how much of each is in every
+/// row.
+struct Leading {
+  Eigen::MatrixXf directions;
+  Lights amounts;
+};
+
+/// The directions of the row space that most of sights * rows is in: subspace iteration (Halko, Martinsson and Tropp,
+/// "Finding structure with randomness", 2011, algorithm 4.4) from those of `guess`, orthonormal, and random ones beside
+/// them.
+Leading leading_directions(const Sights& sights, const Lights& rows, const Eigen::MatrixXf& guess, int count) {
   const auto orthonormal = [](const Eigen::MatrixXf& columns) -> Eigen::MatrixXf {
     return Eigen::HouseholderQR<Eigen::MatrixXf>(columns).householderQ() *
            Eigen::MatrixXf::Identity(columns.rows(), columns.cols());
   };
+  Random random(1, 0);
+  Eigen::MatrixXf basis(rows.cols(), std::max<Eigen::Index>(guess.cols(), count) + surplus);
+  for (Eigen::Index i = 0; i < basis.size(); ++i) basis.data()[i] = random.uniform() - 0.5F;
+  basis.leftCols(guess.cols()) = guess;
+  const int turns = guess.cols() > 0 ? 1 : 2;
   for (int turn = 0; turn < turns; ++turn) {
-    const Lights amounts = rows * basis;
-    const Lights seen = sights * amounts;
-    const Lights back = sights.transpose() * seen;
-    basis = orthonormal(rows.transpose() * back);
+    const Lights seen = sights * Lights(rows * basis);
+    basis = orthonormal(rows.transpose() * Lights(sights.transpose() * seen));
   }
   const Lights amounts = rows * basis;
   const Lights seen = sights * amounts;
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXf> solver(seen.transpose() * seen);
-  return basis * solver.eigenvectors().rightCols(count);
+  const Eigen::MatrixXf leading = solver.eigenvectors().rightCols(count);
+  return {basis * leading, amounts * leading};
 }
 
 /// The root of what each direction counts: by its solid angle, and, so that light which hardly enters, for it grazes a
@@ -66,11 +76,14 @@ Eigen::RowVectorXf direction_weights(const Lights& light) {
 
 /// The terms that leave least out of what is seen of `light`: principal components of pictures, from all sides and
 /// in light from everywhere. What is noise at single nodes, hidden or far below the surface counts little there.
-Terms principal_terms(const Sights& sights, const Lights& light, int terms) {
+/// The last ones have most. `guess`: terms of some other light in the same body, or none.
+Terms principal_terms(const Sights& sights, const Lights& light, const Terms& guess, int terms) {
   const Eigen::RowVectorXf weights = direction_weights(light);
   const Lights weighed = light.array().rowwise() * weights.array();
-  const Eigen::MatrixXf vectors = leading_directions(sights, weighed, terms);
-  return {weighed * vectors, (vectors.array().colwise() / weights.transpose().array()).matrix().transpose()};
+  const Lights likely = guess.lobes.bottomRows(std::min<Eigen::Index>(guess.lobes.rows(), terms + surplus));
+  const Eigen::MatrixXf guessed = (likely.array().rowwise() * weights.array()).matrix().transpose();
+  const Leading leading = leading_directions(sights, weighed, guessed, terms);
+  return {leading.amounts, (leading.directions.array().colwise() / weights.transpose().array()).matrix().transpose()};
 }
 
 // Unscattered light from everywhere is known: what a place sees of the outside, in which radiance is eta^2 less. It
@@ -131,13 +144,13 @@ StoredTransport compute_transport(Walks& walks, const StoredMedium& medium, cons
     Lights light = walks.unscattered(extinctions[e]);
     calibrate(light, exchanges[e], medium.eta);
     const Sights seen = sights(body, grid, medium.eta, extinctions[e], effort);
-    const Terms first = principal_terms(seen, light, solved_terms);
+    const Terms first = principal_terms(seen, light, {}, solved_terms);
     const Lights solved =
         solve_multiple(exchanges[e], medium.albedo[channel], first.amounts,
                        part_of(effort, 0.8 + 0.2 * channel / channels, 0.8 + 0.2 * (channel + 1) / channels));
     // What is scattered again is told by these terms well enough, and all that is not is known.
     light += (solved - first.amounts) * first.lobes;
-    Terms terms = principal_terms(seen, light, kept);
+    Terms terms = principal_terms(seen, light, first, kept);
     terms.amounts *= static_cast<float>(medium.albedo[channel]);
     const auto index = [&](std::size_t count, int term, std::size_t of) {
       return (static_cast<std::size_t>(term) * count + of) * static_cast<std::size_t>(channels) +
