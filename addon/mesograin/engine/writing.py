@@ -1,9 +1,9 @@
 # Lets Python write again where a render has left Blender refusing it to timers for good.
 """Around each call of a class written in Python Blender notes in one variable, shared by all threads, whether writing
 is allowed, and puts back what it found there once the call is over. Where a render begins in its thread amid the
-drawing of a panel it finds "not allowed", and puts that back when nothing is drawn any more (seen on Blender 3.4). What
-is done here is the reverse: a call that begins while writing is allowed, which it is while a property's getter runs,
-and ends after it."""
+drawing of a panel it finds "not allowed", and puts that back when nothing is drawn any more (seen on Blender 3.4 and
+4.3; not on 5.2). What is done here is the reverse: a call that begins while writing is allowed, which it is while a
+property's getter runs, and ends after it."""
 import threading
 
 import bpy

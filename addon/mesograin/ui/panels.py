@@ -71,6 +71,7 @@ class MESOGRAIN_PT_material(MesograinPanel, bpy.types.Panel):
     def draw_header_preset(self, _context):
         self.layout.menu(conversion.MESOGRAIN_MT_conversion.bl_idname, text="", icon="NODE_MATERIAL")
         self.layout.menu(presets.MESOGRAIN_MT_presets.bl_idname, text="", icon="PRESET")
+        self.layout.separator(factor=0.5)  # from the grip
 
     def draw(self, context):
         layout, grain = self.layout, context.material.mesograin
