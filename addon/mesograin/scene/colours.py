@@ -1,7 +1,7 @@
 # Grains of many colours: what of a material differs from one instance to the next.
 #
-# What is known of n instances comes as {name: numbers}: "random", (n,) from 0 to 1, and by its key each attribute of
-# instancers that was asked for, (n, 4).
+# What is known of n instances comes as {name: numbers}: "random", (n,) from 0 to 1, where a variation is at_random, and
+# by its key each attribute of instancers that was asked for, (n, 4).
 import dataclasses
 
 import bpy
@@ -18,6 +18,7 @@ class Variation:
     """ranges: (parameter, factors at one end, factors at the other end), 3 numbers each."""
 
     ranges: tuple
+    at_random = True
     attributes = frozenset()
 
     def factors(self, each):
@@ -35,6 +36,7 @@ class NodeVariation:
     parameter: str
     socket: object
     own: dict
+    at_random = True
 
     @property
     def attributes(self):
@@ -53,6 +55,7 @@ class AttributeVariation:
     """Attributes of instancers. names: (parameter, name) pairs."""
 
     names: tuple
+    at_random = False
 
     @property
     def attributes(self):

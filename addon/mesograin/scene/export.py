@@ -387,7 +387,7 @@ class _Reader:
         self._groups += [group for group in groups if group is not None]
         if any(groups):
             numbers = np.frombuffer(of_instance, dtype=np.int32)
-            for sentence in heaps.place(depsgraph.object_instances, numbers, groups, worn, readers):
+            for sentence in heaps.place(depsgraph, numbers, groups, worn, readers):
                 self._warn(sentence)
 
     def _group(self, shape):

@@ -64,12 +64,13 @@ class Part:
 
 class Group:
     """Where one shape stands. parts: a Part for each of the shape's material slots; none if it is not drawn.
-    varies: whether a part's colours differ from placing to placing; attributes: names of those of instancers by which
-    they do."""
+    varies: whether a part's colours differ from placing to placing; at_random: by the random number of each, perhaps;
+    attributes: names of those of instancers by which they do."""
 
     def __init__(self, name, parts):
         self.name, self._parts = name, parts
         self.varies = any(part.variation for part in parts)
+        self.at_random = any(part.variation.at_random for part in parts if part.variation)
         self.attributes = frozenset().union(*(part.variation.attributes for part in parts if part.variation))
         self._placings = np.empty((0, 4, 4), dtype=np.float32)
         self._each = None
@@ -94,19 +95,20 @@ class Group:
         return part.variation.factors({name: values[drawn] for name, values in self._each.items()})
 
 
-def place(instances, numbers, groups, shapes, readers):
-    """Gives groups their placings; returns sentences on what is not known of them. instances: a dependency graph's;
-    numbers: of each the number of its group in `groups`, a list of Groups and None, or ITSELF or HIDDEN; shapes:
+def place(depsgraph, numbers, groups, shapes, readers):
+    """Gives groups their placings; returns sentences on what is not known of them. numbers: of each of the dependency
+    graph's instances the number of its group in `groups`, a list of Groups and None, or ITSELF or HIDDEN; shapes:
     instance_attributes.Worn of each group; readers: as instance_attributes.of_each has them."""
+    instances = depsgraph.object_instances
     at_once = compat.frees_first_instances() or (numbers[:2] == ITSELF).all()
     matrices = (_all_matrices if at_once else _each_matrix)(instances, len(numbers))
     known, sentences = {}, []
-    if any(group is not None and group.varies for group in groups):
+    if any(group is not None and group.at_random for group in groups):
         numbers_of_each = np.fromiter((each.random_id for each in instances), dtype=np.int32).view(np.uint32)
         # As Cycles' Object Info has it: the whole range of 32 bits is from 0 to 1.
         known["random"] = (numbers_of_each / np.float32(0xFFFFFFFF)).astype(np.float32)
     if any(shape.names for shape in shapes):
-        attributes, sentences = instance_attributes.of_each(instances, numbers, matrices, shapes, readers)
+        attributes, sentences = instance_attributes.of_each(depsgraph, numbers, matrices, shapes, readers)
         known.update(attributes)
     in_order = np.argsort(numbers, kind="stable")
     ends = np.searchsorted(numbers[in_order], np.arange(len(groups) + 1))

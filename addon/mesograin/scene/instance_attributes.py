@@ -90,12 +90,12 @@ class _Table:
         return told, _layer(self.layers[name])[self.vertices][np.searchsorted(self.rows, told)]
 
 
-def of_each(instances, numbers, matrices, shapes, readers):
+def of_each(depsgraph, numbers, matrices, shapes, readers):
     """({key: (n, 4) float32}, sentences) of a dependency graph's instances. numbers: which of `shapes`, Worn, each is,
     or a number below 0; matrices: (n, 4, 4) float32; readers: evaluated objects of which `instancer_of` knows one."""
     found = {name: np.zeros((len(numbers), 4), dtype=np.float32) for shape in shapes for name in shape.names}
     readers, sentences = {instancer_of(each): each for each in readers}, []
-    parents, of_parent = _parents(instances, numbers)
+    parents, of_parent = _parents(depsgraph, numbers, readers)
     asking = _which(shapes, lambda shape: shape.names)
     for number, parent in enumerate(parents):
         rows = np.flatnonzero(of_parent == number)
@@ -115,13 +115,22 @@ def of_each(instances, numbers, matrices, shapes, readers):
     return {key("INSTANCER", name): values for name, values in found.items()}, sentences
 
 
-def _parents(instances, numbers):
-    """([instancer], (n,) which of these each instance has, or -1)."""
+def _parents(depsgraph, numbers, readers):
+    """([instancer], (n,) which of these each instance has, or -1). readers: {instancer: reader}."""
+    able = [each for each in depsgraph.ids if _may_instance(each) and each not in readers.values()]
+    if len(able) == 1:  # asking each instance takes longer than all else
+        return able, np.where(numbers >= 0, 0, -1)
     parents, of_parent = {}, np.full(len(numbers), -1, dtype=np.int32)
-    for row, each in enumerate(instances):
+    for row, each in enumerate(depsgraph.object_instances):
         if numbers[row] >= 0:
             of_parent[row] = parents.setdefault(each.parent, len(parents))
     return list(parents), of_parent
+
+
+def _may_instance(datablock):
+    return isinstance(datablock, bpy.types.Object) and bool(
+        datablock.is_instancer or datablock.instance_type != "NONE" or datablock.particle_systems
+        or _has_nodes(datablock))
 
 
 def _which(shapes, are):
