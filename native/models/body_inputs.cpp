@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "models/light_about_inputs.h"
 #include "physics/body/entering_ring.h"
 #include "physics/body/exit_directions.h"
 #include "physics/body/flowing_lobe.h"
@@ -238,6 +239,7 @@ void add_body_uniforms(const scene::Material& material, double grain_radius, Mat
   inputs.uniforms["body.decay_squared"] = decay_squared;
   inputs.uniforms["body.even_factor"] = static_cast<float>(taken_in / (PI * surface.diffusion.exit_transmittance));
   add_clear(media, surface, inputs);
+  add_light_about(material, grain_radius, inputs);
 }
 
 }  // namespace mesograin::models

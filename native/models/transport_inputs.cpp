@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "models/dielectric_inputs.h"
 #include "models/inputs_of_models.h"
+#include "models/light_about_inputs.h"
 #include "models/prototype_inputs.h"
 #include "physics/physics.h"
 #include "transport/octahedron.h"
@@ -181,6 +182,8 @@ MaterialInputs prototype_inputs(const scene::Material& material, const StoredTra
   inputs.uniforms["stored.units"] = static_cast<float>(1.0 / stored.unit);
   inputs.uniforms["stored.sigma_t"] = glm::vec3(sigma_t);
   if (is_walked(material)) add_forward(material, stored, inputs);
+  // Of the sphere that has this mean chord.
+  add_light_about(material, 0.75 * stored.unit * stored.mean_chord, inputs);
   inputs.tables["lobes"] = lobes_table(stored);
   inputs.volumes["sources"] = sources_volume(stored);
   inputs.volumes["distances"] = {stored.size.x, stored.size.y, stored.size.z, 1, stored.distances};

@@ -46,7 +46,7 @@ HalfSpaceLight half_space_light(SurfacePoint point, Outwards outwards, LightSamp
   // No branch: where the light comes from behind, the irradiance is 0.
   float mu_i = clamp(dot(point.normal, light.to_light), 0.0, 1.0);
   float mu_o = outwards.mu;
-  vec3 irradiance = light.irradiance * mu_i;
+  vec3 irradiance = light.entering * mu_i;
 
 #if defined(VIEW_TABLE)
   result.multiple = texture(multiple_scattering, texel_coordinate(vec2(sqrt(mu_o), 0.5))).rgb * irradiance;

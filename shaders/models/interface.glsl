@@ -9,13 +9,20 @@ struct SurfacePoint {
 };
 
 struct LightSample {
-  vec3 to_light;    // unit length
-  vec3 irradiance;  // linear RGB, on a plane that faces the light
-  int index;        // which light this is
-  float angle;      // of the disc that to_light is drawn from, edge to edge, in radians
-  int map;          // its light map
-  float density;    // of the directions drawn of it, all together, per steradian; 0 if no facet looks for it by itself
+  vec3 to_light;       // unit length
+  vec3 irradiance;     // linear RGB, on a plane that faces the light
+  int index;           // which light this is
+  float angle;         // of the disc that to_light is drawn from, edge to edge, in radians
+  int map;             // its light map
+  float density;       // of the directions drawn of it, all together, per steradian; 0 if no facet looks for it by itself
+  vec3 entering;       // irradiance of the parallel light along to_light that is worth what comes in elsewhere and leaves at the point
+  vec3 entering_once;  // the same, along the axis of the light's map, of what is scattered once; negative where that is not known
 };
+
+// Of a light that is the same for all of the grain.
+LightSample parallel_light(vec3 to_light, vec3 irradiance, int index, float angle, int map, float density) {
+  return LightSample(to_light, irradiance, index, angle, map, density, irradiance, vec3(-1.0));
+}
 
 // What the point and its viewer make of it, before any light.
 struct Outwards {

@@ -18,7 +18,7 @@ vec3 evaluate_model(SurfacePoint point, Outwards outwards, LightSample light) {
   BodyFit fit = fit_body(point, outwards, light, light_frame(light));
   HalfSpaceLight half_space = half_space_light(point, outwards, light);
   vec4 difference = look_up_body(body_table, fit);
-  vec3 lobe = light.irradiance * flowing_lobe(fit, point, light, flow_at(fit, difference));
+  vec3 lobe = light.entering * flowing_lobe(fit, point, light, flow_at(fit, difference));
 #ifdef SEPARATE_SINGLE
   half_space.multiple += (1.0 - separate_single) * half_space.single;
 #endif
@@ -28,7 +28,7 @@ vec3 evaluate_model(SurfacePoint point, Outwards outwards, LightSample light) {
   vec3 sum = out_of - material.sign_g * light.to_light;
   float versine = 0.5 * dot(sum, sum);
   float phase = 4.0 * PI * henyey_greenstein(versine, material.absolute_g, material.one_minus_absolute_g);
-  vec3 single_lobe = phase * diffused_lobe(fit) * light.irradiance;
+  vec3 single_lobe = phase * diffused_lobe(fit) * light.entering;
   vec3 single = corrected(fit.visible * half_space.single, look_up_body(single_difference, fit).rgb, single_lobe);
   radiance += portion(SINGLE_SCATTERING_PORTION, separate_single * single);
 #endif

@@ -351,24 +351,25 @@ vec3 evaluate_model(SurfacePoint point, Outwards outwards, LightSample light) {
 #else
   float lobe = diffused_lobe(fit);
   Spectrum flowing = flowing_lobe(fit, point, light, flow_at(fit, table));
-  LightSample unit_light = LightSample(light.to_light, vec3(1.0), light.index, light.angle, light.map, light.density);
+  LightSample unit_light = parallel_light(light.to_light, vec3(1.0), light.index, light.angle, light.map, light.density);
   vec3 sphere = corrected(fit.visible * half_space_light(point, outwards, unit_light).multiple, table.rgb, vec3(flowing));
 #endif
   float tilt = sqrt(max((1.0 - fit.facing) * (1.0 + fit.facing), 0.0));
   vec3 fit_normal = vec3(normal.xy * (tilt * inversesqrt(max(dot(normal.xy, normal.xy), 1e-12))), fit.facing);
   Seen seen = Seen(frame, light.map, fit, position, fit_normal);
   Gathered gathered = gather(seen, Draws(multiple_share, uint(sample_index * multiple_share), offset.xy));
-  vec3 radiance = portion(SUBSURFACE_PORTION, on_the_grain(gathered, sphere, lobe, fit.radius));
+  vec3 radiance = portion(SUBSURFACE_PORTION, light.entering * on_the_grain(gathered, sphere, lobe, fit.radius));
 #ifdef SINGLE_MARCHED
   vec3 to_viewer = to_light_space(frame, point.to_viewer);
   vec3 inwards = (fit.mu_o * normal - to_viewer) / body.eta - fit.mu_o_refracted * normal;
   vec3 inside = single_scattering(seen, inwards, Draws(single_share, uint(sample_index * single_share), offset.zw));
 #ifdef NEAR_LIGHTS
-  inside *= turned_to_light(fit);
+  inside *= light.entering_once.r < 0.0 ? light.irradiance * turned_to_light(fit) : light.entering_once;
+#else
+  inside *= light.irradiance;
 #endif
   radiance += portion(SINGLE_SCATTERING_PORTION, fit.transmittance / (body.eta * body.eta) * inside);
 #endif
-  radiance *= light.irradiance;
   if (entered >= 0.0) radiance *= entered;
 #ifdef SPECULAR
   radiance += portion(SPECULAR_PORTION, fit.visible * fit.reached * specular_reflection(point, outwards, light));

@@ -223,7 +223,7 @@ vec3 evaluate_model(SurfacePoint point, Outwards outwards, LightSample light) {
 #else
   Spectrum inside = radiance_inside(to_body * point.on_triangle * stored.units, normalize(to_body * inwards));
 #endif
-  vec3 radiance = portion(SUBSURFACE_PORTION, light.irradiance * (outwards.transmittance / (stored.eta * stored.eta) * inside));
+  vec3 radiance = portion(SUBSURFACE_PORTION, light.entering * (outwards.transmittance / (stored.eta * stored.eta) * inside));
 #ifdef SPECULAR
   radiance += portion(SPECULAR_PORTION, specular_reflection(point, outwards, light));
 #endif

@@ -15,6 +15,7 @@
 //   MIRRORED             the viewer is another surface, a pixel each
 
 #include "physics/prelude.glsl"
+#include "physics/fresnel.glsl"
 #include "render/bindings.glsl"
 #include "render/distant_light.glsl"
 #include "lights/light.glsl"
@@ -24,6 +25,9 @@
 #include "scene/grain.glsl"
 #include "scene/shadows.glsl"
 #include "models/entries.glsl"
+#if defined(NEAR_LIGHTS) || (defined(LIGHTS_AT_PLACE) && defined(WHOLE_GRAIN))
+#include "models/light_about.glsl"
+#endif
 #include "heap/light_from_grains.glsl"
 #include "models/pixel_random.glsl"
 #include "scene/texturing.glsl"
@@ -109,6 +113,8 @@ void move_to_point(inout LightSample light, vec3 to_middle, SurfacePoint point) 
   LightDraw drawn = draw_light(local_lights[number], middle_of_grain() + point.on_triangle, local_randoms[number]);
   light.to_light = normalize(drawn.to_light + light.to_light - to_middle);
   light.irradiance = drawn.irradiance;
+  light.entering = drawn.irradiance;
+  look_about(local_lights[number], middle_of_grain(), local_randoms[number], point, to_middle, light);
 }
 #endif
 
@@ -127,7 +133,9 @@ vec3 lit_by(SurfacePoint point, Outwards outwards, LightSample light) {
   move_to_point(light, to_middle, point);
 #endif
 #else
-  light.irradiance *= light_reaches_surface(light, point);
+  float reached = light_reaches_surface(light, point);
+  light.irradiance *= reached;
+  light.entering *= reached;
 #endif
   return evaluate_model(point, outwards, light);
 }
@@ -148,8 +156,11 @@ vec3 locally_lit(SurfacePoint point, Outwards outwards) {
     vec2 random = low_discrepancy_beside_pixel(uint(sample_index), pcg4d(uvec4(uvec2(gl_FragCoord.xy), 2u, uint(i))).xy);
 #endif
     LightDraw drawn = draw_light(local_lights[i], place, random);
-    sum += lit_by(point, outwards,
-                  LightSample(drawn.to_light, drawn.irradiance, distant_light_count + i, light_angle(local_lights[i], drawn.reach), i, 0.0));
+    LightSample light = parallel_light(drawn.to_light, drawn.irradiance, distant_light_count + i, light_angle(local_lights[i], drawn.reach), i, 0.0);
+#ifdef WHOLE_GRAIN
+    look_about(local_lights[i], middle_of_grain(), random, point, light.to_light, light);
+#endif
+    sum += lit_by(point, outwards, light);
   }
   return sum;
 }
@@ -196,7 +207,8 @@ vec3 lit_point(SurfacePoint point) {
   // Software renderers run a loop's body once more, masked, to find that a condition at its head has failed: it is at the foot.
   int i = 0;
   do {
-    sum += lit_by(point, outwards, LightSample(lights[i].to_light.xyz, lights[i].irradiance.rgb, i, lights[i].to_light.w, i, lights[i].irradiance.w));
+    sum +=
+        lit_by(point, outwards, parallel_light(lights[i].to_light.xyz, lights[i].irradiance.rgb, i, lights[i].to_light.w, i, lights[i].irradiance.w));
   } while (++i < light_count);
   return sum;
 }
