@@ -83,6 +83,19 @@ inline glm::vec3 product(const Coefficients& a, const Coefficients& b) {
   return sum;
 }
 
+/// A share, of all colours together, that depends on a place as light does.
+struct Share {
+  glm::vec4 first{0.0F};  ///< xyz the slope, w the mean
+  SecondOrder second{};
+
+  float at(const glm::vec3& place) const {
+    const SecondOrder basis = second_order(place);
+    float sum = glm::dot(first, glm::vec4(place, 1.0F));
+    for (std::size_t i = 0; i < basis.size(); ++i) sum += second[i] * basis[i];
+    return sum;
+  }
+};
+
 /// One for each grain.
 using Field = std::vector<Coefficients>;
 

@@ -46,7 +46,10 @@ struct HeapLight {
   Field answer;   ///< exitance over pi, but for what answers to light that comes straight from a light
   Field crossed;  ///< of `answer`: what comes from lights straight through others, but from no even world
   Field behind;   ///< of grains only: what is seen through a transparent one, by look_through()
-  Field sent;     ///< exitance over pi because of all light, to begin the next solution from
+  /// Of grains only: how much of the world is seen through one that lets light through unscattered, by look_through()
+  /// or, refracted, by the place that tells `answer`.
+  std::vector<Share> open;
+  Field sent;  ///< exitance over pi because of all light, to begin the next solution from
   Patches patches;
   std::vector<Kind> kinds;
   std::size_t links = 0;

@@ -107,7 +107,8 @@ glm::vec3 Gather::look(std::uint32_t grain, const glm::vec3& normal, const glm::
   }
   sum /= static_cast<float>(rays);
   sum += kind.from_light->lobe_at(mu) * light_->crossed[grain].at(kind.from_light->seen_place(normal, towards));
-  sum += seen_through(grain, normal, towards, random);
+  Ray through = ray_through(grain, normal, towards);
+  sum += space_.seen_along(through, light_->sent, random);
   return glm::max(sum, 0.0F);
 }
 
@@ -142,7 +143,10 @@ glm::vec3 Gather::look_at_all(std::uint32_t grain, const glm::vec3& place, const
     const glm::vec3 leaves_at = space_.place(space_.grains()[grain], frame * outcome->normal) + aside;
     sum += sent_to({leaves_at, frame * outcome->direction, outcome->weight}, random, true);
   }
-  return glm::max(sum / static_cast<float>(rays) + seen_through(grain, normal, towards, random), 0.0F);
+  Ray through = ray_through(grain, normal, towards);
+  glm::vec3 behind = space_.seen_along(through, light_->sent, random);
+  behind += through.weight * glm::vec3(lights::radiance(heap_.world, glm::dvec3(through.direction)));
+  return glm::max(sum / static_cast<float>(rays) + behind, 0.0F);
 }
 
 bool Gather::sees_into(std::uint32_t grain) const { return heap_.grains.kinds[space_.grains()[grain].kind].clear(); }
@@ -192,12 +196,10 @@ glm::vec3 Gather::far_away(const glm::vec3& direction) const {
   return seen;
 }
 
-glm::vec3 Gather::seen_through(std::uint32_t grain, const glm::vec3& normal, const glm::vec3& towards,
-                               transport::Random& random) const {
+Ray Gather::ray_through(std::uint32_t grain, const glm::vec3& normal, const glm::vec3& towards) const {
   const float mu = std::clamp(glm::dot(normal, towards), 0.0F, 1.0F);
-  Ray ray{space_.place(space_.grains()[grain], normal - 2.0F * mu * towards), -towards,
+  return {space_.place(space_.grains()[grain], normal - 2.0F * mu * towards), -towards,
           space_.kind(grain).from_viewer->crossing(mu)};
-  return space_.seen_along(ray, light_->sent, random);
 }
 
 }  // namespace mesograin::heap

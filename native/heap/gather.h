@@ -31,7 +31,8 @@ class Gather {
   /// surface that refracts allows. The whole grain or none of it: a part by each would show an edge between them.
   bool sees_all(std::uint32_t grain) const;
 
-  /// The same with what comes straight from lights. `place`: of the surface that is seen, from the grain's middle.
+  /// The same with what comes straight from lights, and the world behind it. `place`: of the surface that is seen, from
+  /// the grain's middle.
   glm::vec3 look_at_all(std::uint32_t grain, const glm::vec3& place, const glm::vec3& normal, const glm::vec3& towards,
                         int rays, transport::Random& random) const;
 
@@ -46,8 +47,7 @@ class Gather {
   glm::vec3 found_through(SeenFacet seen, const Facets& facets, transport::Random& random) const;
   glm::vec3 far_away(const glm::vec3& direction) const;
   glm::vec3 sent_to(Ray ray, transport::Random& random, bool open) const;
-  glm::vec3 seen_through(std::uint32_t grain, const glm::vec3& normal, const glm::vec3& towards,
-                         transport::Random& random) const;
+  Ray ray_through(std::uint32_t grain, const glm::vec3& normal, const glm::vec3& towards) const;
 
   Heap heap_;
   std::shared_ptr<const HeapLight> light_;

@@ -56,7 +56,8 @@ void resample(const std::vector<Outcome>& walks, int tried, transport::Random& r
   for (const Outcome& outcome : walks) {
     until += mean(outcome.weight);
     for (; next < until && drawn < GrainTable::outcomes; next += step, ++drawn)
-      kept.push_back({outcome.normal, outcome.direction, outcome.weight * (each / mean(outcome.weight))});
+      kept.push_back(
+          {outcome.normal, outcome.direction, outcome.weight * (each / mean(outcome.weight)), outcome.refracted});
   }
   while (drawn++ < GrainTable::outcomes) kept.push_back(kept.back());
 }

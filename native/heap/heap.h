@@ -84,8 +84,8 @@ class Space {
   std::optional<Source> source(const Meeting& meeting, Ray& ray, transport::Random& random) const;
 
   /// Radiance that comes against `ray`'s direction because of what grains and walls send out, straight through those
-  /// that let it.
-  glm::vec3 seen_along(Ray ray, const Field& sent, transport::Random& random) const;
+  /// that let it. Leaves it what weight leaves the heap.
+  glm::vec3 seen_along(Ray& ray, const Field& sent, transport::Random& random) const;
 
   /// What is left of light that comes from `reach` away, against `ray`'s direction, straight through all in between.
   /// Does not change its weight.

@@ -31,11 +31,7 @@ glm::vec3 unpacked(const std::int16_t (&packed)[3]) {
   return glm::vec3(packed[0], packed[1], packed[2]) * (1.0F / whole);
 }
 
-struct Found {
-  std::vector<Link> links;
-  Coefficients direct;
-  Coefficients crossed;
-};
+float mean(const glm::vec3& colour) { return (colour.r + colour.g + colour.b) / 3.0F; }
 
 struct Departing {
   glm::vec3 weight;
@@ -55,9 +51,8 @@ Numbers numbers_of(const glm::vec3& normal) {
 
 double product(const Numbers& a, const Numbers& b) { return std::inner_product(a.begin(), a.end(), b.begin(), 0.0); }
 
-/// The first of its inverse's columns, of a matrix that is symmetric and positive (elimination), 0 beyond `count`.
-Numbers first_of_inverse(std::array<Numbers, most_numbers> matrix, std::size_t count) {
-  Numbers right{1.0};
+/// What a matrix that is symmetric and positive makes `right` of (elimination), 0 beyond `count`.
+Numbers solved_for(std::array<Numbers, most_numbers> matrix, Numbers right, std::size_t count) {
   for (std::size_t row = 0; row < count; ++row)
     for (std::size_t below = row + 1; below < count; ++below) {
       const double factor = matrix[below][row] / matrix[row][row];
@@ -69,6 +64,55 @@ Numbers first_of_inverse(std::array<Numbers, most_numbers> matrix, std::size_t c
     solved[row] = (right[row] - product(matrix[row], solved)) / matrix[row][row];
   return solved;
 }
+
+/// How much of what is seen through a grain is the world, by the place that tells it: the numbers that are nearest to
+/// what looks found, which for a grain that stands alone is all, however few they were.
+class Opening {
+ public:
+  /// `left` of `weight` leaves the heap.
+  void add(float weight, float left, const glm::vec3& place) {
+    const Numbers numbers = numbers_of(place);
+    for (std::size_t row = 0; row < most_numbers; ++row) {
+      for (std::size_t column = 0; column < most_numbers; ++column)
+        moments_[row][column] += static_cast<double>(weight) * numbers[row] * numbers[column];
+      found_[row] += static_cast<double>(left) * numbers[row];
+    }
+    ++looks_;
+  }
+
+  /// To order 2 if `fine`, as far as there are enough looks.
+  Share share(bool fine) const {
+    constexpr std::size_t enough = 6;  // for each number
+    Share share;
+    if (!(moments_[0][0] > 0.0) || found_[0] == 0.0) return share;
+    std::size_t count = fine ? most_numbers : 4;
+    while (count > 1 && looks_ < enough * count) count = count > 4 ? 4 : 1;
+    Numbers numbers = solved_for(moments_, found_, count);
+    const bool sound =
+        std::all_of(numbers.begin(), numbers.end(), [](double number) { return std::abs(number) < 4.0; });
+    if (!sound) numbers = {found_[0] / moments_[0][0]};
+    share.first = glm::vec4(numbers[1], numbers[2], numbers[3], numbers[0]);
+    for (std::size_t i = 0; i < share.second.size(); ++i) share.second[i] = static_cast<float>(numbers[4 + i]);
+    return share;
+  }
+
+ private:
+  std::array<Numbers, most_numbers> moments_{};
+  Numbers found_{};
+  std::size_t looks_ = 0;
+};
+
+struct Found {
+  std::vector<Link> links;
+  Coefficients direct;
+  Coefficients crossed;
+  Share open;
+};
+
+struct Behind {
+  std::vector<Link> links;
+  Share open;
+};
 
 /// Scales the weights so that a grain in even light sends out just what its table says, as much at every normal as far
 /// as `count` numbers tell: which outcomes were drawn and where neither wins light nor turns it.
@@ -85,7 +129,7 @@ void balance(std::vector<Departing>& departing, const glm::vec3& albedo, std::si
     const double sum = moments[0][0];
     if (!(sum > 0.0)) continue;
     const Numbers even{1.0 / sum};
-    Numbers factors = first_of_inverse(moments, count);
+    Numbers factors = solved_for(moments, {1.0}, count);
     const bool sound = std::all_of(departing.begin(), departing.end(), [&](const Departing& from) {
       return product(factors, numbers_of(from.normal)) > least * even[0];
     });
@@ -118,6 +162,7 @@ struct Look {
   Ray ray;
   glm::vec3 normal;
   glm::vec3 towards;
+  bool refracted = false;  ///< and not scattered
 };
 
 /// One of many places of a ball, seen from one of many sides, all alike.
@@ -150,7 +195,8 @@ std::vector<Look> looks_from(const Space& space, std::size_t number, const Rays&
       const Seen seen(point);
       const Outcome outcome = table.draw(seen.mu, point[3]);
       const glm::vec3 leaves = space.place(grain, seen.frame * outcome.normal);
-      looks.push_back({{leaves, seen.frame * outcome.direction, outcome.weight}, seen.normal, seen.towards});
+      looks.push_back(
+          {{leaves, seen.frame * outcome.direction, outcome.weight}, seen.normal, seen.towards, outcome.refracted});
     }
     return looks;
   }
@@ -230,33 +276,40 @@ Found found_by(const Space& space, std::size_t number, const std::vector<Look>& 
   if (of_grain) balance(departing, table->albedo(), fine ? most_numbers : 4);
   found.links.reserve(static_cast<std::size_t>(
       std::count_if(endings.begin(), endings.end(), [](const Ending& ending) { return ending.source.has_value(); })));
+  Opening opening;
   for (std::size_t i = 0; i < departing.size(); ++i) {
     const Departing& from = departing[i];
     const glm::vec3 weight = from.weight * endings[i].left;
+    if (looks[i].refracted) opening.add(mean(from.weight), endings[i].source ? 0.0F : mean(weight), from.normal);
     if (endings[i].source)
       found.links.push_back(link_to(*endings[i].source, weight, from.normal));
     else
       (endings[i].crossed ? found.crossed : found.direct).add(weight * radiance, from.normal, fine);
   }
+  found.open = opening.share(fine);
   return found;
 }
 
-std::vector<Link> seen_behind(const Space& space, std::size_t number, const std::vector<Look>& looks,
-                              std::uint64_t seed) {
-  std::vector<Link> links;
+Behind seen_behind(const Space& space, std::size_t number, const std::vector<Look>& looks, std::uint64_t seed) {
+  Behind behind;
+  Opening opening;
   glm::vec3 all(0.0F);
   for (std::size_t i = 0; i < looks.size(); ++i) {
     Ray ray = looks[i].ray;
     transport::Random random = on_way(seed + ways_seed, number, i);
-    all += ray.weight;
-    if (const std::optional<Source> source = space.follow(ray, random))
-      links.push_back(link_to(*source, ray.weight, look_through(looks[i].normal, looks[i].towards)));
+    const glm::vec3 weight = ray.weight;
+    all += weight;
+    const glm::vec3 look = look_through(looks[i].normal, looks[i].towards);
+    const std::optional<Source> source = space.follow(ray, random);
+    if (source) behind.links.push_back(link_to(*source, ray.weight, look));
+    opening.add(mean(weight), source ? 0.0F : mean(ray.weight), look);
   }
-  for (Link& link : links)
+  for (Link& link : behind.links)
     for (int channel = 0; channel < 3; ++channel)
       link.weight[channel] *= all[channel] > 0.0F ? 1.0F / all[channel] : 0.0F;
-  links.shrink_to_fit();
-  return links;
+  behind.open = opening.share(false);
+  behind.links.shrink_to_fit();
+  return behind;
 }
 
 constexpr std::uint64_t behind_seed = 2;  // more than an effort's
@@ -332,7 +385,7 @@ Deep find_deep(const Space& space, int ways, const transport::Effort& effort) {
 Links find_links(const Space& space, const Rays& rays, const glm::vec3& radiance, Lit& lit,
                  const transport::Effort& effort) {
   const std::size_t count = space.size();
-  Links links{std::vector<std::vector<Link>>(count), {}};
+  Links links{std::vector<std::vector<Link>>(count), {}, Openness(space.grains().size())};
   bool any_fine = false;
   for (std::size_t i = 0; i < count; ++i) {
     links.fine.push_back(rays.fine(space, i));
@@ -347,6 +400,7 @@ Links find_links(const Space& space, const Rays& rays, const glm::vec3& radiance
     links.of[i] = std::move(found.links);
     lit.direct[i] = found.direct;
     lit.crossed[i] = found.crossed;
+    if (i < links.open.size()) links.open[i] = found.open;
   });
   return links;
 }
@@ -357,10 +411,13 @@ glm::vec3 look_through(const glm::vec3& normal, const glm::vec3& towards) {
 }
 
 Links find_behind(const Space& space, const Rays& rays, const transport::Effort& effort) {
-  Links behind{std::vector<std::vector<Link>>(space.size()), {}};
+  Links behind{std::vector<std::vector<Link>>(space.size()), {}, Openness(space.grains().size())};
   const std::uint64_t seed = effort.seed + behind_seed;
-  for_each(space.grains().size(), effort,
-           [&](std::size_t i) { behind.of[i] = seen_behind(space, i, looks_through(space, i, rays, seed), seed); });
+  for_each(space.grains().size(), effort, [&](std::size_t i) {
+    Behind found = seen_behind(space, i, looks_through(space, i, rays, seed), seed);
+    behind.of[i] = std::move(found.links);
+    behind.open[i] = found.open;
+  });
   return behind;
 }
 
@@ -376,12 +433,12 @@ std::size_t renew(const Space& space, const Moves& moves, const Rays& rays, cons
     const std::lock_guard lock(mutex);
     found.emplace_back(i, std::move(anew));
   });
-  std::vector<std::pair<std::size_t, std::vector<Link>>> behind;
+  std::vector<std::pair<std::size_t, Behind>> behind;
   const std::uint64_t seed = effort.seed + behind_seed;
   for_each(space.grains().size(), transport::part_of(effort, 0.8, 1.0), [&](std::size_t i) {
     const std::vector<Look> looks = looks_through(space, i, rays_through, seed);
     if (!moves.moved(i) && !touched(space, moves, looks, i, seed)) return;
-    std::vector<Link> anew = seen_behind(space, i, looks, seed);
+    Behind anew = seen_behind(space, i, looks, seed);
     const std::lock_guard lock(mutex);
     behind.emplace_back(i, std::move(anew));
   });
@@ -389,8 +446,12 @@ std::size_t renew(const Space& space, const Moves& moves, const Rays& rays, cons
     ways.links.of[i] = std::move(anew.links);
     ways.world.direct[i] = anew.direct;
     ways.world.crossed[i] = anew.crossed;
+    if (i < ways.links.open.size()) ways.links.open[i] = anew.open;
   }
-  for (auto& [i, anew] : behind) ways.behind.of[i] = std::move(anew);
+  for (auto& [i, anew] : behind) {
+    ways.behind.of[i] = std::move(anew.links);
+    ways.behind.open[i] = anew.open;
+  }
   return found.size();
 }
 

@@ -28,9 +28,14 @@ struct Change {
   std::vector<glm::vec3> received;  ///< how much more comes to others of what each sends out
 };
 
+/// Of each grain, the share of the world in what is seen through it unscattered: straight, by look_through(), or
+/// refracted, by GrainTable::seen_place(), as what it sends out is told.
+using Openness = std::vector<Share>;
+
 struct Links {
   std::vector<std::vector<Link>> of;  ///< each grain, then each node of walls
   std::vector<bool> fine;             ///< of each, whether it is told to order 2; empty: none is
+  Openness open;                      ///< of what the looks that were followed let through
 
   std::size_t count() const;
 

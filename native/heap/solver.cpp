@@ -227,6 +227,10 @@ HeapLight Solver::solve(const Heap& heap, const Quality& quality, const transpor
   light.answer.resize(first.size());
   for (std::size_t i = 0; i < first.size(); ++i) light.answer[i] = solved.sent[i] - lit.direct[i];
   if (change) change->answered.clear();  // no grain answers what is seen behind it
+  light.open = traced_->ways.links.open;
+  for (std::size_t i = 0; i < light.open.size(); ++i)
+    if (matter_->kinds[heap.grains.grains[i].kind].from_viewer->crossing(0.0F) != glm::vec3(0.0F))
+      light.open[i] = traced_->ways.behind.open[i];
   traced_->ways.behind.gather(solved.sent, light.behind, effort, change ? &*change : nullptr);
   sent_ = solved.sent;
   light.sent = std::move(solved.sent);

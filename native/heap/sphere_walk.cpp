@@ -58,7 +58,7 @@ class Inside {
       const float chord = -along + std::sqrt(std::max(along * along + 1.0F - glm::dot(place, place), 0.0F));
       const float flight = scattered ? flights_.fly(chord) : flights_.fly_within(chord);
       if (flight < chord) {
-        scattered = true;
+        scattered = met_ = true;
         place += flight * direction;
         if (told_) told_(place, direction, flights_.weight());
         direction =
@@ -97,7 +97,7 @@ class Inside {
           return std::nullopt;
         }
         return Outcome{normal, transport::refracted(direction, -normal, static_cast<float>(1.0 / optics_.eta)),
-                       flights_.weight()};
+                       flights_.weight(), !met_};
       }
       default:
         return Outcome{normal, direction, flights_.weight()};
@@ -110,6 +110,7 @@ class Inside {
   const Scattered& told_;
   Flights flights_;
   bool done_ = false;
+  bool met_ = false;
 };
 
 }  // namespace

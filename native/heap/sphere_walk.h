@@ -12,9 +12,10 @@ namespace mesograin::heap {
 
 /// Light as it leaves the unit sphere around the origin.
 struct Outcome {
-  glm::vec3 normal;     ///< where; also the place
-  glm::vec3 direction;  ///< whereto
-  glm::vec3 weight;     ///< linear RGB, of what came in
+  glm::vec3 normal;        ///< where; also the place
+  glm::vec3 direction;     ///< whereto
+  glm::vec3 weight;        ///< linear RGB, of what came in
+  bool refracted = false;  ///< through a surface that refracts, and scattered nowhere
 };
 
 /// Which way light is followed: the same but where what enters and what leaves meet different surfaces.

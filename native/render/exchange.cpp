@@ -13,7 +13,8 @@ namespace mesograin::render {
 namespace {
 
 // As shaders/heap/light_from_grains.glsl counts.
-constexpr std::size_t object_numbers = 7;
+constexpr std::size_t object_numbers = 8;
+constexpr std::size_t number_of_second_order = 6;  // in its w
 
 /// What the exchange takes of a mesh for a grain.
 struct Shape {
@@ -130,9 +131,9 @@ bool has_second_order(const heap::Coefficients& coefficients) {
   return coefficients.second != std::array<heap::SecondOrder, 3>{};
 }
 
-void append_second_order(std::vector<glm::vec4>& numbers, const std::array<heap::SecondOrder, 3>& second) {
-  for (std::size_t i = 0; i < second[0].size(); ++i)
-    numbers.emplace_back(second[0][i], second[1][i], second[2][i], 0.0F);
+void append_second_order(std::vector<glm::vec4>& numbers, const std::array<heap::SecondOrder, 3>& second,
+                         const heap::SecondOrder& open) {
+  for (std::size_t i = 0; i < open.size(); ++i) numbers.emplace_back(second[0][i], second[1][i], second[2][i], open[i]);
 }
 
 }  // namespace
@@ -257,6 +258,7 @@ void Exchange::send() {
     if (role.wall && *role.wall < known_walls)
       which = {place_of_kind(known_->grains().walls[*role.wall].kind), *role.wall, 0.0F, 0.0F};
     numbers.push_back(which);
+    numbers.push_back(lit ? known_->light->open[*role.grain].first : glm::vec4(0.0F));
   }
   for (std::size_t kind = 0; known_ && kind < known_->light->kinds.size(); ++kind) {
     const heap::Optics& optics = known_->grains().kinds[kind];
@@ -283,8 +285,8 @@ void Exchange::send() {
     if (!role.grain || *role.grain >= known_grains) continue;
     const heap::Coefficients& answer = known_->light->answer[*role.grain];
     if (!has_second_order(answer)) continue;
-    numbers[object_numbers * (object + 1) - 1].w = static_cast<float>(numbers.size());
-    append_second_order(numbers, answer.second);
+    numbers[object_numbers * object + number_of_second_order].w = static_cast<float>(numbers.size());
+    append_second_order(numbers, answer.second, known_->light->open[*role.grain].second);
   }
   device_.emplace(numbers);
 }

@@ -9,12 +9,13 @@
 #ifdef EXCHANGE
 // Of each object: red, green and blue of what it answers, and of what is seen straight through it (xyz: the slope over the normal or the look,
 // w: the mean over all of them); x: where its kind is, y: which wall it is, if any, z: its radius, w: where the second order of
-// what it answers is, or 0. Of each kind: mean free paths across its
+// what it answers is, or 0; how much of the world is seen through it (xyz: the slope, w: the mean; their second
+// order is in the w of that). Of each kind: mean free paths across its
 // radius, and whether it is known where light comes in (models/entries.glsl); the lobe of its answer at the middles of intervals of the cosine
 // (w of the first two: how much of the normal and of the direction to the viewer is in seen_place, of what is not transparent); those entries.
 layout(std430, binding = HEAP_LIGHT_BINDING) readonly buffer HeapLight { vec4 heap_light[]; };
 
-const int OBJECT_NUMBERS = 7;
+const int OBJECT_NUMBERS = 8;
 const int LOBE_NODES = 16;
 #endif
 
@@ -46,6 +47,9 @@ vec3 seen_place(int kind, vec3 normal, vec3 to_viewer, float mu) {
   return heap_light[kind].w * (normal - along * to_viewer);
 }
 
+// As heap::look_through.
+vec3 look_through(vec3 normal, vec3 to_viewer, float mu) { return normalize((2.0 * mu + 1.0) * to_viewer - normal); }
+
 // Radiance towards a viewer; of a wall at `place` in the heap.
 vec3 light_from_grains(int object, vec3 place, vec3 normal, vec3 to_viewer) {
 #ifdef GATHERED
@@ -62,8 +66,7 @@ vec3 light_from_grains(int object, vec3 place, vec3 normal, vec3 to_viewer) {
   vec3 lobe = mix(heap_light[kind + 1 + below].rgb, heap_light[kind + 2 + below].rgb, node - float(below));
   if (wall >= 0) return lobe * light_of_wall(wall, place, normal);
   vec3 crossing = exp(-2.0 * mu * heap_light[kind].rgb);
-  // As heap::look_through.
-  vec3 through = normalize((2.0 * mu + 1.0) * to_viewer - normal);
+  vec3 through = look_through(normal, to_viewer, mu);
   vec3 seen = seen_place(kind, normal, to_viewer, mu);
   vec3 answer = light_at_normal(first, seen);
   int second = int(heap_light[first + 6].w);

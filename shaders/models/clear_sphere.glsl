@@ -1,9 +1,12 @@
 // What models 2 and 3 let cross the grain unscattered: the world, refracted as by the sphere with the grain's mean chord, with its reflections
 // inside. Light meets the inside of a sphere at the same angle ever again, so that nothing but the direction changes on the way.
-// Not physical: facets look into a ball; only the world is seen, so that a grain among others, which would stand before it, shows none.
+// Not physical: facets look into a ball; only the world is seen, as far as none of the others stands before it; where that is not known, without
+// light between grains, an instance shows none.
 //
 // What is chosen at compile time (models::add_body_uniforms), besides what dielectric.glsl names:
+//   EXCHANGE             it is known how much of the world others leave
 //   CLEAR, WORLD         so much crosses the sphere unscattered that it is seen, and there is a world
+#include "heap/open_beyond.glsl"
 #include "models/dielectric.glsl"
 #include "models/interface.glsl"
 #include "physics/prelude.glsl"
@@ -20,11 +23,11 @@ const float LEAST_CLEAR = 0.004;
 const int MOST_CHORDS = 6;
 
 vec3 crossing_light(SurfacePoint point, Outwards outwards) {
-#if defined(INSTANCED) || defined(EXCHANGE)
+#if defined(INSTANCED) && !defined(EXCHANGE)
   return vec3(0.0);
 #endif
   vec3 passed = exp(-2.0 * outwards.mu_refracted * clear_sigma_t);
-  vec3 left = outwards.transmittance * passed;
+  vec3 left = open_beyond(point.normal, point.to_viewer) * outwards.transmittance * passed;
 #ifdef REFRACTION
   vec3 normal = point.normal;
   vec3 direction = (outwards.mu * normal - point.to_viewer) / clear_eta - outwards.mu_refracted * normal;

@@ -8,6 +8,7 @@
 //   WALKED               light scatters forwards: what similarity does not tell is found by walks
 //   MANY_TERMS           a half more of them: the grain is not of the thickest
 //   GREY                 red, green and blue are the same medium: a texel of `sources` holds four terms, else one in three colours
+#include "heap/open_beyond.glsl"
 #include "models/dielectric.glsl"
 #include "models/interface.glsl"
 #include "models/pixel_random.glsl"
@@ -239,7 +240,7 @@ vec3 crossing_light(SurfacePoint point, Outwards outwards) {
   vec3 inwards = (outwards.mu * point.normal - point.to_viewer) / stored.eta - outwards.mu_refracted * point.normal;
   vec3 place = to_body * point.on_triangle * stored.units;
   vec3 direction = normalize(to_body * inwards);
-  vec3 left = vec3(outwards.transmittance);
+  vec3 left = vec3(open_beyond(point.normal, point.to_viewer) * outwards.transmittance);
   vec3 sum = vec3(0.0);
   for (int i = 0; i < MOST_WAYS; ++i) {
     float way = way_through(place, direction, FAR);

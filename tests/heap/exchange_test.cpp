@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "heap/links.h"
 #include "heap/spread.h"
 #include "heaps.h"
 
@@ -54,8 +55,8 @@ TEST(Exchange, LetsAsMuchLightOutAsCameIn) {
       const std::array<float, 5> point = spread.point(i);
       Ray from_sun = ray_along({0.0F, -0.6F, -0.8F}, point);
       came_in += 1.0 - static_cast<double>(space.passed(from_sun, 4.0F * reach).r);
-      const glm::vec3 radiance =
-          space.seen_along(ray_along(transport::isotropic(point[2], point[3]), point), light.sent, random);
+      Ray from_viewer = ray_along(transport::isotropic(point[2], point[3]), point);
+      const glm::vec3 radiance = space.seen_along(from_viewer, light.sent, random);
       came_out += 4.0 * std::numbers::pi * static_cast<double>(radiance.r);
     }
     EXPECT_GT(came_in, 0.05 * rays);
@@ -72,6 +73,30 @@ TEST(Exchange, DarkensAFurnaceOfGreyGrainsInside) {
   };
   EXPECT_LT(at(3, 3, 3), 0.5F * at(0, 0, 0));
   EXPECT_GT(at(3, 3, 3), 0.0F);
+}
+
+// Of a lone grain all, of one beside a large one what that does not stand before.
+TEST(Exchange, TellsHowMuchOfTheWorldIsSeenThroughAGrain) {
+  Optics glass = medium(0.2, 1.0);
+  glass.surface = Surface::dielectric;
+  glass.eta = 1.5;
+  for (const Optics& optics : {medium(0.2, 1.0), glass}) {
+    Heap heap;
+    heap.grains.kinds = {optics, lambert(0.5)};
+    heap.grains.grains = {
+        {glm::vec3(0.0F), 1.0F, 0}, {glm::vec3(21.0F, 0.0F, 0.0F), 20.0F, 1}, {glm::vec3(0.0F, 0.0F, 1e3F), 1.0F, 0}};
+    const HeapLight light = solve_exchange(heap, {}, {}, {});
+    // What is seen through it along x from either side is behind it.
+    const GrainTable& table = *light.kinds[0].from_light;
+    const auto seen_from = [&](std::size_t grain, float side) {
+      const glm::vec3 along(side, 0.0F, 0.0F);
+      return light.open[grain].at(optics.transparent() ? look_through(along, along) : table.seen_place(along, along));
+    };
+    for (const float side : {-1.0F, 1.0F}) EXPECT_NEAR(seen_from(2, side), 1.0F, 1e-3F);
+    EXPECT_LT(seen_from(0, -1.0F), 0.3F);
+    EXPECT_GT(seen_from(0, 1.0F), 0.8F);
+    EXPECT_EQ(light.open[1].first, glm::vec4(0.0F));
+  }
 }
 
 // Two Lambert spheres, far apart: what one gets of the other is the other's light over the squared distance.
