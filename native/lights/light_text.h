@@ -25,6 +25,7 @@ using glm::clamp;
 using glm::cos;
 using glm::cross;
 using glm::dot;
+using glm::length;
 using glm::max;
 using glm::normalize;
 using glm::sin;
@@ -35,6 +36,7 @@ using glm::sqrt;
 
 #include "lights/equirectangular.glsl"
 #include "lights/light.glsl"
+#include "lights/near.glsl"
 
 #undef pure
 #undef OUT

@@ -66,6 +66,9 @@ class Content {
     return single != nullptr ? *single->material : *instances_->groups()[unit].material;
   }
 
+  /// Of which this draw is all.
+  std::size_t unit(std::size_t draw) const { return units() - draws_.size() + draw; }
+
   /// The number by which shaders know a draw; instances of arrays come first.
   std::size_t number(std::size_t draw) const { return (instances_ ? instances_->count() : 0) + draw; }
 

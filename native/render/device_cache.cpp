@@ -262,6 +262,7 @@ const gl::Program& DeviceCache::shading(const DeviceMaterial& material, const Sh
   if (shading.mirrors_world && material.facets()) defines.emplace_back("MIRRORS_WORLD");
   if (shading.lights_at_place) defines.emplace_back("LIGHTS_AT_PLACE");
   if (shading.near_lights) defines.emplace_back("NEAR_LIGHTS");
+  if (shading.lights_about) defines.emplace_back("LIGHTS_ABOUT");
   if (shading.portion) defines.push_back(fmt::format("PORTION {}", static_cast<int>(*shading.portion)));
   return program(fmt::format("{} {} {}", pass, model, fmt::join(defines, " ")), gl::ShaderSource({vertex}, {}),
                  gl::ShaderSource({"passes/" + pass + ".frag", "models/" + model + ".glsl"}, defines));

@@ -42,6 +42,7 @@ struct Shading {
   bool mirrors_world = false;    ///< or in its facets, and what stands before it
   bool lights_at_place = false;  ///< the place that is shaded draws its own directions of lights that have a place
   bool near_lights = false;      ///< such lights send each point of a grain that has light maps what they send there
+  bool lights_about = false;     ///< and are so near that it matters where light comes in
   std::optional<Portion> portion{};  ///< told alone
 };
 

@@ -92,6 +92,12 @@ std::vector<ShadowEye> Lighting::eyes(const SampledLights& sampled, const glm::d
   return eyes;
 }
 
+bool Lighting::any_near(const glm::dvec3& middle, double within, double radius) const {
+  return std::any_of(local_.begin(), local_.end(), [&](const scene::Light& light) {
+    return lights::nearness(lights::pack(light, middle), glm::dvec3(0.0), within, radius) > 0.0;
+  });
+}
+
 std::vector<std::array<glm::vec4, 5>> Lighting::device_local(const glm::dvec3& origin) const {
   std::vector<std::array<glm::vec4, 5>> device;
   for (const scene::Light& light : local_) device.push_back(lights::to_device(lights::pack(light, origin)));

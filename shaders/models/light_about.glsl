@@ -5,6 +5,7 @@
 //
 // What is chosen at compile time: SINGLE_MARCHED (the model tells light that was scattered once by itself, along the light map).
 #include "lights/light.glsl"
+#include "lights/near.glsl"
 #include "models/interface.glsl"
 #include "models/pixel_random.glsl"
 #include "physics/prelude.glsl"
@@ -21,31 +22,12 @@ uniform Ball ball;
 
 // Of all walks of a sample together: from 32 on, what is seen of a spot's edge is no longer off by their number.
 const int COLLISIONS = 32;
-const float LEAST_LEFT = 0.02;    // a walk that keeps less ends
-const float FARTHEST_NEAR = 8.0;  // in radii
-const float LARGEST_FALL = 0.1;   // of a spot's soft edge: what more of it crosses the ball is near
+const float LEAST_LEFT = 0.02;  // a walk that keeps less ends
 
 // How far a place in the ball is from its surface; lengths are in radii from here on.
 float way_out(vec3 place, vec3 direction) {
   float along = dot(place, direction);
   return max(sqrt(max(along * along + 1.0 - dot(place, place), 0.0)) - along, 0.0);
-}
-
-bool is_near(DeviceLight lamp, vec3 middle) {
-  vec3 away = middle - lamp.place.xyz;
-  float apart = length(away);
-  float radius = ball.radius * grain_unit;
-  int kind = int(lamp.place.w);
-  float extent = kind == LIGHT_AREA ? length(lamp.x.xyz) + length(lamp.y.xyz) : lamp.emission.w;
-  if (apart - extent < FARTHEST_NEAR * radius) return true;
-  if (kind != LIGHT_SPOT) return false;
-  // As cone_share: between which heights of its soft edge the ball lies.
-  vec3 local = vec3(dot(away, lamp.x.xyz), dot(away, lamp.y.xyz), dot(away, lamp.axis.xyz));
-  float cosine = local.z / max(length(local), 1e-18);
-  float seen = radius / apart * max(1.0, max(length(lamp.x.xyz), length(lamp.y.xyz)));
-  float turn = sqrt(max(1.0 - cosine * cosine, 0.0)) * seen + 0.5 * seen * seen;
-  vec2 heights = clamp((cosine + vec2(-turn, turn) - lamp.axis.w) * lamp.x.w, 0.0, 1.0);
-  return heights.y - heights.x > LARGEST_FALL;
 }
 
 // The share of light from a direction that reaches a place unscattered.
@@ -66,7 +48,8 @@ vec3 worth(vec3 of_lamp, vec3 of_parallel, vec3 brightest, vec3 own) {
 // `lamp` as seen from `middle`, where grain space begins; `lamp_random`: which point of it; `to_middle`: from there to the lamp.
 // Instances are shown from directions nearby instead, whose mean is told.
 void look_about(DeviceLight lamp, vec3 middle, vec2 lamp_random, SurfacePoint point, vec3 to_middle, inout LightSample light) {
-  if (!is_near(lamp, middle)) return;
+  float near = nearness(lamp, middle, 0.0, ball.radius * grain_unit);
+  if (near == 0.0) return;
   vec3 to_light = draw_light(lamp, middle + grain_unit * point.on_triangle, lamp_random).to_light;
   float mu = clamp(dot(point.normal, point.to_viewer), 0.0, 1.0);
   vec3 inwards = (mu * point.normal - point.to_viewer) / ball.eta - refracted_cosine(mu, ball.eta) * point.normal;
@@ -129,7 +112,7 @@ void look_about(DeviceLight lamp, vec3 middle, vec2 lamp_random, SurfacePoint po
     direction = vec3(ring * cos(2.0 * PI * random.z), ring * sin(2.0 * PI * random.z), height);
     begins = max(left.r, max(left.g, left.b)) < LEAST_LEFT;
   }
-  light.entering = worth(lamp_all, parallel_all, brightest, light.irradiance);
+  light.entering = mix(light.irradiance, worth(lamp_all, parallel_all, brightest, light.irradiance), near);
 #ifdef SINGLE_MARCHED
   light.entering_once = worth(lamp_once, parallel_once, brightest, light.irradiance);
 #endif

@@ -5,6 +5,7 @@
 //   LIGHTS_AT_PLACE      the place that is shaded draws its own directions of the lights that have a place themselves: an opaque surface at
 //                        each point, a translucent instance for all of it
 //   NEAR_LIGHTS          lights have a place: the light map of each shows the grain from one direction, but each point has its light from where it is
+//   LIGHTS_ABOUT         one of them is so near that it matters where its light comes in
 //   CLEAR, WORLD         the model knows what crosses the grain unscattered, and there is a world to be seen through it
 //   WHOLE_GRAIN          the model knows what light does in all of the grain, but not where it enters
 //   EMITS                the surface sends out light of its own
@@ -25,7 +26,7 @@
 #include "scene/grain.glsl"
 #include "scene/shadows.glsl"
 #include "models/entries.glsl"
-#if defined(NEAR_LIGHTS) || (defined(LIGHTS_AT_PLACE) && defined(WHOLE_GRAIN))
+#ifdef LIGHTS_ABOUT
 #include "models/light_about.glsl"
 #endif
 #include "heap/light_from_grains.glsl"
@@ -114,7 +115,9 @@ void move_to_point(inout LightSample light, vec3 to_middle, SurfacePoint point) 
   light.to_light = normalize(drawn.to_light + light.to_light - to_middle);
   light.irradiance = drawn.irradiance;
   light.entering = drawn.irradiance;
+#ifdef LIGHTS_ABOUT
   look_about(local_lights[number], middle_of_grain(), local_randoms[number], point, to_middle, light);
+#endif
 }
 #endif
 
@@ -157,7 +160,7 @@ vec3 locally_lit(SurfacePoint point, Outwards outwards) {
 #endif
     LightDraw drawn = draw_light(local_lights[i], place, random);
     LightSample light = parallel_light(drawn.to_light, drawn.irradiance, distant_light_count + i, light_angle(local_lights[i], drawn.reach), i, 0.0);
-#ifdef WHOLE_GRAIN
+#ifdef LIGHTS_ABOUT
     look_about(local_lights[i], middle_of_grain(), random, point, light.to_light, light);
 #endif
     sum += lit_by(point, outwards, light);

@@ -88,8 +88,9 @@ void write_shading(Writer& writer) {
   // As render::Shading.
   const std::vector<std::string> clear = {"CLEAR", "WORLD", "MANY_TERMS"};
   const std::vector<std::string> cast = {"SHADOWS", "CAST_SHADOWS"};
-  const std::vector<std::string> near = {"NEAR_LIGHTS"};
-  const std::vector<std::string> near_instances = {"INSTANCED", "SHADOWS", "LIGHTS_AT_PLACE", "NEAR_LIGHTS"};
+  const std::vector<std::string> near = {"NEAR_LIGHTS", "LIGHTS_ABOUT"};
+  const std::vector<std::string> near_instances = {"INSTANCED", "SHADOWS", "LIGHTS_AT_PLACE", "NEAR_LIGHTS",
+                                                   "LIGHTS_ABOUT"};
   const std::vector<std::vector<std::string>> shadings = {{"INSTANCED"},
                                                           {"SHADOWS"},
                                                           cast,

@@ -1,4 +1,4 @@
-// Where a sample is seen from.
+// Where a sample is seen from, and what of it is lit from nearby.
 #include "render/passes/sample.h"
 
 #include <glm/geometric.hpp>
@@ -6,12 +6,31 @@
 
 namespace mesograin::render {
 
+namespace {
+
+// Instances are in a group with others of about their size.
+constexpr double largest_of_typical = 2.0;
+
+}  // namespace
+
 glm::vec4 Sample::viewer(const glm::dvec3& origin) const {
   const glm::dmat4 camera_to_world = glm::inverse(camera.world_to_camera);
   // A perspective projection takes its w from depth; an orthographic one is affine and sees along one direction.
   const bool orthographic = camera.camera_to_clip[2][3] == 0.0;
   return orthographic ? glm::vec4(glm::normalize(glm::dvec3(camera_to_world[2])), 0.0)
                       : glm::vec4(glm::dvec3(camera_to_world[3]) - origin, 1.0);
+}
+
+bool Sample::lights_about(std::size_t unit) const {
+  const DeviceMaterial& material = content.material(unit);
+  if (!material.light_maps() && !scene::traits_of(material.model()).mesh) return false;
+  if (const Draw* draw = content.draw(unit)) return lighting.any_near(draw->centre, 0.0, draw->reach);
+  const Instances& instances = *content.instances();
+  const InstanceGroup& group = instances.groups()[unit];
+  const Bounds& bounds = instances.bounds();
+  return lighting.any_near(
+      content.anchor() + 0.5 * (bounds.lower + bounds.upper), 0.5 * glm::distance(bounds.lower, bounds.upper),
+      largest_of_typical * group.typical_scale * instances.prototypes()[group.prototype].mesh->reach());
 }
 
 }  // namespace mesograin::render

@@ -59,6 +59,9 @@ struct Sample {
   bool lights_at_place(const DeviceMaterial& material, bool instanced) const {
     return lighting.any_local() && (instanced || !material.light_maps());
   }
+
+  /// Whether it matters to a unit of the content where the light of a lamp comes in.
+  bool lights_about(std::size_t unit) const;
 };
 
 }  // namespace mesograin::render

@@ -93,7 +93,7 @@ void ShadePass::shade_seen(const Sample& sample, const ShadowPass& shadows, cons
   for (std::size_t unit = first; unit < std::min(first + most_in_stencil, sample.content.units()); ++unit) {
     const DeviceMaterial& material = sample.content.material(unit);
     const gl::Program& program =
-        prepare(sample, material,
+        prepare(sample, unit,
                 {.instanced = sample.content.draw(unit) == nullptr,
                  .shadows = shadows.kind(sample.content),
                  .gathered = gathered.ran(),
@@ -123,7 +123,7 @@ void ShadePass::shade_mirrored(const Sample& sample, const ShadowPass& shadows, 
     const PixelBox& box = boxes[unit];
     if (box.first == box.end) continue;
     const DeviceMaterial& material = sample.content.material(unit);
-    const gl::Program& program = prepare(sample, material,
+    const gl::Program& program = prepare(sample, unit,
                                          {.instanced = sample.content.draw(unit) == nullptr,
                                           .mirrored = true,
                                           .shadows = shadows.kind_mirrored(sample.content, material)});
@@ -154,7 +154,7 @@ void ShadePass::shade_unwrapped(const Sample& sample, const ShadowPass& shadows)
   for (const std::size_t baked : sample.unwrapping->draws) {
     const Draw& draw = sample.content.draws()[baked];
     const gl::Program& program =
-        prepare(sample, *draw.material, {.unwrapped = true, .shadows = shadows.kind(sample.content)});
+        prepare(sample, sample.content.unit(baked), {.unwrapped = true, .shadows = shadows.kind(sample.content)});
     shadows.bind(program);
     set_draw(sample, program, draw);
     const glm::dmat4 object_to_grain = draw.object_to_grain();
@@ -168,12 +168,14 @@ void ShadePass::shade_unwrapped(const Sample& sample, const ShadowPass& shadows)
   glDisable(GL_DEPTH_TEST);
 }
 
-const gl::Program& ShadePass::prepare(const Sample& sample, const DeviceMaterial& material, Shading shading) {
+const gl::Program& ShadePass::prepare(const Sample& sample, std::size_t unit, Shading shading) {
+  const DeviceMaterial& material = sample.content.material(unit);
   const bool world = sample.lighting.world().shines();
   shading.exchange = sample.exchange.any();
   shading.world = world;
   shading.lights_at_place = sample.lights_at_place(material, shading.instanced);
   shading.near_lights = sample.lighting.any_local() && material.light_maps();
+  shading.lights_about = sample.lights_about(unit);
   const gl::Program& program = sample.cache.shading(material, shading);
   material.bind(program);
   if (world || shading.mirrors_world) {

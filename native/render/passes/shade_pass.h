@@ -40,7 +40,7 @@ class ShadePass {
   void draw_background(const Sample& sample);
 
   /// The material's program, with everything that depends on neither shadows nor what is shaded.
-  const gl::Program& prepare(const Sample& sample, const DeviceMaterial& material, Shading shading);
+  const gl::Program& prepare(const Sample& sample, std::size_t unit, Shading shading);
 
   /// Draws one unit's pixels.
   void shade_unit(const Sample& sample, const gl::Program& program, std::size_t unit, int mark);
