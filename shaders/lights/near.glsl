@@ -4,8 +4,8 @@
 
 // Radii from the middle of a grain: from the farther on a lamp is the same for all of it, up to the nearer it is looked at place by place, and
 // in between it goes from one to the other.
-const real NEAR_RADII = 4.5;
-const real FAR_RADII = 6.0;
+const real NEAR_RADII = 5.0;
+const real FAR_RADII = 6.75;
 // The same for a spot: how much of its soft edge crosses the grain.
 const real SAME_FALL = 0.1;
 const real OTHER_FALL = 0.2;

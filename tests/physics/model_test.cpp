@@ -97,7 +97,8 @@ class Evaluator {
         "  uint index = gl_GlobalInvocationID.x;\n"
         "  if (index >= radiance.length()) return;\n"
         "  SurfacePoint point = SurfacePoint(vec3(0.0), normal, directions[2u * index + 1u].xyz, vec3(0.0));\n"
-        "  radiance[index] = vec4(evaluate_model(point, look_outwards(point), LightSample(directions[2u * index].xyz, "
+        "  radiance[index] = vec4(evaluate_model(point, look_outwards(point), parallel_light(directions[2u * "
+        "index].xyz, "
         "vec3(1.0), 0, 0.0, 0, 0.0)), "
         "1.0);\n"
         "}\n";
