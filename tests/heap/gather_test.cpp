@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 
@@ -44,6 +45,19 @@ std::shared_ptr<const HeapLight> solved(const Heap& heap) {
   return std::make_shared<const HeapLight>(solve_exchange(heap, quality, {}, {}));
 }
 
+// A place of a ball and where it is seen from: a mean over points is one over normals and, weighed by the cosine, over
+// directions.
+struct Look {
+  glm::vec3 normal;
+  float mu;
+  glm::vec3 towards;
+
+  explicit Look(const std::array<float, 5>& point)
+      : normal(transport::isotropic(point[0], point[1])),
+        mu(std::sqrt(point[2])),
+        towards(TurnedFrame(normal, point[3]) * glm::vec3(std::sqrt(1.0F - point[2]), 0.0F, mu)) {}
+};
+
 // Exitance over pi of a grain: the mean over normals and, weighed by the cosine, over directions.
 TEST(Gather, IsInTheMeanWhatTheFourNumbersAre) {
   for (const Optics& optics : {lambert(0.8), medium(1.0, 0.9)}) {
@@ -57,10 +71,7 @@ TEST(Gather, IsInTheMeanWhatTheFourNumbersAre) {
       double expected = 0.0;
       constexpr int looks = 1 << 14;
       for (int i = 0; i < looks; ++i) {
-        const std::array<float, 5> point = spread.point(i);
-        const glm::vec3 normal = transport::isotropic(point[0], point[1]);
-        const float mu = std::sqrt(point[2]);
-        const glm::vec3 towards = TurnedFrame(normal, point[3]) * glm::vec3(std::sqrt(1.0F - point[2]), 0.0F, mu);
+        const auto [normal, mu, towards] = Look(spread.point(i));
         found += gather.look(grain, normal, towards, 4, random).r / looks;
         const GrainTable& table = *light->kinds[0].from_light;
         expected += (table.lobe_at(mu).r * light->answer[grain].at(normal).r +
@@ -114,13 +125,10 @@ TEST(Gather, OfAllLightLosesNone) {
       double sum = 0.0;
       constexpr int looks = 1 << 12;
       for (int i = 0; i < looks; ++i) {
-        const std::array<float, 5> point = spread.point(i);
-        const glm::vec3 normal = transport::isotropic(point[0], point[1]);
-        const float mu = std::sqrt(point[2]);
-        const glm::vec3 towards = TurnedFrame(normal, point[3]) * glm::vec3(std::sqrt(1.0F - mu * mu), 0.0F, mu);
+        const Look look(spread.point(i));
+        const glm::vec3 place = heap.grains.grains[grain].radius * look.normal;
         ASSERT_TRUE(gather.sees_all(grain));
-        sum +=
-            gather.look_at_all(grain, heap.grains.grains[grain].radius * normal, normal, towards, 1, random).g / looks;
+        sum += gather.look_at_all(grain, place, look.normal, look.towards, 1, random).g / looks;
       }
       EXPECT_NEAR(sum, 1.0, 0.01) << sigma_t << " " << grain;
     }
