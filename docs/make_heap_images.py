@@ -1,11 +1,11 @@
 """Draws heaps without and with light between grains beside Cycles' from finished comparisons of the same cases.
 
-    docs/make_heap_images.py WITHOUT WITH OUT.png
+    docs/make_heap_images.py WITHOUT WITH GATHERED OUT.png
 
-WITHOUT, WITH: folders that `./mesograin compare` wrote with --exchange off and without. A row for each case: both
-pictures, the reference, and what is left of the difference. Above them the ratio of totals and relative L1 in blocks of
-8 x 8 pixels, over those pixels that show grains: where the first case has light, an index-matched volume in which an
-open ground is nothing.
+WITHOUT, WITH, GATHERED: folders that `./mesograin compare` wrote with --exchange off, heaps and gathered. A row for
+each case: the pictures, the reference, and what is left of the difference in the second. Above them the ratio of
+totals and relative L1 in blocks of 8 x 8 pixels, over those pixels that show grains: where the first case has light, an
+index-matched volume in which an open ground is nothing. Prints these, and by how much Cycles' own noise is in them.
 """
 import json
 import pathlib
@@ -48,38 +48,53 @@ def blocks(picture, mask):
     return light.reshape(height // 8, 8, width // 8, 8).sum(axis=(1, 3))
 
 
+def noise(deviation, reference, mask):
+    """What noise leaves of relative L1 in blocks if it is normal, and that of one pixel's channels the same."""
+    deviations = np.sqrt(blocks(deviation**2, mask))
+    return f"{np.sqrt(2.0 / np.pi) * deviations.sum() / blocks(reference, mask).sum():.1%}"
+
+
 def numbers(picture, reference, mask):
     found, right = blocks(picture, mask), blocks(reference, mask)
     return f"in all {found.sum() / right.sum():.3f}, in blocks {np.abs(found - right).sum() / right.sum():.1%}"
 
 
-def draw(without, with_, out):
+COLUMNS = ("shadows alone", "with light between grains", "gathered")
+
+
+def draw(folders, out):
     native = read_module()
-    both = [(cases(without)[name], case) for name, case in cases(with_).items() if name in cases(without)]
-    mask = native.read_exr(with_ / both[0][1]["files"]["reference"])[0][..., 1] > 0.0
-    figure, axes = plt.subplots(len(both), 4, figsize=(16, 4.3 * len(both)), squeeze=False)
-    for row, (dark, lit) in zip(axes, both):
-        pictures = [native.read_exr(without / dark["files"]["model"])[0],
-                    *(native.read_exr(with_ / lit["files"][name])[0] for name in ("model", "reference"))]
-        exposure = 0.8 / np.percentile(pictures[2][..., :3][pictures[2][..., 3] > 0.5], 98)
-        titles = (
-            f"{lit['model']}, shadows alone\n{numbers(pictures[0], pictures[2], mask)}",
-            f"with light between grains\n{numbers(pictures[1], pictures[2], mask)}",
-            f"Cycles, {lit['reference_title']}\n{lit['reference_seconds']:.0f} s")
-        print(lit["name"], *titles, sep="\n  ")
-        for axis, picture, title in zip(row, pictures, titles):
-            axis.imshow(shown(picture, exposure))
+
+    def picture(folder, case, name):
+        return native.read_exr(folder / case["files"][name])[0]
+
+    found = [cases(folder) for folder in folders]
+    names = [name for name in found[0] if all(name in each for each in found)]
+    mask = picture(folders[0], found[0][names[0]], "reference")[..., 1] > 0.0
+    figure, axes = plt.subplots(len(names), 5, figsize=(20, 4.3 * len(names)), squeeze=False)
+    for row, name in zip(axes, names):
+        case = found[0][name]
+        ours = [picture(folder, each[name], "model") for folder, each in zip(folders, found)]
+        reference, deviation = (picture(folders[0], case, which) for which in ("reference", "noise"))
+        exposure = 0.8 / np.percentile(reference[..., :3][reference[..., 3] > 0.5], 98)
+        titles = [f"{case['model']}, {column}\n{numbers(each, reference, mask)}" for column, each in zip(COLUMNS, ours)]
+        titles.append(f"{case['reference_title']}\n{case['reference_seconds']:.0f} s, noise in blocks "
+                      f"{noise(deviation, reference, mask)}")
+        print(name, *titles, sep="\n  ")
+        for axis, each, title in zip(row, (*ours, reference), titles):
+            axis.imshow(shown(each, exposure))
             axis.set_title(title, fontsize=10)
-        error = (pictures[1][..., :3] - pictures[2][..., :3]).mean(axis=-1) * exposure
-        row[3].imshow(error, cmap="RdBu_r", vmin=-0.2, vmax=0.2)
-        row[3].set_title("with it less Cycles, red is too bright\n(full colour: a fifth of white)", fontsize=10)
+        error = (ours[1][..., :3] - reference[..., :3]).mean(axis=-1) * exposure
+        row[4].imshow(error, cmap="RdBu_r", vmin=-0.2, vmax=0.2)
+        row[4].set_title("the second less Cycles, red is too bright\n(full colour: a fifth of white)", fontsize=10)
         for axis in row:
             axis.set_axis_off()
     figure.tight_layout()
-    figure.savefig(out, dpi=80)
+    figure.savefig(out, dpi=64)
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 4:
+    if len(sys.argv) != 5:
         sys.exit(__doc__)
-    draw(*map(pathlib.Path, sys.argv[1:]))
+    *given, written = map(pathlib.Path, sys.argv[1:])
+    draw(given, written)

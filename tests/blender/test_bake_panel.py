@@ -136,7 +136,8 @@ def test_a_cancelled_comparison_ends_at_once_and_writes_nothing(compared, tmp_pa
 
 def test_only_what_can_be_baked_is_offered(asked):
     offered = [item.identifier for item in type(asked).bl_rna.properties["reference"].enum_items]
-    assert offered == ["usual", "diffuse", "glossy", "volume_index_matched", "subsurface", "subsurface_burley"]
+    assert offered == ["usual", "diffuse", "glossy", "volume_index_matched", "subsurface", "subsurface_burley",
+                       "volume_lambert"]
 
 
 @pytest.mark.parametrize("change, sentence", [

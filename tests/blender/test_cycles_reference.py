@@ -425,16 +425,18 @@ def test_glossy_is_ggx_with_the_masking_we_claim():
 COSINE, REFRACTED = (0.034, 0.150, 0.492), (0.0231, 0.1410, 0.5042)
 
 
-def test_subsurface_is_the_walk_we_claim():
+@pytest.mark.parametrize("kind", ["subsurface", "volume_lambert"])
+def test_subsurface_is_the_walk_we_claim(kind):
     make_sphere([((0.0, 1.0, 0.0), 20.0)], sigma_s=(0.9,) * 3, sigma_a=(0.1,) * 3, eta=1.3, roughness=0.0)
     lens = bpy.context.scene.camera.data
     lens.type, lens.ortho_scale = "ORTHO", 2.0 * RADIUS
     bpy.context.scene.camera.rotation_euler = (0.0, 0.0, 0.0)
     size = 64
-    image = reference.render(depsgraph(), "subsurface", (size, size), samples=96).mean
+    image = reference.render(depsgraph(), kind, (size, size), samples=96).mean
     cosines = 1.0 - (np.arange(size)[:, None] + 0.5) / size * 2.0
     covered = image[..., 3] > 0.9999
-    claimed, other = (REFRACTED, COSINE) if nodes.features().subsurface_refracts else (COSINE, REFRACTED)
+    refracts = kind == "subsurface" and nodes.features().subsurface_refracts
+    claimed, other = (REFRACTED, COSINE) if refracts else (COSINE, REFRACTED)
     for cosine, tolerance, expected, not_expected in zip((-0.9, 0.1, 0.9), (0.12, 0.04, 0.05), claimed, other):
         found = math.pi * image[covered & (np.abs(cosines - cosine) < 0.04)][:, 0].mean() / 20.0
         assert found == pytest.approx(expected, rel=tolerance)

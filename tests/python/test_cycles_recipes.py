@@ -83,6 +83,15 @@ def test_glass_is_sharp_and_holds_the_medium():
     assert ["Glass", "BSDF", "Output", "Surface"] in glass["links"]
 
 
+def test_the_medium_between_lambert_surfaces_is_that_of_the_others():
+    values = grain(sigma_a=(0.1, 0.2, 0.3), sigma_s=(0.9, 0.5, 0.1), eta=1.45)
+    between = recipes.recipe("volume_lambert", values, BLENDER_4)
+    assert between["nodes"]["Entry"]["inputs"] == {"Color": (1.0, 1.0, 1.0)}
+    bare = recipes.recipe("volume_index_matched", values, BLENDER_4)
+    assert all(between["nodes"][name] == bare["nodes"][name] for name in ("Scatter", "Absorption"))
+    assert ["Entry", "BSDF", "Output", "Surface"] in between["links"]
+
+
 def test_burley_takes_the_reduced_medium():
     # sigma_s (1 - g) = 0.9: the same as without g.
     skewed = inputs("subsurface_burley", grain(sigma_a=(0.1,) * 3, sigma_s=(1.8,) * 3, g=0.5), "Subsurface")
@@ -101,7 +110,8 @@ def test_our_side_solves_what_cycles_solves():
     assert kinds.our_side("subsurface", BLENDER_3) == {"boundary": "lambert_lambert"}
     assert kinds.our_side("subsurface", BLENDER_4) == {"boundary": "lambert_refracted"}
     assert kinds.our_side("volume_index_matched", BLENDER_4) == {"boundary": "index_matched"}
-    assert kinds.our_side("subsurface_burley", BLENDER_4) == {"boundary": "lambert_lambert"}
+    for kind in ("subsurface_burley", "volume_lambert"):
+        assert kinds.our_side(kind, BLENDER_4) == {"boundary": "lambert_lambert"}
     for kind in ("volume_dielectric", "photon"):
         assert kinds.our_side(kind, BLENDER_3) == {"boundary": "dielectric", "roughness": 0.0, "specular": False}
     assert kinds.our_side("glossy", BLENDER_3) == {"masking": "separable"}
@@ -124,6 +134,7 @@ def test_our_side_solves_what_cycles_solves():
         ("volume_index_matched", {"sigma_a": (0.0,) * 3, "sigma_s": (0.0,) * 3}, "invisible", True),
         ("volume_index_matched", {"g": 1.0}, "0.999", False),
         ("volume_index_matched", {"sigma_a": (1e-5,) * 3, "sigma_s": (1.0,) * 3}, "1024 bounces", False),
+        ("volume_lambert", {"sigma_a": (0.0,) * 3, "sigma_s": (0.0,) * 3}, "invisible", True),
         ("volume_dielectric", {"roughness": 0.3}, "left out on both sides", False),
         ("photon", {"g": 1.0}, "g inside (-1, 1)", True),
         ("subsurface_burley", {"g": -0.4}, "similarity", False),

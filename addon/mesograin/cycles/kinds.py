@@ -128,6 +128,16 @@ KINDS = {
             6.0,
             referee=True,
         ),
+        # What the random walk of `subsurface` is, on all of a path: that gives it up where light was diffuse before.
+        Kind(
+            "volume_lambert",
+            "Cycles volume between Translucent surfaces",
+            WITH_LOBES,
+            1024,
+            128,
+            False,
+            5.0,
+        ),
     )
 }
 
@@ -191,7 +201,7 @@ def our_side(kind, features, part=None):
         return {"boundary": "index_matched"}
     if kind == "subsurface":
         return {"boundary": "lambert_refracted" if features.subsurface_refracts else "lambert_lambert"}
-    if kind == "subsurface_burley":
+    if kind in ("subsurface_burley", "volume_lambert"):
         return {"boundary": "lambert_lambert"}
     if kind in ("volume_dielectric", "photon"):
         return {"boundary": "dielectric", "roughness": 0.0, "specular": False}

@@ -36,7 +36,7 @@ def limits(values, kind):
     """What Cycles cannot express of `values` (GrainValues) in a `Kind.recipe`: a list of Limit, often empty."""
     if kind in ("glossy", "dielectric_specular"):
         return _glossy(values)
-    if kind == "volume_index_matched":
+    if kind in ("volume_index_matched", "volume_lambert"):
         return _volume(values)
     if kind == "subsurface":
         return _subsurface(values)

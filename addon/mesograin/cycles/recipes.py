@@ -93,6 +93,18 @@ def _volume_index_matched(values, features):
     return _recipe(_medium(values, features), volume=_VOLUME, material=_VOLUME_SETTINGS)
 
 
+def _volume_lambert(values, features):
+    # A cosine lobe where light enters and one where it leaves, as the random walk of `_subsurface` has them.
+    entry = {
+        "type": "ShaderNodeBsdfTranslucent",
+        "properties": {},
+        "inputs": {"Color": (1.0, 1.0, 1.0)},
+        "optional": {},
+    }
+    nodes = {"Entry": entry, **_medium(values, features)}
+    return _recipe(nodes, surface=("Entry", "BSDF"), volume=_VOLUME, material=_VOLUME_SETTINGS)
+
+
 def _volume_dielectric(values, features):
     # Not the Refraction BSDF, which has no Fresnel reflection.
     glass = {
@@ -248,6 +260,7 @@ _RECIPES = {
     "subsurface": _subsurface,
     "subsurface_burley": _subsurface_burley,
     "volume_dielectric": _volume_dielectric,
+    "volume_lambert": _volume_lambert,
     "dielectric_specular": _dielectric_specular,
     "coverage": _coverage,
     "normal": _normal,

@@ -30,8 +30,8 @@ class Measured:
 MEASURED = (
     Measured("lambert", (0.0, 0.0), (0.8, 0.8), True, 0.032, 0.045),
     Measured("index_matched", (1.0, 3.0), (0.9, 0.999), True, 0.03, 0.041, 0.05),
-    Measured("index_matched", (2.68, 6.2), (0.914, 0.991), False, 0.04, 0.071),
-    Measured("lambert_lambert", (2.68, 6.2), (0.914, 0.991), False, 0.19, 0.185),
+    Measured("index_matched", (2.68, 6.2), (0.914, 0.991), False, 0.03, 0.052),
+    Measured("lambert_lambert", (2.68, 6.2), (0.914, 0.991), False, 0.042, 0.048),
 )
 
 
