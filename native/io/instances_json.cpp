@@ -22,14 +22,14 @@ using namespace scene;
 
 namespace {
 
-using Transforms = std::vector<glm::dmat4>;
+using Matrices = std::vector<glm::dmat4>;
 
 glm::dmat4 placed(const glm::dvec3& place, double scale) {
   return glm::scale(glm::translate(glm::dmat4(1.0), place), glm::dvec3(scale));
 }
 
 /// (n, 4, 4) and (n, 3, 4) are transforms, (n, 3) places, (n, 4) places and sizes.
-Transforms transforms_of(const NumberArray& array) {
+Matrices transforms_of(const NumberArray& array) {
   const std::vector<std::size_t>& shape = array.shape;
   const bool matrices = shape.size() == 3 && (shape[1] == 3 || shape[1] == 4) && shape[2] == 4;
   const bool places = shape.size() == 2 && (shape[1] == 3 || shape[1] == 4);
@@ -38,7 +38,7 @@ Transforms transforms_of(const NumberArray& array) {
         "its shape must be (n, 4, 4) or (n, 3, 4) for transforms, (n, 3) for places or (n, 4) for places and "
         "scales; got ({}).",
         fmt::join(shape, ", "));
-  Transforms transforms;
+  Matrices transforms;
   transforms.reserve(shape[0]);
   const std::size_t length = matrices ? shape[1] * 4 : shape[1];
   for (std::size_t i = 0; i < shape[0]; ++i) {
@@ -56,9 +56,9 @@ Transforms transforms_of(const NumberArray& array) {
 }
 
 /// The vertices of a PLY file: x, y, z and, where they are there, `scale` and the turn `qw`, `qx`, `qy`, `qz`.
-Transforms parse_ply_places(std::string_view bytes) {
+Matrices parse_ply_places(std::string_view bytes) {
   ply::File file = ply::open(bytes);
-  Transforms transforms;
+  Matrices transforms;
   for (const ply::Element& element : file.elements) {
     require_elements(element, *file.values);
     if (element.name != "vertex") {
@@ -90,12 +90,12 @@ Transforms parse_ply_places(std::string_view bytes) {
   return transforms;
 }
 
-Transforms read_places(const Node& node) {
+Matrices read_places(const Node& node) {
   const Node places = node["positions"];
   const bool each = node.has("scales") && !node["scales"].is_number();
   if (each && node["scales"].size() != places.size())
     node["scales"].fail("must be one number, or one for each of the {} positions", places.size());
-  Transforms transforms;
+  Matrices transforms;
   transforms.reserve(places.size());
   for (std::size_t i = 0; i < places.size(); ++i) {
     const double scale = each ? node["scales"][i].number() : node.has("scales") ? node["scales"].number() : 1.0;
@@ -115,7 +115,7 @@ auto read_whole(const std::filesystem::path& path, const Parse& parse) {
   }
 }
 
-Transforms read_file(const Node& name, const std::filesystem::path& folder) {
+Matrices read_file(const Node& name, const std::filesystem::path& folder) {
   const std::filesystem::path path = folder / name.text();
   if (path.extension() != ".npy" && path.extension() != ".ply") name.fail("must be a .npy or .ply file");
   return at(name, [&] {
@@ -125,7 +125,7 @@ Transforms read_file(const Node& name, const std::filesystem::path& folder) {
   });
 }
 
-Transforms read_transforms(const Node& node, const std::filesystem::path& folder) {
+Matrices read_transforms(const Node& node, const std::filesystem::path& folder) {
   node.require_object(std::array<std::string_view, 5>{"transforms", "positions", "scales", "file", "factors"},
                       provenance_keys);
   if (node.has("transforms") + node.has("positions") + node.has("file") != 1)
@@ -133,7 +133,7 @@ Transforms read_transforms(const Node& node, const std::filesystem::path& folder
   if (node.has("scales") && !node.has("positions")) node["scales"].fail("must stand beside positions");
   if (node.has("file")) return read_file(node["file"], folder);
   if (node.has("positions")) return read_places(node);
-  Transforms transforms;
+  Matrices transforms;
   const Node list = node["transforms"];
   for (std::size_t i = 0; i < list.size(); ++i) transforms.push_back(read_transform(list[i]));
   return transforms;
@@ -189,12 +189,13 @@ glm::dmat4 read_transform(const Node& rows) {
 
 void read_instances(const Node& node, const Instance& prototype, const std::filesystem::path& folder,
                     std::vector<InstanceArray>& arrays) {
-  Transforms transforms = read_transforms(node, folder);
+  Matrices transforms = read_transforms(node, folder);
   if (transforms.empty()) node.fail("must place at least one instance");
   for (glm::dmat4& transform : transforms) transform *= prototype.object_to_world;
   ColourFactors factors;
   if (node.has("factors")) factors = read_colour_factors(node["factors"], folder, transforms.size());
-  arrays.emplace_back(prototype.mesh, prototype.material, std::move(transforms), std::move(factors));
+  at(node,
+     [&] { arrays.emplace_back(prototype.mesh, prototype.material, Transforms(transforms), std::move(factors)); });
 }
 
 }  // namespace mesograin::io

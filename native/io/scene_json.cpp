@@ -137,7 +137,9 @@ void choose_models(Scene& scene) {
   };
   for (Instance& instance : scene.instances) choose(instance.material, instance.mesh, instance.object_to_world);
   for (InstanceArray& array : scene.arrays) {
-    std::vector<glm::dmat4> matrices = array.object_to_world();
+    std::vector<glm::dmat4> matrices;
+    matrices.reserve(array.object_to_world().size());
+    for (const glm::dmat4 matrix : array.object_to_world()) matrices.push_back(matrix);
     if (matrices.empty()) continue;
     const auto middle = matrices.begin() + static_cast<std::ptrdiff_t>(matrices.size() / 2);
     const auto size = [](const glm::dmat4& matrix) { return std::abs(glm::determinant(glm::dmat3(matrix))); };

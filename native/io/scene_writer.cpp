@@ -51,7 +51,7 @@ class Writer {
       const std::string file = beside(fmt::format("instances_{}.npy", i));
       NumberArray numbers{{array.object_to_world().size(), 4, 4}, {}};
       numbers.numbers.reserve(16 * numbers.shape[0]);
-      for (const glm::dmat4& transform : array.object_to_world()) {
+      for (const glm::dmat4 transform : array.object_to_world()) {
         const glm::dmat4 rows = glm::transpose(transform);
         const std::span<const double> values(glm::value_ptr(rows), 16);
         numbers.numbers.insert(numbers.numbers.end(), values.begin(), values.end());

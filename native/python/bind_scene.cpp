@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -114,21 +115,25 @@ void bind_advice(py::module_& module) {
       "to be near enough for its size and shape. Lengths are those that sigma_a and sigma_s are per.");
 }
 
-std::vector<glm::dmat4> to_matrices(const Array<double>& array) {
+template <typename Number>
+std::span<const Number> numbers_of(const Array<Number>& array) {
+  return {array.data(), static_cast<std::size_t>(array.size())};
+}
+
+// Blender's are of single precision: no copy is made of them in double.
+scene::Transforms to_transforms(const py::array& array) {
   if (array.ndim() != 3 || array.shape(1) != 4 || array.shape(2) != 4)
     throw Error("transforms must have shape (n, 4, 4); got {} dimensions, the last of {}.", array.ndim(),
                 array.ndim() > 0 ? array.shape(array.ndim() - 1) : 0);
-  std::vector<glm::dmat4> matrices(static_cast<std::size_t>(array.shape(0)));
-  for (std::size_t i = 0; i < matrices.size(); ++i)
-    matrices[i] = glm::transpose(glm::make_mat4(array.data() + 16 * i));  // numpy's rows are GLM's columns
-  return matrices;
+  if (py::isinstance<py::array_t<float>>(array)) return scene::Transforms::of_rows(numbers_of(Array<float>(array)));
+  return scene::Transforms::of_rows(numbers_of(Array<double>(array)));
 }
 
 Array<double> to_array_of_matrices(const scene::InstanceArray& instances) {
-  const std::vector<glm::dmat4>& matrices = instances.object_to_world();
+  const scene::Transforms& matrices = instances.object_to_world();
   Array<double> array({matrices.size(), std::size_t{4}, std::size_t{4}});
   double* number = array.mutable_data();
-  for (const glm::dmat4& matrix : matrices)
+  for (const glm::dmat4 matrix : matrices)
     for (int row = 0; row < 4; ++row)
       for (int column = 0; column < 4; ++column) *number++ = matrix[column][row];
   return array;
@@ -169,12 +174,13 @@ Factors from_factors(const scene::InstanceArray& array) {
 void bind_instance_array(py::module_& module) {
   py::class_<scene::InstanceArray>(module, "InstanceArray",
                                    "Many instances of one mesh with one material: grains of a heap, a transform each.")
-      .def(py::init([](std::shared_ptr<scene::Mesh> mesh, const scene::Material& material,
-                       const Array<double>& transforms, const Factors& factors) {
-             return scene::InstanceArray(std::move(mesh), material, to_matrices(transforms), to_factors(factors));
+      .def(py::init([](std::shared_ptr<scene::Mesh> mesh, const scene::Material& material, const py::array& transforms,
+                       const Factors& factors) {
+             return scene::InstanceArray(std::move(mesh), material, to_transforms(transforms), to_factors(factors));
            }),
            py::arg("mesh").none(false), py::arg("material"), py::arg("transforms"), py::arg("factors") = Factors{},
-           "transforms: (n, 4, 4) float64, object to world. factors: {parameter: (n, 3) float32} by which each "
+           "transforms: (n, 4, 4), object to world; float32 is kept as it is. factors: {parameter: (n, 3) float32} by "
+           "which each "
            "instance's sigma_a, sigma_s or reflectance is multiplied. Raises Error for another shape.")
       .def(
           "with_material",

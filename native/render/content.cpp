@@ -43,7 +43,7 @@ std::vector<scene::InstanceArray> gathered(const scene::Scene& scene, std::vecto
       std::vector<glm::dmat4> transforms;
       transforms.reserve(members.size());
       for (const std::size_t member : members) transforms.push_back(scene.instances[member].object_to_world);
-      arrays.emplace_back(first.mesh, first.material, std::move(transforms));
+      arrays.emplace_back(first.mesh, first.material, scene::Transforms(transforms));
     }
   std::sort(alone.begin(), alone.end());
   return arrays;
@@ -68,7 +68,7 @@ glm::dvec3 amid(const scene::Scene& scene, const std::optional<glm::dvec3>& befo
   for (const scene::Instance& instance : scene.instances)
     middles.include(middle(*instance.mesh, instance.object_to_world), 0.0);
   for (const scene::InstanceArray& array : scene.arrays)
-    for (const glm::dmat4& object_to_world : array.object_to_world())
+    for (const glm::dmat4 object_to_world : array.object_to_world())
       middles.include(middle(*array.mesh, object_to_world), 0.0);
   if (middles.empty()) return glm::dvec3(0.0);
   if (before && *before == glm::clamp(*before, middles.lower, middles.upper)) return *before;

@@ -54,7 +54,7 @@ double difference(const glm::dmat3& a, const glm::dmat3& b) {
 std::vector<InstanceClass> by_stretch(const scene::InstanceArray& array) {
   std::vector<InstanceClass> shapes;
   for (std::size_t i = 0; i < array.object_to_world().size(); ++i) {
-    const glm::dmat4& object_to_world = array.object_to_world()[i];
+    const glm::dmat4 object_to_world = array.object_to_world()[i];
     const glm::dmat3 shape = models::turn_and_stretch(glm::dmat3(object_to_world)).stretch / scale_of(object_to_world);
     const auto nearest =
         std::min_element(shapes.begin(), shapes.end(), [&](const InstanceClass& a, const InstanceClass& b) {

@@ -100,7 +100,7 @@ std::size_t most_classes(const InstanceArray& array) {
   if (!traits.grain_radius) return 32;
   double least = std::numeric_limits<double>::max();
   double most = 0.0;
-  for (const glm::dmat4& place : array.object_to_world()) {
+  for (const glm::dmat4 place : array.object_to_world()) {
     const double volume = std::abs(glm::determinant(glm::dmat3(place)));
     least = std::min(least, volume);
     most = std::max(most, volume);
@@ -115,7 +115,7 @@ std::size_t most_classes(const InstanceArray& array) {
 std::vector<InstanceArray> by_colour(const std::vector<InstanceArray>& arrays) {
   std::vector<InstanceArray> plain;
   for (const InstanceArray& array : arrays) {
-    const std::vector<glm::dmat4>& places = array.object_to_world();
+    const Transforms& places = array.object_to_world();
     const ColourFactors& factors = array.factors();
     if (!factors.any() || places.empty()) {
       plain.push_back(array);
@@ -126,10 +126,7 @@ std::vector<InstanceArray> by_colour(const std::vector<InstanceArray>& arrays) {
       material.sigma_a *= mean(factors.sigma_a, one.members);
       material.sigma_s *= mean(factors.sigma_s, one.members);
       material.reflectance = glm::min(material.reflectance * mean(factors.reflectance, one.members), glm::dvec3(1.0));
-      std::vector<glm::dmat4> of_class;
-      of_class.reserve(one.members.size());
-      for (const std::uint32_t i : one.members) of_class.push_back(places[i]);
-      plain.emplace_back(array.mesh, material, std::move(of_class));
+      plain.emplace_back(array.mesh, material, places.chosen(one.members));
     }
   }
   return plain;

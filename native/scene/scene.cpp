@@ -42,7 +42,7 @@ void validate(const Scene& scene) {
   for (const InstanceArray& array : scene.arrays) {
     require_mesh(array.mesh);
     validate(array.material);
-    for (const glm::dmat4& object_to_world : array.object_to_world()) require_invertible(object_to_world);
+    for (const glm::dmat4 object_to_world : array.object_to_world()) require_invertible(object_to_world);
     validate(array.factors(), array.object_to_world().size());
   }
   for (const Light& light : scene.lights) validate(light);

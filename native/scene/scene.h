@@ -13,6 +13,7 @@
 #include "scene/light.h"
 #include "scene/material.h"
 #include "scene/mesh.h"
+#include "scene/transforms.h"
 #include "scene/world.h"
 
 namespace mesograin::scene {
@@ -26,20 +27,19 @@ struct Instance {
 /// Many instances of one mesh and material: each is a transform, and a colour if they differ in it.
 class InstanceArray {
  public:
-  InstanceArray(MeshPointer of, const Material& with, std::vector<glm::dmat4> object_to_world,
-                ColourFactors factors = {})
+  InstanceArray(MeshPointer of, const Material& with, Transforms object_to_world, ColourFactors factors = {})
       : mesh(std::move(of)),
         material(with),
-        object_to_world_(std::make_shared<const std::vector<glm::dmat4>>(std::move(object_to_world))),
+        object_to_world_(std::make_shared<const Transforms>(std::move(object_to_world))),
         factors_(std::make_shared<const ColourFactors>(std::move(factors))) {}
 
   MeshPointer mesh;
   Material material;
-  const std::vector<glm::dmat4>& object_to_world() const { return *object_to_world_; }
+  const Transforms& object_to_world() const { return *object_to_world_; }
   const ColourFactors& factors() const { return *factors_; }
 
  private:
-  std::shared_ptr<const std::vector<glm::dmat4>> object_to_world_;  // copies of a scene share them
+  std::shared_ptr<const Transforms> object_to_world_;  // copies of a scene share them
   std::shared_ptr<const ColourFactors> factors_;
 };
 

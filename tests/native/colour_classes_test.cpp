@@ -25,13 +25,13 @@ InstanceArray varied(Model model, std::size_t count, ColourFactors factors) {
   material.model = model;
   material.sigma_a = glm::dvec3(0.5);
   material.reflectance = glm::dvec3(0.8);
-  return {mesh, material, std::move(places), std::move(factors)};
+  return {mesh, material, Transforms(places), std::move(factors)};
 }
 
 /// The material that an instance got, by its place.
 Material of_instance(const std::vector<InstanceArray>& classes, std::size_t instance) {
   for (const InstanceArray& one : classes)
-    for (const glm::dmat4& place : one.object_to_world())
+    for (const glm::dmat4 place : one.object_to_world())
       if (place[3].x == static_cast<double>(instance)) return one.material;
   ADD_FAILURE() << "instance " << instance << " is in no class";
   return {};

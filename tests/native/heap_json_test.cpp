@@ -41,7 +41,7 @@ Json heap_of(const Json& instances) {
 
 SceneFile parse(const Json& json, const SceneChoices& choices = {}) { return parse_scene(json.dump(), {}, choices); }
 
-std::vector<glm::dmat4> places(const test::TemporaryFolder& folder, const Json& instances) {
+Transforms places(const test::TemporaryFolder& folder, const Json& instances) {
   return parse_scene(heap_of(instances).dump(), folder / "", {}).scene.arrays[0].object_to_world();
 }
 
@@ -53,7 +53,7 @@ TEST(HeapJson, EveryInstanceArrives) {
   ASSERT_EQ(file.scene.instances.size(), 1U);
   EXPECT_EQ(file.scene.instances[0].material.model, Model::lambert);
   ASSERT_EQ(file.scene.arrays.size(), 2U);
-  const std::vector<glm::dmat4>& first = file.scene.arrays[0].object_to_world();
+  const Transforms& first = file.scene.arrays[0].object_to_world();
   ASSERT_EQ(first.size(), 2U);
   EXPECT_EQ(first[0], glm::scale(glm::translate(glm::dmat4(1.0), {1, 2, 3}), glm::dvec3(2.0)));
   EXPECT_EQ(first[1], glm::scale(glm::translate(glm::dmat4(1.0), {4, 5, 6}), glm::dvec3(1.0)));

@@ -45,7 +45,7 @@ scene::Scene array_of(const scene::MeshPointer& mesh, const scene::Material& mat
                       std::vector<scene::Light> lights) {
   scene::Scene scene;
   scene.lights = std::move(lights);
-  scene.arrays.emplace_back(mesh, material, std::move(places));
+  scene.arrays.emplace_back(mesh, material, scene::Transforms(places));
   // So that an array can be held against grains one by one.
   scene.exchange = scene::Exchange::off;
   return scene;
@@ -201,7 +201,8 @@ TEST_F(HeapTest, ManyCastMaterialsAreEachShadedWithTheirOwn) {
     scene::Material material;
     material.reflectance = glm::dvec3(0.2 + 0.6 * i / (side * side), 0.5, 0.8 - 0.6 * i / (side * side));
     const glm::dmat4 place = glm::translate(glm::dmat4(1.0), glm::dvec3(i % side, i / side, 0.0));
-    scene.arrays.emplace_back(ball, material, std::vector<glm::dmat4>{glm::scale(place, glm::dvec3(0.45))});
+    const glm::dmat4 placed = glm::scale(place, glm::dvec3(0.45));
+    scene.arrays.emplace_back(ball, material, scene::Transforms({&placed, 1}));
   }
   scene.exchange = scene::Exchange::off;
   const scene::Camera camera{glm::translate(glm::dmat4(1.0), glm::dvec3(0.5 - side / 2.0, 0.5 - side / 2.0, -5.0)),
@@ -428,7 +429,8 @@ TEST_F(HeapTest, ACancelledSampleAddsNothing) {
 TEST_F(HeapTest, AnArrayWhoseTransformCannotBeInvertedIsRefused) {
   const auto ball = std::make_shared<scene::Mesh>(scene::unit_sphere(8, 4));
   View view(8, 8);
-  const scene::Scene scene = array_of(ball, {}, {glm::dmat4(1.0), glm::dmat4(0.0)}, {});
+  const scene::Scene scene =
+      array_of(ball, {}, {glm::dmat4(1.0), glm::scale(glm::dmat4(1.0), glm::dvec3(1.0, 0.0, 1.0))}, {});
   test::expect_error([&] { view.set_scene(scene); }, "transform must be finite and invertible");
 }
 

@@ -131,7 +131,7 @@ std::vector<float> picture(bool array, render::Visibility visibility, const Came
   }
   Scene scene{{}, {sun}};
   if (array) {
-    scene.arrays.emplace_back(ball, material, matrices);
+    scene.arrays.emplace_back(ball, material, scene::Transforms(matrices));
   } else {
     for (const glm::dmat4& matrix : matrices) {
       // Too few of one material to become an array.
