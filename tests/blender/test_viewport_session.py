@@ -141,6 +141,17 @@ def test_no_thread_of_python_draws(drag):
     assert session.busy and set(threading.enumerate()) == before
 
 
+def test_what_is_said_about_a_picture_is_asked_before_the_next_samples_begin(drag):
+    # The view would answer once these are drawn, and Blender's window would wait for that.
+    _, session = drag(sample_seconds=0.0, redraw_seconds=0.01)
+    view, session._view = session._view, None
+    try:
+        assert session.timings and all(milliseconds >= 0.0 for _, milliseconds in session.timings)
+        assert session.exchange is None
+    finally:
+        session._view = view
+
+
 def test_transport_is_waited_for_by_nobody_and_comes_into_the_picture(native, blend_files):
     bpy.ops.wm.open_mainfile(filepath=str(blend_files / "sphere.blend"))
     grain = bpy.data.materials["Translucent"].mesograin

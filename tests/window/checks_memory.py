@@ -1,24 +1,15 @@
 # What a long day's operations leave in memory, each done over and over: look_at_memory.py is how it is asked, by hand.
-import ctypes
-import gc
 import os
 
 import bpy
 import numpy as np
 from mesograin.engine import engine
-from monkey import resident
+from resident import settled
 
 ENGINE = os.environ.get("MESOGRAIN_ENGINE", "MESOGRAIN")  # another one tells what Blender itself keeps
 ROUNDS = int(os.environ.get("MESOGRAIN_ROUNDS", "40"))
 TIMES = 5  # of a round
 AT_REST = 0.4  # s
-
-
-def settled():
-    """Resident bytes once nothing that is free is kept."""
-    gc.collect()
-    ctypes.CDLL("libc.so.6").malloc_trim(0)
-    return resident()
 
 
 def ours(window):

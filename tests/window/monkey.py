@@ -1,6 +1,5 @@
 # A monkey at Blender's window: does one operation after the other, drawn by a seed, and keeps book of memory and time.
-import ctypes
-import gc
+import faulthandler
 import inspect
 import random
 import statistics
@@ -9,6 +8,7 @@ import time
 
 import bpy
 import monkey_work
+import resident
 from mesograin import compat
 from mesograin.engine import status
 
@@ -146,8 +146,6 @@ class Monkey:
                     bpy.ops.screen.region_quadview()
         yield from self.window.seconds(0.5)
         bpy.ops.outliner.orphans_purge(do_recursive=True)
-        gc.collect()
-        ctypes.CDLL("libc.so.6").malloc_trim(0)
         yield from self.window.seconds(0.5)
 
     def _open_once_drawn(self, path):
@@ -169,8 +167,8 @@ class Monkey:
 
         def visit_home():
             yield from self.home()
-            memory.append(resident())
-            print(f"monkey at home: {memory[-1] / 1e6:.0f} MB, {self.window.native.sent()['programs']} programs",
+            memory.append(resident.settled())
+            print(f"monkey at home: {memory[-1] / 1e6:.0f} MB, {resident.holders()}, {self.window.native.sent()}",
                   flush=True)
 
         weights, functions = zip(*monkey_work.WORK)
@@ -179,7 +177,9 @@ class Monkey:
                 yield from visit_home()
             function = self.random.choices(functions, weights)[0]
             print(f"monkey {number}: {function.__name__}", flush=True)
+            faulthandler.dump_traceback_later(TOO_LONG)  # who it is that Blender waits for
             yield from self._do(function)
+            faulthandler.cancel_dump_traceback_later()
             yield from self.pause()
             assert self.window._take_gl_errors() == [], function.__name__
         yield from visit_home()
@@ -204,14 +204,6 @@ class Monkey:
             self.longest = took, function.__name__
         if took > TOO_LONG:
             print(f"monkey: {function.__name__} took {took:.1f} s; {status.complaints()}", flush=True)
-
-
-def resident():
-    """Bytes of this process in memory."""
-    for line in open("/proc/self/status", encoding="ascii"):
-        if line.startswith("VmRSS"):
-            return 1024 * int(line.split()[1])
-    raise AssertionError("Linux does not say VmRSS")
 
 
 def growth(memory):

@@ -207,8 +207,8 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
         line = _line(session.samples, scene.mesograin.viewport_samples, warnings)
         share = session.preparing
         self.update_stats("", line if share is None else f"{_preparing(share)} | {line}")
-        if status.put(status.VIEWPORT, status.Status(session.samples, region.width, region.height, session.timings(),
-                                                     warnings, exchange=session.exchange())):
+        if status.put(status.VIEWPORT, status.Status(session.samples, region.width, region.height, session.timings,
+                                                     warnings, exchange=session.exchange)):
             _redraw_panels()
 
     def _draw_texture(self, scene, region):

@@ -24,6 +24,8 @@ class Session:
     def __init__(self):
         self.cache = meshes.MeshCache()
         self.samples = 0  # in the picture last returned by `advance`; 0 after a change
+        self.timings = ()  # (pass, milliseconds) of the picture last read
+        self.exchange = None  # status.Exchange of it, or None
         self.stopped = False
         self._values = None  # of the scene that was last asked for
         self._camera = None
@@ -93,13 +95,6 @@ class Session:
     def picture(self):
         """The picture as it is, as `advance` returns it; waits for samples under way. None before the first."""
         return self._read() if self._seen else None
-
-    def timings(self):
-        return tuple((timing["pass"], timing["milliseconds"]) for timing in self._view.timings())
-
-    def exchange(self):
-        """status.Exchange of what is drawn, or None."""
-        return status.exchange(self._view)
 
     @property
     def busy(self):
@@ -222,6 +217,9 @@ class Session:
         if self._pixels is None or self._pixels.shape[:2] != (height, width):
             self._pixels = np.empty((height, width, 4), dtype=np.float32)
         self._view.read(self._pixels)
+        # Asked along with the picture: later they would wait for the samples that are under way by then.
+        self.timings = tuple((timing["pass"], timing["milliseconds"]) for timing in self._view.timings())
+        self.exchange = status.exchange(self._view)
         np.minimum(self._pixels, LARGEST_DISPLAYED, out=self._pixels)
         if self._fade:
             self._fade_over()
