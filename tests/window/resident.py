@@ -1,5 +1,6 @@
 # What a Blender in a window has in memory, and who holds it.
-"""Debian's Blender allocates by jemalloc, others by glibc: both are asked, where they are there."""
+"""Debian's Blender 3.4 and 4.3 allocate by jemalloc, others by glibc."""
+
 import collections
 import ctypes
 import gc
@@ -22,7 +23,7 @@ def settled():
 
 
 def holders():
-    """{what: megabytes}: of files that are mapped, of the rest; of this, what is allocated now, by anybody in this process
+    """{what: megabytes}: of mapped files, and of the rest; of this what is allocated now, by anybody in this process
     (jemalloc alone tells), and the pages in which that lies."""
     megabytes = collections.Counter()
     with open("/proc/self/smaps", encoding="ascii", errors="replace") as smaps:
