@@ -31,6 +31,7 @@ MATERIALS = {
     "albedo .9": {"model": "model_2", "sigma_a": (0.3,) * 3, "sigma_s": (2.7,) * 3, "boundary": "index_matched"},
     "albedo .999": {"model": "model_2", "sigma_a": (0.003,) * 3, "sigma_s": (2.997,) * 3, "boundary": "index_matched"},
     "dielectric": {"model": "model_2", "sigma_a": (0.003,) * 3, "sigma_s": (2.997,) * 3, "eta": 1.3},
+    "clear": {"model": "model_2", "sigma_a": (0.0002,) * 3, "sigma_s": (0.1998,) * 3, "eta": 1.5},
 }
 PARTS = ("tables", "links", "sources", "solutions", "renewed")
 CHANGES = ["slider", "light", "sky", "grain", "grains"]
