@@ -3,6 +3,7 @@ import math
 import types
 
 import bpy
+import mathutils
 import numpy as np
 import pytest
 from mesograin import compat
@@ -119,6 +120,16 @@ def test_a_viewport_shows_it_through_the_camera_only():
             rendered = export.camera_from_scene(evaluated, WIDTH, HEIGHT).lens
             assert seen.lens.focus_distance == pytest.approx(rendered.focus_distance, rel=1e-5)
             assert seen.lens.aperture_radius == rendered.aperture_radius
+
+
+def test_a_viewport_says_that_its_camera_is_scaled_to_nothing(native):
+    scene, _ = scene_of_balls()
+    view = types.SimpleNamespace(view_perspective="CAMERA", view_matrix=mathutils.Matrix.Diagonal((1.0, 0.0, 1.0, 1.0)),
+                                 window_matrix=mathutils.Matrix())
+    context = types.SimpleNamespace(region_data=view,
+                                    space_data=types.SimpleNamespace(use_local_camera=False, camera=None))
+    with pytest.raises(native.Error, match=f"Camera '{scene.camera.name}' is scaled to nothing"):
+        engine._viewport_camera(context, bpy.context.evaluated_depsgraph_get())
 
 
 def test_a_comparison_is_sharp_on_both_sides():

@@ -110,6 +110,16 @@ def test_a_pile_fills_a_box_and_lies_on_a_surface(native):
     assert min(heights) > 0.07 and heap.location.x == pytest.approx(7.0, abs=1e-5)
 
 
+def test_a_pile_lies_on_a_plane_of_no_height(native):
+    bpy.ops.mesh.primitive_plane_add(size=4.0, location=(0.0, 0.0, 1.0))
+    bpy.context.object.scale.z = 0.0
+    bpy.context.view_layer.update()
+    assert bpy.ops.mesograin.add_pile(count=100, size=0.1, place="ACTIVE") == {"FINISHED"}
+    heap = bpy.context.object
+    heights = [(heap.matrix_world @ vertex.co).z for vertex in heap.data.vertices]
+    assert 1.07 < min(heights) < 1.2
+
+
 def test_mistakes_are_said_in_a_sentence(native):
     with pytest.raises(RuntimeError, match="no active mesh that grains could fall on"):
         bpy.ops.mesograin.add_pile(count=10, place="ACTIVE")

@@ -297,13 +297,15 @@ def _replaces_geometry(update):
 
 def _viewport_camera(context, depsgraph):
     view, space = context.region_data, context.space_data
+    to_view = np.array(view.view_matrix, dtype=np.float64)
     shown = None
     if view.view_perspective == "CAMERA":
         camera = (space.camera if space.use_local_camera else None) or depsgraph.scene.camera
+        if camera is not None:
+            export.require_placed(camera, to_view)
         if camera is not None and camera.type == "CAMERA":
-            shown = lens.of_camera(camera.evaluated_get(depsgraph), view.view_matrix.inverted())
-    return native_module.get().Camera(np.array(view.view_matrix, dtype=np.float64),
-                                      np.array(view.window_matrix, dtype=np.float64), shown)
+            shown = lens.of_camera(camera.evaluated_get(depsgraph), view.view_matrix.inverted_safe())
+    return native_module.get().Camera(to_view, np.array(view.window_matrix, dtype=np.float64), shown)
 
 
 def _texture(pixels):

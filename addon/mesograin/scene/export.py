@@ -159,6 +159,13 @@ class Eye(typing.NamedTuple):
     shift_x: float  # of the lens, as a camera has it
 
 
+def require_placed(camera, matrix):
+    """Raises native.Error if a camera's (4, 4) `matrix`, to the world or from there, has no inverse."""
+    if not np.isfinite(matrix).all() or np.linalg.det(matrix) == 0.0:
+        raise native_module.get().Error(f"Camera '{camera.name}' is scaled to nothing, or its place is no number: clear "
+                                        "its scale (Object > Clear > Scale) and place it anew.")
+
+
 def camera_from_scene(depsgraph, width, height, camera=None, region=None, eye=None, sharp=False):
     """native.Camera of the scene's active camera (or `camera`) for a picture of width x height pixels, or for a Region
     of it: perspective or orthographic, with sensor fit, shift, pixel aspect and depth of field as Blender has them.
@@ -181,9 +188,7 @@ def camera_from_scene(depsgraph, width, height, camera=None, region=None, eye=No
     # A camera's scale does not scale its view.
     placed = (eye.to_world if eye else camera.matrix_world).normalized()
     to_world = np.array(placed, dtype=np.float64)
-    if not np.isfinite(to_world).all() or np.linalg.det(to_world) == 0.0:
-        raise native.Error(f"Camera '{camera.name}' is scaled to nothing, or its place is no number: clear its scale "
-                           "(Object > Clear > Scale) and place it anew.")
+    require_placed(camera, to_world)
     try:
         return native.Camera(np.linalg.inv(to_world), to_clip, None if sharp else lens.of_camera(camera, placed))
     except native.Error as error:

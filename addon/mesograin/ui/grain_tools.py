@@ -184,7 +184,7 @@ def _surface(context):
     if not min(span[0], span[1]) > 0.0 or not evaluated.data.polygons:
         raise _NoSurface(f"Object '{active.name}' has no surface that grains could fall on from above.")
     columns, rows = (max(2, int(round(HEIGHT_SAMPLES * span[axis] / max(span[:2])))) for axis in (0, 1))
-    to_local = active.matrix_world.inverted()
+    to_local = active.matrix_world.inverted_safe()  # a plane may be scaled to nothing along its normal
     down = (to_local.to_3x3() @ Vector((0.0, 0.0, -1.0))).normalized()
     heights = []
     for y in np.linspace(lower[1], upper[1], rows):
