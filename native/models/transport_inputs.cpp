@@ -94,12 +94,13 @@ Volume sources_volume(const StoredTransport& stored) {
 
 // Octahedral maps, one below the other, each with a frame of the texels across its edges: four terms a texel (a grey
 // medium) or the three channels of a term.
-Table lobes_table(const StoredTransport& stored) {
+Volume lobes_volume(const StoredTransport& stored) {
   constexpr int side = transport::octahedron_side;
   constexpr int framed = side + 2;
   const bool grey = stored.channels == 1;
   const int blocks = grey ? stored.terms / terms_a_texel : stored.terms;
-  Table table{framed, framed * blocks, {}};
+  const int components = grey ? terms_a_texel : 3;
+  Volume maps{framed, framed * blocks, 1, components, {}};
   for (int block = 0; block < blocks; ++block)
     for (int y = -1; y <= side; ++y)
       for (int x = -1; x <= side; ++x) {
@@ -113,15 +114,13 @@ Table lobes_table(const StoredTransport& stored) {
           v = v < 0 ? 0 : side - 1;
           u = side - 1 - u;
         }
-        glm::vec4 texel(0.0F);
-        for (int component = 0; component < (grey ? terms_a_texel : 3); ++component) {
+        for (int component = 0; component < components; ++component) {
           const int index = grey ? ((block * terms_a_texel + component) * side + v) * side + u
                                  : ((block * side + v) * side + u) * 3 + component;
-          texel[component] = stored.lobes[static_cast<std::size_t>(index)];
+          maps.texels.push_back(stored.lobes[static_cast<std::size_t>(index)]);
         }
-        table.texels.push_back(texel);
       }
-  return table;
+  return maps;
 }
 
 }  // namespace
@@ -172,7 +171,8 @@ MaterialInputs prototype_inputs(const scene::Material& material, const StoredTra
       is_walked(material) ? stored.unit * material.scale * (material.sigma_a + material.sigma_s) : sigma_t;
   if (stored.mean_chord * std::min({unscattered.r, unscattered.g, unscattered.b}) < most_clear)
     inputs.defines.emplace_back("CLEAR");
-  if (stored.terms > (stored.channels == 1 ? 16 : 8)) inputs.defines.emplace_back("MANY_TERMS");
+  const int fewest = stored.channels == 1 ? 16 : stored.has_unscattered ? 8 : 10;
+  if (stored.terms > fewest) inputs.defines.emplace_back("MANY_TERMS");
   inputs.uniforms["stored.x_axis"] = stored.axes[0];
   inputs.uniforms["stored.y_axis"] = stored.axes[1];
   inputs.uniforms["stored.z_axis"] = stored.axes[2];
@@ -181,10 +181,14 @@ MaterialInputs prototype_inputs(const scene::Material& material, const StoredTra
   inputs.uniforms["stored.last_node"] = glm::vec3(stored.size - 1);
   inputs.uniforms["stored.units"] = static_cast<float>(1.0 / stored.unit);
   inputs.uniforms["stored.sigma_t"] = glm::vec3(sigma_t);
+  if (!stored.has_unscattered) {
+    inputs.uniforms["stored.albedo"] = glm::vec3(stored_medium(material).albedo);
+    if (stored.convex) inputs.defines.emplace_back("CONVEX");
+  }
   if (is_walked(material)) add_forward(material, stored, inputs);
   // Of the sphere that has this mean chord.
   add_light_about(material, 0.75 * stored.unit * stored.mean_chord, inputs);
-  inputs.tables["lobes"] = lobes_table(stored);
+  inputs.volumes["lobes"] = lobes_volume(stored);
   inputs.volumes["sources"] = sources_volume(stored);
   inputs.volumes["distances"] = {stored.size.x, stored.size.y, stored.size.z, 1, stored.distances};
   return inputs;

@@ -23,13 +23,25 @@ constexpr int solved_terms = 48;
 
 int stored_terms(const StoredMedium& medium, const Quality& quality) {
   const int grey = quality.many_terms ? 24 : 16;
-  return medium.grey() ? grey : grey / 2;
+  if (medium.grey()) return grey;
+  // Where nothing refracts there is less to tell, whose every channel shows.
+  return medium.eta != 1.0 ? grey / 2 : quality.many_terms ? 16 : 10;
 }
 
 /// A few functions of the direction, and how much of each is in every row.
 struct Terms {
   Lights amounts;  ///< a column a term
   Lights lobes;    ///< a row a term, a column a texel of the octahedral map
+
+  /// Half precision takes lobes of at most 1.
+  void make_lobes_at_most_one() {
+    for (Eigen::Index term = 0; term < lobes.rows(); ++term) {
+      const float most = lobes.row(term).cwiseAbs().maxCoeff();
+      if (most <= 0.0F) continue;
+      lobes.row(term) /= most;
+      amounts.col(term) *= most;
+    }
+  }
 };
 
 /// What is found of the row space of some lights: directions of it, a column each, and how much of each is in every
@@ -115,6 +127,8 @@ StoredTransport compute_transport(Walks& walks, const StoredMedium& medium, cons
                          .mean_chord = 4.0 * body.volume() / body.area(),  // Cauchy
                          .terms = stored_terms(medium, walks.quality()),
                          .channels = medium.grey() ? 1 : 3,
+                         .convex = body.convex(),
+                         .has_unscattered = medium.eta != 1.0,
                          .distances = grid.distances(),
                          .sources = {},
                          .lobes = {}};
@@ -149,8 +163,13 @@ StoredTransport compute_transport(Walks& walks, const StoredMedium& medium, cons
         solve_multiple(exchanges[e], medium.albedo[channel], first.amounts,
                        part_of(effort, 0.8 + 0.2 * channel / channels, 0.8 + 0.2 * (channel + 1) / channels));
     // What is scattered again is told by these terms well enough, and all that is not is known.
-    light += (solved - first.amounts) * first.lobes;
+    const Lights scattered = (solved - first.amounts) * first.lobes;
+    if (stored.has_unscattered)
+      light += scattered;
+    else
+      light = scattered;
     Terms terms = principal_terms(seen, light, first, kept);
+    terms.make_lobes_at_most_one();
     terms.amounts *= static_cast<float>(medium.albedo[channel]);
     const auto index = [&](std::size_t count, int term, std::size_t of) {
       return (static_cast<std::size_t>(term) * count + of) * static_cast<std::size_t>(channels) +

@@ -33,6 +33,8 @@ struct StoredTransport {
   double mean_chord = 1.0;       ///< through the body, in its units
   int terms = 0;                 ///< products that are summed
   int channels = 3;              ///< 1 for a grey medium
+  bool convex = false;           ///< no line leaves the body and enters it again
+  bool has_unscattered = true;   ///< sources are also fed by light that nothing has scattered before
   std::vector<float> distances;  ///< from the surface at every node, negative inside; x runs fastest
   std::vector<float> sources;  ///< [term][node][channel]: radiance that a mean free path would send out, per irradiance
   std::vector<float> lobes;    ///< [term][texel of the octahedral map that the light comes from][channel]

@@ -12,7 +12,7 @@
 namespace mesograin::transport {
 namespace {
 
-constexpr std::string_view title = "mesograin transport 3\n";
+constexpr std::string_view title = "mesograin transport 4\n";
 constexpr std::size_t name_length = 32;
 
 template <typename Value>
@@ -79,6 +79,8 @@ std::string to_bytes(const StoredTransport& stored, std::string_view about) {
   put(bytes, stored.mean_chord);
   put(bytes, stored.terms);
   put(bytes, stored.channels);
+  put(bytes, stored.convex);
+  put(bytes, stored.has_unscattered);
   put_floats(bytes, stored.distances);
   for (const float source : stored.sources) put(bytes, glm::packHalf1x16(source));
   put_floats(bytes, stored.lobes);
@@ -102,6 +104,8 @@ std::optional<StoredTransport> from_bytes(std::string_view bytes, std::string_vi
   reader.take(&stored.mean_chord, 1);
   reader.take(&stored.terms, 1);
   reader.take(&stored.channels, 1);
+  reader.take(&stored.convex, 1);
+  reader.take(&stored.has_unscattered, 1);
   if (reader.failed()) return std::nullopt;
   const auto nodes = static_cast<std::size_t>(stored.size.x) * static_cast<std::size_t>(stored.size.y) *
                      static_cast<std::size_t>(stored.size.z);

@@ -6,7 +6,8 @@
 // What is chosen at compile time (models::transport_inputs), besides what dielectric.glsl names:
 //   CLEAR                so much crosses the grain unscattered that it is seen
 //   WALKED               light scatters forwards: what similarity does not tell is found by walks
-//   MANY_TERMS           a half more of them: the grain is not of the thickest
+//   CONVEX               no line leaves the grain and enters it again
+//   MANY_TERMS           more of them: the grain is not of the thickest
 //   GREY                 red, green and blue are the same medium: a texel of `sources` holds four terms, else one in three colours
 #include "heap/open_beyond.glsl"
 #include "models/dielectric.glsl"
@@ -29,6 +30,9 @@ struct Stored {
   vec3 sigma_t;
   float units;  // of the body, a scene unit
   float eta;
+#ifndef REFRACTION
+  vec3 albedo;
+#endif
 };
 uniform Stored stored;
 #ifndef INSTANCED
@@ -46,17 +50,21 @@ const int TERMS = 16;
 #else
 #define Spectrum vec3
 #define SPECTRUM(value) (value).rgb
-#ifdef MANY_TERMS
+#if defined(REFRACTION) && defined(MANY_TERMS)
 const int TERMS = 12;
-#else
+#elif defined(REFRACTION)
 const int TERMS = 8;
+#elif defined(MANY_TERMS)
+const int TERMS = 16;
+#else
+const int TERMS = 10;
 #endif
 #endif
 
 // Terms of the source function: of the place, blocks of nodes behind one another; of the light's direction, octahedral maps with frames below
 // one another, four terms a texel or three channels.
 uniform sampler3D sources;
-uniform sampler2D lobes;
+uniform sampler3D lobes;      // one texel deep
 uniform sampler3D distances;  // from the surface, negative inside
 
 #ifdef GREY
@@ -65,15 +73,17 @@ const int LOBE_TEXELS = TERMS / 4;
 const int LOBE_TEXELS = TERMS;
 #endif
 vec4 lobe[LOBE_TEXELS];  // four terms of a grey medium, three channels of one term
+vec3 looked_up;          // the direction towards the light that they tell of
 
 void look_up_lobes(vec3 to_light) {
+  looked_up = to_light;
   vec2 square = to_light.xy / (abs(to_light.x) + abs(to_light.y) + abs(to_light.z));
   vec2 side = vec2(square.x < 0.0 ? -1.0 : 1.0, square.y < 0.0 ? -1.0 : 1.0);
   if (to_light.z < 0.0) square = (1.0 - abs(square.yx)) * side;
   float framed = float(textureSize(lobes, 0).x);
   vec2 texel = 1.0 + (framed - 2.0) * (0.5 + 0.5 * square);
   for (int i = 0; i < LOBE_TEXELS; ++i)
-    lobe[i] = texture(lobes, vec2(texel.x, texel.y + float(i) * framed) / vec2(framed, framed * float(LOBE_TEXELS)));
+    lobe[i] = texture(lobes, vec3(vec2(texel.x, texel.y + float(i) * framed) / vec2(framed, framed * float(LOBE_TEXELS)), 0.5));
 }
 
 vec3 to_nodes(vec3 place) { return clamp((place - stored.lower) * stored.nodes_a_unit, vec3(0.0), stored.last_node); }
@@ -89,7 +99,42 @@ vec3 outwards_at(vec3 place) {
   return gradient * inversesqrt(max(dot(gradient, gradient), 1e-12));
 }
 
-// Radiance that a mean free path of the medium adds, per irradiance.
+// How far it is to the side of the body's box that a line inside it leaves through.
+float way_to_box(vec3 place, vec3 direction) {
+  vec3 upper = stored.lower + stored.last_node / stored.nodes_a_unit;
+  vec3 steep =
+      vec3(abs(direction.x) > 1e-6 ? direction.x : 1e-6, abs(direction.y) > 1e-6 ? direction.y : 1e-6, abs(direction.z) > 1e-6 ? direction.z : 1e-6);
+  vec3 ways = max((stored.lower - place) / steep, (upper - place) / steep);
+  return max(min(ways.x, min(ways.y, ways.z)), 0.0);
+}
+
+#ifndef REFRACTION
+const int MOST_STEPS_ASIDE = 32;
+
+// How much of the straight line to a light is inside the grain, which it may leave and enter again.
+float way_of_light(vec3 place, vec3 to_light) {
+  float furthest = way_to_box(place, to_light);
+  vec3 spacing = 1.0 / stored.nodes_a_unit;
+  float shortest = 0.3 * min(spacing.x, min(spacing.y, spacing.z));
+  float before = distance_at(place);
+  float way = 0.0;
+  float inside = 0.0;
+  for (int i = 0; i < MOST_STEPS_ASIDE && way < furthest; ++i) {
+    float step = min(max(abs(before), shortest), furthest - way);
+    way += step;
+    float after = distance_at(place + way * to_light);
+    float below = max(-before, 0.0) + max(-after, 0.0);
+    inside += step * below / max(abs(before) + abs(after), 1e-9);
+#ifdef CONVEX
+    if (after > 0.0) break;
+#endif
+    before = after;
+  }
+  return inside;
+}
+#endif
+
+// Radiance that a mean free path of the medium adds, per irradiance of the light that was looked up.
 Spectrum source_at(vec3 place) {
   vec3 size = stored.last_node + 1.0;
   vec3 node = to_nodes(place) + 0.5;
@@ -103,16 +148,12 @@ Spectrum source_at(vec3 place) {
     sum += texel.rgb * lobe[block].rgb;
 #endif
   }
-  return max(sum, Spectrum(0.0));
-}
-
-// How far it is to the side of the body's box that a line inside it leaves through.
-float way_to_box(vec3 place, vec3 direction) {
-  vec3 upper = stored.lower + stored.last_node / stored.nodes_a_unit;
-  vec3 steep =
-      vec3(abs(direction.x) > 1e-6 ? direction.x : 1e-6, abs(direction.y) > 1e-6 ? direction.y : 1e-6, abs(direction.z) > 1e-6 ? direction.z : 1e-6);
-  vec3 ways = max((stored.lower - place) / steep, (upper - place) / steep);
-  return max(min(ways.x, min(ways.y, ways.z)), 0.0);
+  sum = max(sum, Spectrum(0.0));
+#ifndef REFRACTION
+  // Light that nothing has scattered comes straight. Its shadows are too sharp for few products: they would be blotches.
+  sum += SPECTRUM(stored.albedo) / (4.0 * PI) * exp(-SPECTRUM(stored.sigma_t) * way_of_light(place, looked_up));
+#endif
+  return sum;
 }
 
 const float FAR = 1e6;

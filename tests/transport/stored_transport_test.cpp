@@ -21,13 +21,14 @@ namespace {
 
 constexpr Quality coarse{.nodes = 2500, .light_across = 16, .way_across = 12};
 
-/// The source function under radiance 1 from everywhere, at nodes inside the body.
-std::vector<float> under_even_light(const StoredTransport& stored) {
+/// The source function under radiance 1 from everywhere, at nodes inside the body. What albedo 1
+/// scatters of light that comes straight is added where it is not stored: as much as each node sees of the outside.
+std::vector<float> under_even_light(const StoredTransport& stored, const Grid& grid, const Exchange& exchange) {
   const std::array<float, octahedron_texels> angles = octahedron_solid_angles();
   std::vector<float> sources;
   for (std::size_t node = 0; node < stored.nodes(); ++node) {
     if (stored.distances[node] >= 0.0F) continue;
-    double source = 0.0;
+    double source = stored.has_unscattered ? 0.0 : exchange.escape[static_cast<std::size_t>(grid.used()[node])];
     for (int term = 0; term < stored.terms; ++term) {
       double lobe = 0.0;
       for (int texel = 0; texel < octahedron_texels; ++texel)
@@ -43,10 +44,12 @@ std::vector<float> under_even_light(const StoredTransport& stored) {
 TEST(StoredTransport, KeepsItsEnergy) {
   for (const double eta : {1.0, 1.5})
     for (const double mean_free_paths : {0.1, 3.0, 10.0}) {
-      const Body body(cube());
-      const StoredTransport stored =
-          compute_transport(body, {glm::dvec3(mean_free_paths * body.unit()), glm::dvec3(1.0), eta}, coarse);
-      for (const float source : under_even_light(stored))
+      const auto body = std::make_shared<const Body>(cube());
+      Walks walks(body, eta, coarse, {});
+      const double sigma_t = mean_free_paths * body->unit();
+      const StoredTransport stored = compute_transport(walks, {glm::dvec3(sigma_t), glm::dvec3(1.0), eta});
+      EXPECT_EQ(stored.has_unscattered, eta != 1.0);
+      for (const float source : under_even_light(stored, walks.grid(), walks.exchange(sigma_t)))
         EXPECT_NEAR(source / (eta * eta), 1.0, 0.015) << "eta " << eta << ", " << mean_free_paths << " to the middle";
     }
 }

@@ -162,8 +162,8 @@ class Eye(typing.NamedTuple):
 def require_placed(camera, matrix):
     """Raises native.Error if a camera's (4, 4) `matrix`, to the world or from there, has no inverse."""
     if not np.isfinite(matrix).all() or np.linalg.det(matrix) == 0.0:
-        raise native_module.get().Error(f"Camera '{camera.name}' is scaled to nothing, or its place is no number: clear "
-                                        "its scale (Object > Clear > Scale) and place it anew.")
+        raise native_module.get().Error(f"Camera '{camera.name}' is scaled to nothing, or its place is no number: "
+                                        "clear its scale (Object > Clear > Scale) and place it anew.")
 
 
 def camera_from_scene(depsgraph, width, height, camera=None, region=None, eye=None, sharp=False):
