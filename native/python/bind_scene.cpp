@@ -129,14 +129,33 @@ scene::Transforms to_transforms(const py::array& array) {
   return scene::Transforms::of_rows(numbers_of(Array<double>(array)));
 }
 
-Array<double> to_array_of_matrices(const scene::InstanceArray& instances) {
-  const scene::Transforms& matrices = instances.object_to_world();
-  Array<double> array({matrices.size(), std::size_t{4}, std::size_t{4}});
-  double* number = array.mutable_data();
+template <typename Number>
+Array<Number> to_array_of_matrices(const scene::Transforms& matrices) {
+  Array<Number> array({matrices.size(), std::size_t{4}, std::size_t{4}});
+  Number* number = array.mutable_data();
   for (const glm::dmat4 matrix : matrices)
     for (int row = 0; row < 4; ++row)
-      for (int column = 0; column < 4; ++column) *number++ = matrix[column][row];
+      for (int column = 0; column < 4; ++column) *number++ = static_cast<Number>(matrix[column][row]);
   return array;
+}
+
+void bind_transforms(py::module_& module) {
+  py::class_<scene::Transforms, std::shared_ptr<scene::Transforms>>(
+      module, "Transforms", "Where the instances of arrays stand; scenes share it, so it is held but once.")
+      .def(py::init(&to_transforms), py::arg("matrices"),
+           "matrices: (n, 4, 4), object to world. Raises Error for another shape, or for a last row that is not 0, 0, "
+           "0, 1.")
+      .def(
+          "matrices",
+          [](const scene::Transforms& transforms) -> py::array {
+            if (transforms.single_precision()) return to_array_of_matrices<float>(transforms);
+            return to_array_of_matrices<double>(transforms);
+          },
+          "(n, 4, 4), as they were given: float32 where that holds them, else float64.")
+      .def("__len__", &scene::Transforms::size)
+      .def(
+          "__eq__", [](const scene::Transforms& a, const scene::Transforms& b) { return &a == &b || a == b; },
+          py::is_operator());
 }
 
 using Factors = std::map<std::string, Array<float>>;
@@ -174,14 +193,20 @@ Factors from_factors(const scene::InstanceArray& array) {
 void bind_instance_array(py::module_& module) {
   py::class_<scene::InstanceArray>(module, "InstanceArray",
                                    "Many instances of one mesh with one material: grains of a heap, a transform each.")
+      .def(py::init([](std::shared_ptr<scene::Mesh> mesh, const scene::Material& material,
+                       std::shared_ptr<scene::Transforms> transforms, const Factors& factors) {
+             return scene::InstanceArray(std::move(mesh), material, std::move(transforms), to_factors(factors));
+           }),
+           py::arg("mesh").none(false), py::arg("material"), py::arg("transforms").none(false),
+           py::arg("factors") = Factors{},
+           "transforms: Transforms, which is shared. factors: {parameter: (n, 3) float32} by which each instance's "
+           "sigma_a, sigma_s or reflectance is multiplied. Raises Error for another shape.")
       .def(py::init([](std::shared_ptr<scene::Mesh> mesh, const scene::Material& material, const py::array& transforms,
                        const Factors& factors) {
              return scene::InstanceArray(std::move(mesh), material, to_transforms(transforms), to_factors(factors));
            }),
            py::arg("mesh").none(false), py::arg("material"), py::arg("transforms"), py::arg("factors") = Factors{},
-           "transforms: (n, 4, 4), object to world; float32 is kept as it is. factors: {parameter: (n, 3) float32} by "
-           "which each "
-           "instance's sigma_a, sigma_s or reflectance is multiplied. Raises Error for another shape.")
+           "transforms: (n, 4, 4), as Transforms takes it.")
       .def(
           "with_material",
           [](const scene::InstanceArray& array, const scene::Material& material) {
@@ -193,7 +218,9 @@ void bind_instance_array(py::module_& module) {
       .def_property_readonly("mesh", &mesh_of<scene::InstanceArray>)
       .def_property_readonly("factors", &from_factors)
       .def_readonly("material", &scene::InstanceArray::material)
-      .def_property_readonly("transforms", &to_array_of_matrices)
+      .def_property_readonly(
+          "transforms",
+          [](const scene::InstanceArray& array) { return to_array_of_matrices<double>(array.object_to_world()); })
       .def("__len__", [](const scene::InstanceArray& array) { return array.object_to_world().size(); });
 }
 
@@ -254,6 +281,7 @@ void bind_camera(py::module_& module) {
 void bind_scene(py::module_& module) {
   bind_mesh_and_instance(module);
   bind_advice(module);
+  bind_transforms(module);
   bind_instance_array(module);
   bind_lens(module);
   bind_camera(module);

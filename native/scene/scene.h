@@ -28,9 +28,13 @@ struct Instance {
 class InstanceArray {
  public:
   InstanceArray(MeshPointer of, const Material& with, Transforms object_to_world, ColourFactors factors = {})
+      : InstanceArray(std::move(of), with, std::make_shared<const Transforms>(std::move(object_to_world)),
+                      std::move(factors)) {}
+  InstanceArray(MeshPointer of, const Material& with, std::shared_ptr<const Transforms> object_to_world,
+                ColourFactors factors = {})
       : mesh(std::move(of)),
         material(with),
-        object_to_world_(std::make_shared<const Transforms>(std::move(object_to_world))),
+        object_to_world_(std::move(object_to_world)),
         factors_(std::make_shared<const ColourFactors>(std::move(factors))) {}
 
   MeshPointer mesh;
@@ -39,7 +43,7 @@ class InstanceArray {
   const ColourFactors& factors() const { return *factors_; }
 
  private:
-  std::shared_ptr<const Transforms> object_to_world_;  // copies of a scene share them
+  std::shared_ptr<const Transforms> object_to_world_;  // copies of a scene, and who made them, share them
   std::shared_ptr<const ColourFactors> factors_;
 };
 

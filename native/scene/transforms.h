@@ -35,6 +35,11 @@ class Transforms {
   /// Those of these numbers, in their order.
   Transforms chosen(std::span<const std::uint32_t> numbers) const;
 
+  /// Whether single precision holds them.
+  bool single_precision() const { return columns_.index() == 0; }
+
+  bool operator==(const Transforms&) const = default;
+
  private:
   std::variant<std::vector<glm::mat4x3>, std::vector<glm::dmat4x3>> columns_;
 };

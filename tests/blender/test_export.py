@@ -60,7 +60,7 @@ def made(monkeypatch, native):
             arrays.append(arguments)
 
     class Recording:
-        Mesh, Error = Recorder, native.Error
+        Mesh, Error, Transforms = Recorder, native.Error, native.Transforms
 
     monkeypatch.setattr(meshes.native_module, "get", lambda: Recording)
     return arrays

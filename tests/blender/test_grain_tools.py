@@ -85,7 +85,7 @@ def test_a_pile_is_instances_that_do_not_overlap(native):
     values = read_scene()
     assert not values.instances and sum(len(heap) for heap in values.heaps) == 300 and len(values.heaps) == 3
     assert not any("no faces" in warning for warning in values.warnings), values.warnings
-    places = np.concatenate([np.frombuffer(heap.placings, np.float32).reshape(-1, 4, 4) for heap in values.heaps])
+    places = np.concatenate([heap.placings.matrices() for heap in values.heaps])
     radii = np.linalg.norm(places[:, :3, 0], axis=1)
     middles = places[:, :3, 3]
     apart = np.linalg.norm(middles[:, None] - middles[None], axis=-1) - radii[:, None] - radii[None]

@@ -32,7 +32,7 @@ def grid():
 
 
 def placings(heap):
-    return np.frombuffer(heap.placings, dtype=np.float32).reshape(-1, 4, 4)
+    return heap.placings.matrices()
 
 
 @pytest.mark.parametrize("begins_with", ["the instancer", "another object"])

@@ -107,7 +107,7 @@ def factors(parameter="reflectance"):
     """Of the grains of the only heap, laid out as amid_grains."""
     [heap] = read_scene().heaps
     numbers = np.frombuffer(dict(heap.factors)[parameter], dtype=np.float32).reshape(-1, 3)
-    places = np.frombuffer(heap.placings, dtype=np.float32).reshape(-1, 4, 4)[:, :2, 3]
+    places = heap.placings.matrices()[:, :2, 3]
     column, row = ((0.5 * places * (1.0, -1.0) + 0.5) * SIDE).astype(int).T
     found = np.full((SIDE, SIDE, 3), np.nan)
     found[row, column] = numbers

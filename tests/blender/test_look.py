@@ -2,6 +2,7 @@
 import bpy
 import numpy as np
 import pytest
+from mesograin import native_module
 from mesograin.scene import automatic, export, heaps, meshes, properties
 from mesograin.schema import presets as known
 from mesograin.ui import look, presets
@@ -132,7 +133,8 @@ def test_auto_of_a_heap_goes_by_its_middle_grain(material, native, large, model)
     placings = np.tile(np.eye(4, dtype=np.float32), (100, 1, 1))
     placings[:large, :3, :3] *= 60.0 * paths[1]
     placings[large:, :3, :3] *= paths[1]
-    heap = heaps.HeapValues("Heap", heaps.sphere(), export.material_values(material, 1.0), placings.tobytes())
+    transforms = native_module.get().Transforms(placings)
+    heap = heaps.HeapValues("Heap", heaps.sphere(), export.material_values(material, 1.0), transforms)
     drawn = automatic.with_model(heap)
     assert dict(drawn.material.values)["model"] == model and drawn.placings == heap.placings
 

@@ -17,25 +17,25 @@ ITSELF, HIDDEN = -1, -2
 
 @dataclasses.dataclass(frozen=True)
 class HeapValues:
-    """Many placings of one part of a mesh. placings: bytes of (n, 4, 4) float32, row by row, equal by content.
-    factors: (parameter, bytes of (n, 3) float32) pairs, by which each placing's differs from the material's."""
+    """Many placings of one part of a mesh, which the native scenes made of them share. factors: (parameter, bytes of
+    (n, 3) float32) pairs, by which each placing's differs from the material's."""
 
     name: str
     mesh: object  # native.Mesh, equal by identity
     material: object  # export.MaterialValues
-    placings: bytes
+    placings: object  # native.Transforms of (n, 4, 4) float32, equal by content
     factors: tuple = ()
 
     def __len__(self):
-        return len(self.placings) // 64
+        return len(self.placings)
 
     def each(self):
         """Tuples of 16 numbers, row by row."""
-        return map(tuple, np.frombuffer(self.placings, dtype=np.float32).reshape(-1, 16).tolist())
+        return map(tuple, self.placings.matrices().reshape(-1, 16).tolist())
 
     def typical(self):
         """The placing of the middle size, 16 numbers row by row."""
-        placings = np.frombuffer(self.placings, dtype=np.float32).reshape(-1, 4, 4)
+        placings = self.placings.matrices()
         sizes = np.abs(np.linalg.det(placings[:, :3, :3].astype(np.float64)))
         middle = np.argpartition(sizes, len(sizes) // 2)[len(sizes) // 2]
         return tuple(placings[middle].ravel().tolist())
@@ -48,9 +48,8 @@ class HeapValues:
 
     def to_native(self, native, material):
         """native.InstanceArray."""
-        placings = np.frombuffer(self.placings, dtype=np.float32).reshape(-1, 4, 4)
         factors = {name: np.frombuffer(numbers, dtype=np.float32).reshape(-1, 3) for name, numbers in self.factors}
-        return native.InstanceArray(self.mesh, material, placings, factors)
+        return native.InstanceArray(self.mesh, material, self.placings, factors)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -84,10 +83,12 @@ class Group:
         placings = self._placings
         drawn = _drawable(placings)
         kept = placings if drawn.all() else placings[drawn]
-        content = kept.tobytes()
-        heaps = [HeapValues(self.name, part.mesh, part.material, content, self._factors(part, drawn))
-                 for part in self._parts if len(kept)]
-        return heaps, len(placings) - len(kept)
+        left_out = len(placings) - len(kept)
+        if len(kept) == 0:
+            return [], left_out
+        shared = native_module.get().Transforms(kept)
+        return [HeapValues(self.name, part.mesh, part.material, shared, self._factors(part, drawn))
+                for part in self._parts], left_out
 
     def _factors(self, part, drawn):
         if part.variation is None or self._each is None:
