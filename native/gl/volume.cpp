@@ -26,4 +26,8 @@ void Volume::upload(GLenum components, const float* texels) {
   glTextureSubImage3D(name(), 0, 0, 0, 0, width(), height(), depth_, components, GL_FLOAT, texels);
 }
 
+void Volume::bind_image(GLuint unit, GLenum format) const {
+  glBindImageTexture(unit, name(), 0, GL_TRUE, 0, GL_WRITE_ONLY, format);
+}
+
 }  // namespace mesograin::gl

@@ -14,6 +14,11 @@ class Volume : public TextureStorage<GL_TEXTURE_3D> {
   /// Uploads tightly packed texels, x fastest, then y.
   void upload(GLenum components, const float* texels);
 
+  /// For compute shaders to write to all of it, as texels of its own format.
+  void bind_image(GLuint unit, GLenum format) const;
+
+  int depth() const { return depth_; }
+
  private:
   int depth_;
 };

@@ -93,6 +93,11 @@ void DeviceMaterial::become(scene::Model model, models::MaterialInputs inputs) {
   version_ = version;
 }
 
+const gl::Volume* DeviceMaterial::volume(const std::string& name) const {
+  const auto found = volumes_.find(name);
+  return found == volumes_.end() ? nullptr : &found->second;
+}
+
 void DeviceMaterial::bind(const gl::Program& program) const {
   program.use();
   for (const auto& [name, value] : uniforms_)
@@ -239,6 +244,15 @@ const gl::Program& DeviceCache::light_map_program(bool tessellated) {
   return programs_.find(tessellated ? "light_map tessellated" : "light_map", stages);
 }
 
+const gl::Program& DeviceCache::sum_program(const DeviceMaterial& material) {
+  std::vector<std::string> defines;
+  for (const std::string define : {"GREY", "MANY_TERMS", "REFRACTION"})
+    if (std::find(material.defines().begin(), material.defines().end(), define) != material.defines().end())
+      defines.push_back(define);
+  return programs_.find(fmt::format("sum_products {}", fmt::join(defines, " ")),
+                        {{GL_COMPUTE_SHADER, gl::ShaderSource({"passes/sum_products.comp"}, defines)}});
+}
+
 const gl::Program& DeviceCache::count_program() {
   return program("count", gl::ShaderSource({"passes/bake.vert"}, {}), gl::ShaderSource({"passes/count.frag"}, {}));
 }
@@ -263,6 +277,7 @@ const gl::Program& DeviceCache::shading(const DeviceMaterial& material, const Sh
   if (shading.lights_at_place) defines.emplace_back("LIGHTS_AT_PLACE");
   if (shading.near_lights) defines.emplace_back("NEAR_LIGHTS");
   if (shading.lights_about) defines.emplace_back("LIGHTS_ABOUT");
+  if (shading.summed) defines.emplace_back("SUMMED");
   if (shading.portion) defines.push_back(fmt::format("PORTION {}", static_cast<int>(*shading.portion)));
   return program(fmt::format("{} {} {}", pass, model, fmt::join(defines, " ")), gl::ShaderSource({vertex}, {}),
                  gl::ShaderSource({"passes/" + pass + ".frag", "models/" + model + ".glsl"}, defines));

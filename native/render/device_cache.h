@@ -43,6 +43,7 @@ struct Shading {
   bool lights_at_place = false;  ///< the place that is shaded draws its own directions of lights that have a place
   bool near_lights = false;      ///< such lights send each point of a grain that has light maps what they send there
   bool lights_about = false;     ///< and are so near that it matters where light comes in
+  bool summed = false;           ///< what is stored of a prototype was summed for each light
   std::optional<Portion> portion{};  ///< told alone
 };
 
@@ -74,6 +75,9 @@ class DeviceMaterial {
 
   /// From now on it is this one, wherever it is used.
   void become(scene::Model model, models::MaterialInputs inputs);
+
+  /// Null if it has none of that name.
+  const gl::Volume* volume(const std::string& name) const;
 
   /// Sets every uniform and binds every table on one of its programs.
   void bind(const gl::Program& program) const;
@@ -140,6 +144,9 @@ class DeviceCache {
 
   /// The program that draws a light map, of triangles or of patches; compiled when the first material needs one.
   const gl::Program& light_map_program(bool tessellated);
+
+  /// The program that sums what is stored of a material's prototype for each light.
+  const gl::Program& sum_program(const DeviceMaterial& material);
 
   /// The program that counts how many triangles cover each texel of an unwrapped mesh.
   const gl::Program& count_program();

@@ -9,82 +9,18 @@
 //   CONVEX               no line leaves the grain and enters it again
 //   MANY_TERMS           more of them: the grain is not of the thickest
 //   GREY                 red, green and blue are the same medium: a texel of `sources` holds four terms, else one in three colours
+//   SUMMED               the products were summed for each light beforehand (passes/sum_products.comp)
 #include "heap/open_beyond.glsl"
 #include "models/dielectric.glsl"
 #include "models/interface.glsl"
 #include "models/pixel_random.glsl"
 #include "models/portions.glsl"
+#include "models/stored_products.glsl"
 #include "physics/prelude.glsl"
 #include "physics/elementary.glsl"
 #include "physics/fresnel.glsl"
 #include "physics/henyey_greenstein.glsl"
 #include "scene/world.glsl"
-
-struct Stored {
-  vec3 x_axis;  // of the body, in the prototype's
-  vec3 y_axis;
-  vec3 z_axis;
-  vec3 lower;  // the first node; lengths are in units of the body
-  vec3 nodes_a_unit;
-  vec3 last_node;
-  vec3 sigma_t;
-  float units;  // of the body, a scene unit
-  float eta;
-#ifndef REFRACTION
-  vec3 albedo;
-#endif
-};
-uniform Stored stored;
-#ifndef INSTANCED
-uniform mat3 grain_to_prototype;  // a turn
-#endif
-
-#ifdef GREY
-#define Spectrum float
-#define SPECTRUM(value) (value).r
-#ifdef MANY_TERMS
-const int TERMS = 24;
-#else
-const int TERMS = 16;
-#endif
-#else
-#define Spectrum vec3
-#define SPECTRUM(value) (value).rgb
-#if defined(REFRACTION) && defined(MANY_TERMS)
-const int TERMS = 12;
-#elif defined(REFRACTION)
-const int TERMS = 8;
-#elif defined(MANY_TERMS)
-const int TERMS = 16;
-#else
-const int TERMS = 10;
-#endif
-#endif
-
-// Terms of the source function: of the place, blocks of nodes behind one another; of the light's direction, octahedral maps with frames below
-// one another, four terms a texel or three channels.
-uniform sampler3D sources;
-uniform sampler3D lobes;      // one texel deep
-uniform sampler3D distances;  // from the surface, negative inside
-
-#ifdef GREY
-const int LOBE_TEXELS = TERMS / 4;
-#else
-const int LOBE_TEXELS = TERMS;
-#endif
-vec4 lobe[LOBE_TEXELS];  // four terms of a grey medium, three channels of one term
-vec3 looked_up;          // the direction towards the light that they tell of
-
-void look_up_lobes(vec3 to_light) {
-  looked_up = to_light;
-  vec2 square = to_light.xy / (abs(to_light.x) + abs(to_light.y) + abs(to_light.z));
-  vec2 side = vec2(square.x < 0.0 ? -1.0 : 1.0, square.y < 0.0 ? -1.0 : 1.0);
-  if (to_light.z < 0.0) square = (1.0 - abs(square.yx)) * side;
-  float framed = float(textureSize(lobes, 0).x);
-  vec2 texel = 1.0 + (framed - 2.0) * (0.5 + 0.5 * square);
-  for (int i = 0; i < LOBE_TEXELS; ++i)
-    lobe[i] = texture(lobes, vec3(vec2(texel.x, texel.y + float(i) * framed) / vec2(framed, framed * float(LOBE_TEXELS)), 0.5));
-}
 
 vec3 to_nodes(vec3 place) { return clamp((place - stored.lower) * stored.nodes_a_unit, vec3(0.0), stored.last_node); }
 
@@ -134,10 +70,30 @@ float way_of_light(vec3 place, vec3 to_light) {
 }
 #endif
 
+vec3 looked_up;  // the direction towards the light whose source function is told
+#ifdef SUMMED
+uniform sampler3D summed;  // the source function of each light, blocks of nodes behind one another
+int looked_up_light;
+#else
+vec4 lobe[LOBE_TEXELS];
+#endif
+
+void look_up(vec3 to_light, int light) {
+  looked_up = to_light;
+#ifdef SUMMED
+  looked_up_light = light;
+#else
+  for (int i = 0; i < LOBE_TEXELS; ++i) lobe[i] = lobe_texel(to_light, i);
+#endif
+}
+
 // Radiance that a mean free path of the medium adds, per irradiance of the light that was looked up.
 Spectrum source_at(vec3 place) {
   vec3 size = stored.last_node + 1.0;
   vec3 node = to_nodes(place) + 0.5;
+#ifdef SUMMED
+  Spectrum sum = SPECTRUM(texture(summed, vec3(node.xy, node.z + float(looked_up_light) * size.z) / vec3(textureSize(summed, 0))));
+#else
   vec3 scale = 1.0 / vec3(size.xy, size.z * float(LOBE_TEXELS));
   Spectrum sum = Spectrum(0.0);
   for (int block = 0; block < LOBE_TEXELS; ++block) {
@@ -148,6 +104,7 @@ Spectrum source_at(vec3 place) {
     sum += texel.rgb * lobe[block].rgb;
 #endif
   }
+#endif
   sum = max(sum, Spectrum(0.0));
 #ifndef REFRACTION
   // Light that nothing has scattered comes straight. Its shadows are too sharp for few products: they would be blotches.
@@ -249,16 +206,9 @@ Spectrum radiance_inside(vec3 place, vec3 direction) {
 #include "models/forward_walk.glsl"
 #endif
 
-mat3 grain_to_body() {
-#ifdef INSTANCED
-  mat3 grain_to_prototype = transpose(grain_axes);
-#endif
-  return transpose(mat3(stored.x_axis, stored.y_axis, stored.z_axis)) * grain_to_prototype;
-}
-
 vec3 evaluate_model(SurfacePoint point, Outwards outwards, LightSample light) {
   mat3 to_body = grain_to_body();
-  look_up_lobes(to_body * light.to_light);
+  look_up(to_body * light.to_light, light.index);
   vec3 inwards = (outwards.mu * point.normal - point.to_viewer) / stored.eta - outwards.mu_refracted * point.normal;
 #ifdef WALKED
   Spectrum inside = walked_radiance(to_body * point.on_triangle * stored.units, normalize(to_body * inwards), to_body * light.to_light, light.index);

@@ -124,6 +124,14 @@ void write_shading(Writer& writer) {
     if (!written.insert(name).second) continue;
     writer.write(name, ShaderSource({"passes/full_screen.vert"}, {}),
                  ShaderSource({"passes/shade.frag", "models/" + model + ".glsl"}, defines));
+    if (material.model == scene::Model::transport) {
+      std::vector<std::string> summed = defines;
+      summed.emplace_back("SUMMED");
+      writer.write(name + "+SUMMED", ShaderSource({"passes/full_screen.vert"}, {}),
+                   ShaderSource({"passes/shade.frag", "models/" + model + ".glsl"}, summed));
+      writer.write_stage(fmt::format("sum_products_{}.comp", written.size()),
+                         ShaderSource({"passes/sum_products.comp"}, defines));
+    }
     if (facets && written.insert(model + " mirrors").second)
       for (const std::vector<std::string>& shading : mirrors) {
         std::vector<std::string> all = defines;

@@ -26,9 +26,9 @@ def test_every_shader_file_is_assembled():
     assert ASSEMBLED.returncode == 0, ASSEMBLED.stderr
 
 
-@pytest.mark.parametrize("name", sorted(path.stem for path in FOLDER.glob("*.vert")))
+@pytest.mark.parametrize("name", sorted(path.stem for kind in ("*.vert", "*.comp") for path in FOLDER.glob(kind)))
 def test_glslang(name):
-    candidates = [FOLDER / (name + suffix) for suffix in (".vert", ".tesc", ".tese", ".frag")]
+    candidates = [FOLDER / (name + suffix) for suffix in (".vert", ".tesc", ".tese", ".frag", ".comp")]
     stages = [str(stage) for stage in candidates if stage.exists()]
     outcome = subprocess.run(["glslangValidator", "-l", *stages], capture_output=True, text=True)
     assert outcome.returncode == 0, outcome.stdout

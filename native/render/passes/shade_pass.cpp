@@ -44,6 +44,13 @@ void confine_to(const Sample& sample, const Draw& draw) {
   glScissor(first.x, first.y, std::max(end.x - first.x, 0), std::max(end.y - first.y, 0));
 }
 
+// About as many as show it, or texels if it is baked.
+double pixels_of(const Sample& sample, const Draw& draw) {
+  if (sample.unwrapping != nullptr) return static_cast<double>(sample.size.x) * sample.size.y;
+  const double across = draw.pixels_across(sample.camera, sample.size.x, sample.size.y);
+  return across * across;
+}
+
 void begin_shading() {
   glEnable(GL_STENCIL_TEST);
   glStencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
@@ -176,8 +183,13 @@ const gl::Program& ShadePass::prepare(const Sample& sample, std::size_t unit, Sh
   shading.lights_at_place = sample.lights_at_place(material, shading.instanced);
   shading.near_lights = sample.lighting.any_local() && material.light_maps();
   shading.lights_about = sample.lights_about(unit);
+  const Draw* draw = sample.content.draw(unit);
+  shading.summed = draw != nullptr && !shading.mirrored && !sample.lighting.any_local() &&
+                   ProductSums::pay(material, sample.lights.distant, pixels_of(sample, *draw));
+  if (shading.summed) sums_.sum(sample.cache, material, sample.lights.distant, glm::mat3(draw->grain_to_prototype));
   const gl::Program& program = sample.cache.shading(material, shading);
   material.bind(program);
+  if (shading.summed) sums_.bind(program);
   if (world || shading.mirrors_world) {
     set_world(program, sample.lighting);
     program.set("world_density", static_cast<float>(sample.lights.world_density));

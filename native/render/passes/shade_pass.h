@@ -10,6 +10,7 @@
 #include "gl/vertex_array.h"
 #include "render/hit_surface.h"
 #include "render/passes/gather_pass.h"
+#include "render/passes/product_sums.h"
 #include "render/passes/sample.h"
 #include "render/passes/shadow_pass.h"
 
@@ -53,6 +54,7 @@ class ShadePass {
 
   gl::Program background_program_;
   gl::FullScreenTriangle full_screen_;
+  ProductSums sums_;
   std::optional<gl::Buffer> directions_;
   std::optional<gl::Buffer> lights_;
   std::optional<gl::Buffer> randoms_;

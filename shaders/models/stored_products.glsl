@@ -1,0 +1,72 @@
+// Light's transport in one prototype as it is stored: products of a function of the place and one of the light's direction.
+//
+// What is chosen at compile time, as in transport.glsl: GREY, MANY_TERMS, REFRACTION, INSTANCED.
+struct Stored {
+  vec3 x_axis;  // of the body, in the prototype's
+  vec3 y_axis;
+  vec3 z_axis;
+  vec3 lower;  // the first node; lengths are in units of the body
+  vec3 nodes_a_unit;
+  vec3 last_node;
+  vec3 sigma_t;
+  float units;  // of the body, a scene unit
+  float eta;
+#ifndef REFRACTION
+  vec3 albedo;
+#endif
+};
+uniform Stored stored;
+#ifndef INSTANCED
+uniform mat3 grain_to_prototype;  // a turn
+#endif
+
+#ifdef GREY
+#define Spectrum float
+#define SPECTRUM(value) (value).r
+#ifdef MANY_TERMS
+const int TERMS = 24;
+#else
+const int TERMS = 16;
+#endif
+#else
+#define Spectrum vec3
+#define SPECTRUM(value) (value).rgb
+#if defined(REFRACTION) && defined(MANY_TERMS)
+const int TERMS = 12;
+#elif defined(REFRACTION)
+const int TERMS = 8;
+#elif defined(MANY_TERMS)
+const int TERMS = 16;
+#else
+const int TERMS = 10;
+#endif
+#endif
+
+// Terms of the source function: of the place, blocks of nodes behind one another; of the light's direction, octahedral maps with frames below
+// one another, four terms a texel or three channels.
+uniform sampler3D sources;
+uniform sampler3D lobes;      // one texel deep
+uniform sampler3D distances;  // from the surface, negative inside
+
+#ifdef GREY
+const int LOBE_TEXELS = TERMS / 4;
+#else
+const int LOBE_TEXELS = TERMS;
+#endif
+
+// Four terms of a grey medium, or three channels of one term, where light comes from there.
+vec4 lobe_texel(vec3 to_light, int number) {
+  vec2 square = to_light.xy / (abs(to_light.x) + abs(to_light.y) + abs(to_light.z));
+  vec2 side = vec2(square.x < 0.0 ? -1.0 : 1.0, square.y < 0.0 ? -1.0 : 1.0);
+  if (to_light.z < 0.0) square = (1.0 - abs(square.yx)) * side;
+  float framed = float(textureSize(lobes, 0).x);
+  vec2 texel = 1.0 + (framed - 2.0) * (0.5 + 0.5 * square);
+  return texture(lobes, vec3(vec2(texel.x, texel.y + float(number) * framed) / vec2(framed, framed * float(LOBE_TEXELS)), 0.5));
+}
+
+mat3 grain_to_body() {
+#ifdef INSTANCED
+  mat3 grain_to_prototype = transpose(grain_axes);
+#endif
+  return transpose(mat3(stored.x_axis, stored.y_axis, stored.z_axis)) * grain_to_prototype;
+}
