@@ -9,6 +9,7 @@ def sphere(segments, rings):
     normals = numpy.stack(numpy.broadcast_arrays(
         numpy.sin(polar) * numpy.cos(around), numpy.sin(polar) * numpy.sin(around), numpy.cos(polar)), axis=-1)
     normals = normals.reshape(-1, 3).astype(numpy.float32)
+    normals[numpy.abs(normals) < 1e-6] = 0.0  # all of a pole is one place, or the mesh is not closed
     ring, segment = numpy.arange(rings)[:, None], numpy.arange(segments)[None, :]
     first, second = ring * segments + segment, ring * segments + (segment + 1) % segments
     halves = [(first, first + segments, second), (second, first + segments, second + segments)]
