@@ -93,6 +93,10 @@ void DeviceMaterial::become(scene::Model model, models::MaterialInputs inputs) {
   version_ = version;
 }
 
+bool DeviceMaterial::has(const std::string& define) const {
+  return std::find(defines_.begin(), defines_.end(), define) != defines_.end();
+}
+
 const gl::Volume* DeviceMaterial::volume(const std::string& name) const {
   const auto found = volumes_.find(name);
   return found == volumes_.end() ? nullptr : &found->second;
@@ -247,8 +251,7 @@ const gl::Program& DeviceCache::light_map_program(bool tessellated) {
 const gl::Program& DeviceCache::sum_program(const DeviceMaterial& material) {
   std::vector<std::string> defines;
   for (const std::string define : {"GREY", "MANY_TERMS", "REFRACTION"})
-    if (std::find(material.defines().begin(), material.defines().end(), define) != material.defines().end())
-      defines.push_back(define);
+    if (material.has(define)) defines.push_back(define);
   return programs_.find(fmt::format("sum_products {}", fmt::join(defines, " ")),
                         {{GL_COMPUTE_SHADER, gl::ShaderSource({"passes/sum_products.comp"}, defines)}});
 }
@@ -271,8 +274,7 @@ const gl::Program& DeviceCache::shading(const DeviceMaterial& material, const Sh
   if (shading.shadows == Shadows::cast) defines.emplace_back("CAST_SHADOWS");
   if (shading.exchange) defines.emplace_back("EXCHANGE");
   if (shading.gathered) defines.emplace_back("GATHERED");
-  if (shading.world && std::find(defines.begin(), defines.end(), "CLEAR") != defines.end())
-    defines.emplace_back("WORLD");
+  if (shading.world && material.has("CLEAR")) defines.emplace_back("WORLD");
   if (shading.mirrors_world && material.facets()) defines.emplace_back("MIRRORS_WORLD");
   if (shading.lights_at_place) defines.emplace_back("LIGHTS_AT_PLACE");
   if (shading.near_lights) defines.emplace_back("NEAR_LIGHTS");

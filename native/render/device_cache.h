@@ -58,6 +58,9 @@ class DeviceMaterial {
   scene::Model model() const { return model_; }
   const std::vector<std::string>& defines() const { return defines_; }
 
+  /// Whether its programs are compiled with this word.
+  bool has(const std::string& define) const;
+
   /// Whether it must be known where on its pictures a surface is.
   bool textured() const { return !pictures_.empty(); }
 

@@ -1,8 +1,7 @@
 // Has the device sum them, a group of nodes under one light at a time.
 #include "render/passes/product_sums.h"
 
-#include <algorithm>
-#include <string>
+#include <vector>
 
 #include "render/device_layout.h"
 
@@ -17,10 +16,6 @@ constexpr double nodes_a_pixel = 48.0;
 
 // OpenGL 4.5 has textures of at least so many layers.
 constexpr int most_layers = 2048;
-
-bool is_grey(const DeviceMaterial& material) {
-  return std::find(material.defines().begin(), material.defines().end(), "GREY") != material.defines().end();
-}
 
 }  // namespace
 
@@ -40,7 +35,7 @@ void ProductSums::sum(DeviceCache& cache, const DeviceMaterial& material, const 
   directions_->bind_storage(layout::DISTANT_LIGHTS_BINDING);
 
   const gl::Volume& nodes = *material.volume("distances");
-  const GLenum format = is_grey(material) ? GL_R32F : GL_RGBA32F;
+  const GLenum format = material.has("GREY") ? GL_R32F : GL_RGBA32F;
   sums_.emplace(format, nodes.width(), nodes.height(), nodes.depth() * static_cast<int>(lights.size()));
   const gl::Program& program = cache.sum_program(material);
   material.bind(program);
