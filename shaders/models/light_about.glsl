@@ -3,7 +3,8 @@
 // lamp and of a parallel light: their ratio is the irradiance of the parallel light that would leave as much.
 // Not physical: the grain is a ball, of the similar medium that scatters isotropically; light that comes in is not refracted.
 //
-// What is chosen at compile time: SINGLE_MARCHED (the model tells light that was scattered once by itself, along the light map).
+// What is chosen at compile time: SINGLE_MARCHED (the model tells light that was scattered once by itself, along the light map) and
+// WHOLE_GRAIN (it knows more of the grain's shape than the normal).
 #include "lights/light.glsl"
 #include "lights/near.glsl"
 #include "models/interface.glsl"
@@ -17,12 +18,29 @@ struct Ball {
   vec3 sigma_s;  // per radius
   vec3 sigma_t;
   float eta;
+  int cosine_entry;  // not 0: light spreads by a cosine lobe as it enters
+  int cosine_exit;   // not 0: and as it leaves
+  int collisions;    // of all walks of a sample together
 };
 uniform Ball ball;
 
-// Of all walks of a sample together: from 32 on, what is seen of a spot's edge is no longer off by their number.
-const int COLLISIONS = 32;
 const float LEAST_LEFT = 0.02;  // a walk that keeps less ends
+
+// What was found of light that leaves at the point.
+struct Found {
+  vec3 of_lamp;
+  vec3 of_parallel;
+};
+
+// A lamp as a grain has it around.
+struct Around {
+  DeviceLight lamp;
+  vec2 random;      // which point of it
+  vec3 middle;      // where grain space begins
+  vec3 centre;      // of the ball, in grain space
+  vec3 to_light;    // of the parallel light
+  vec3 irradiance;  // of the brightest place so far
+};
 
 // How far a place in the ball is from its surface; lengths are in radii from here on.
 float way_out(vec3 place, vec3 direction) {
@@ -39,10 +57,31 @@ vec3 unscattered_share(vec3 place, vec3 to_light) {
   return share * fresnel_transmittance(cosine, refracted_cosine(cosine, ball.eta), ball.eta);
 }
 
+vec3 isotropic(vec2 random) {
+  float height = 1.0 - 2.0 * random.x;
+  float ring = sqrt(max(1.0 - height * height, 0.0));
+  return vec3(ring * cos(2.0 * PI * random.y), ring * sin(2.0 * PI * random.y), height);
+}
+
+LightDraw lamp_at(inout Around around, vec3 place) {
+  LightDraw drawn = draw_light(around.lamp, around.middle + grain_unit * (around.centre + ball.radius * place), around.random);
+  around.irradiance = max(around.irradiance, drawn.irradiance);
+  return drawn;
+}
+
+// What comes in by a cosine lobe at the other end of a way through the ball.
+Found entering_by_cosine(inout Around around, vec3 place, vec3 direction) {
+  float way = way_out(place, direction);
+  vec3 entry = place + way * direction;
+  vec3 share = exp(-ball.sigma_t * way);
+  LightDraw drawn = lamp_at(around, entry);
+  return Found(share * drawn.irradiance * max(dot(entry, drawn.to_light), 0.0), share * max(dot(entry, around.to_light), 0.0));
+}
+
 // Where the parallel light is in the shade of the ball, what the model makes of it is no measure: the lamp then counts as bright as anywhere.
 // A channel that nothing scatters has the light of the point itself.
-vec3 worth(vec3 of_lamp, vec3 of_parallel, vec3 brightest, vec3 own) {
-  return mix(own, min(of_lamp / max(of_parallel, vec3(1e-30)), brightest), vec3(greaterThan(of_parallel, vec3(1e-30))));
+vec3 worth(Found found, vec3 brightest, vec3 own) {
+  return mix(own, min(found.of_lamp / max(found.of_parallel, vec3(1e-30)), brightest), vec3(greaterThan(found.of_parallel, vec3(1e-30))));
 }
 
 // `lamp` as seen from `middle`, where grain space begins; `lamp_random`: which point of it; `to_middle`: from there to the lamp.
@@ -50,34 +89,47 @@ vec3 worth(vec3 of_lamp, vec3 of_parallel, vec3 brightest, vec3 own) {
 void look_about(DeviceLight lamp, vec3 middle, vec2 lamp_random, SurfacePoint point, vec3 to_middle, inout LightSample light) {
   float near = nearness(lamp, middle, 0.0, ball.radius * grain_unit);
   if (near == 0.0) return;
-  vec3 to_light = draw_light(lamp, middle + grain_unit * point.on_triangle, lamp_random).to_light;
   float mu = clamp(dot(point.normal, point.to_viewer), 0.0, 1.0);
   vec3 inwards = (mu * point.normal - point.to_viewer) / ball.eta - refracted_cosine(mu, ball.eta) * point.normal;
-  float first_way = way_out(point.normal, inwards);
-  vec3 centre = point.position - ball.radius * point.normal;
+#if defined(WHOLE_GRAIN) || defined(SINGLE_MARCHED)
+  // Of a grain with facets the ball lies between where the point's normal has it and where the grain's middle does: beside a facet that lies
+  // aslant it would else be half out of the grain.
+  vec3 outwards = normalize(point.normal + normalize(point.position));
+#else
+  vec3 outwards = point.normal;  // by which models that sum no surface tell light from shade
+#endif
+  vec3 to_light = draw_light(lamp, middle + grain_unit * point.on_triangle, lamp_random).to_light;
+  Around around = Around(lamp, lamp_random, middle, point.position - ball.radius * outwards, to_light, light.irradiance);
   uvec4 seed = uvec4(uvec2(gl_FragCoord.xy), 11u, uint(light.index));
   float first_random = low_discrepancy(uint(sample_index), pcg4d(seed).xy).x;
 
-  vec3 lamp_all = vec3(0.0);
-  vec3 lamp_once = vec3(0.0);
-  vec3 parallel_all = vec3(0.0);
-  vec3 parallel_once = vec3(0.0);
-  vec3 place = point.normal;
+  Found all = Found(vec3(0.0), vec3(0.0));
+  Found once = Found(vec3(0.0), vec3(0.0));
+  vec3 place = outwards;
   vec3 direction = inwards;
   vec3 left = vec3(1.0);
-  vec3 brightest = light.irradiance;
   bool begins = true;
-  for (int i = 0; i < COLLISIONS; ++i) {
-    vec4 random = vec4(pcg4d(seed + uvec4(0u, 0u, uint(i) << 8u, uint(sample_index) << 8u)) >> 8u) * (1.0 / 16777216.0);
+  for (int i = 0; i < ball.collisions; ++i) {
+    uvec4 numbers = uvec4(0u, 0u, uint(i) << 8u, uint(sample_index) << 8u);
+    vec4 random = vec4(pcg4d(seed + numbers) >> 8u) * (1.0 / 16777216.0);
     // As one of the channels, drawn for each flight, would fly: all count by how likely they would, together, have done so.
     float channel = 3.0 * random.w;
     float sigma_t = max(ball.sigma_t[min(int(channel), 2)], 1e-9);
     float flight;
     if (begins) {
-      // The first ends in the ball, and those of all walks are spread over the way through it.
-      place = point.normal;
+      place = outwards;
       direction = inwards;
       left = vec3(1.0);
+      // A cosine lobe is what a ball at the surface, within the tangent plane's side, shows of even directions (Shirley).
+      if (ball.cosine_exit != 0)
+        direction = normalize(0.999 * isotropic(vec2(pcg4d(seed + numbers + uvec4(1u, 0u, 0u, 0u)).xy >> 8u) * (1.0 / 16777216.0)) - place);
+      float first_way = way_out(place, direction);
+      if (ball.cosine_entry != 0) {
+        Found straight = entering_by_cosine(around, place, direction);
+        vec3 scattered = max(1.0 - exp(-ball.sigma_t * first_way), vec3(1e-6));
+        all = Found(all.of_lamp + straight.of_lamp / scattered, all.of_parallel + straight.of_parallel / scattered);
+      }
+      // The first ends in the ball, and those of all walks are spread over the way through it.
       flight = min(-log(1.0 - first_random * (1.0 - exp(-sigma_t * first_way))) / sigma_t, first_way);
       first_random = fract(first_random + 0.61803399);
     } else {
@@ -94,26 +146,24 @@ void look_about(DeviceLight lamp, vec3 middle, vec2 lamp_random, SurfacePoint po
     place += flight * direction;
     vec3 passed = exp(-ball.sigma_t * flight);
     left *= 3.0 * ball.sigma_s * passed / max(dot(ball.sigma_t, passed), 1e-20);
-    LightDraw drawn = draw_light(lamp, middle + grain_unit * (centre + ball.radius * place), lamp_random);
-    brightest = max(brightest, drawn.irradiance);
-    vec3 lamp_here = left * drawn.irradiance * unscattered_share(place, drawn.to_light);
+    direction = isotropic(random.yz);
+    if (ball.cosine_entry != 0) {
+      Found scattered = entering_by_cosine(around, place, direction);
+      all = Found(all.of_lamp + left * scattered.of_lamp, all.of_parallel + left * scattered.of_parallel);
+    } else {
+      LightDraw drawn = lamp_at(around, place);
+      vec3 lamp_here = left * drawn.irradiance * unscattered_share(place, drawn.to_light);
 #ifdef SINGLE_MARCHED
-    if (begins) {
-      lamp_once += lamp_here;
-      parallel_once += left * unscattered_share(place, to_middle);
-    } else
+      if (begins)
+        once = Found(once.of_lamp + lamp_here, once.of_parallel + left * unscattered_share(place, to_middle));
+      else
 #endif
-    {
-      lamp_all += lamp_here;
-      parallel_all += left * unscattered_share(place, to_light);
+        all = Found(all.of_lamp + lamp_here, all.of_parallel + left * unscattered_share(place, to_light));
     }
-    float height = 1.0 - 2.0 * random.y;
-    float ring = sqrt(max(1.0 - height * height, 0.0));
-    direction = vec3(ring * cos(2.0 * PI * random.z), ring * sin(2.0 * PI * random.z), height);
     begins = max(left.r, max(left.g, left.b)) < LEAST_LEFT;
   }
-  light.entering = mix(light.irradiance, worth(lamp_all, parallel_all, brightest, light.irradiance), near);
+  light.entering = mix(light.irradiance, worth(all, around.irradiance, light.irradiance), near);
 #ifdef SINGLE_MARCHED
-  light.entering_once = worth(lamp_once, parallel_once, brightest, light.irradiance);
+  light.entering_once = worth(once, around.irradiance, light.irradiance);
 #endif
 }
