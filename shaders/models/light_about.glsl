@@ -93,8 +93,9 @@ void look_about(DeviceLight lamp, vec3 middle, vec2 lamp_random, SurfacePoint po
   vec3 inwards = (mu * point.normal - point.to_viewer) / ball.eta - refracted_cosine(mu, ball.eta) * point.normal;
 #if defined(WHOLE_GRAIN) || defined(SINGLE_MARCHED)
   // Of a grain with facets the ball lies between where the point's normal has it and where the grain's middle does: beside a facet that lies
-  // aslant it would else be half out of the grain.
-  vec3 outwards = normalize(point.normal + normalize(point.position));
+  // aslant it would else be half out of the grain. The inner side of a ring has the middle before it.
+  vec3 from_middle = point.position * inversesqrt(max(dot(point.position, point.position), 1e-30));
+  vec3 outwards = normalize(point.normal + max(dot(point.normal, from_middle), 0.0) * from_middle);
 #else
   vec3 outwards = point.normal;  // by which models that sum no surface tell light from shade
 #endif
@@ -120,7 +121,7 @@ void look_about(DeviceLight lamp, vec3 middle, vec2 lamp_random, SurfacePoint po
       place = outwards;
       direction = inwards;
       left = vec3(1.0);
-      // A cosine lobe is what a ball at the surface, within the tangent plane's side, shows of even directions (Shirley).
+      // The normal and any direction, added, lie by a cosine lobe.
       if (ball.cosine_exit != 0)
         direction = normalize(0.999 * isotropic(vec2(pcg4d(seed + numbers + uvec4(1u, 0u, 0u, 0u)).xy >> 8u) * (1.0 / 16777216.0)) - place);
       float first_way = way_out(place, direction);
