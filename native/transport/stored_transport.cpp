@@ -8,6 +8,7 @@
 #include <glm/matrix.hpp>
 #include <memory>
 
+#include "physics/physics.h"
 #include "transport/octahedron.h"
 #include "transport/random.h"
 #include "transport/sights.h"
@@ -109,6 +110,14 @@ void calibrate(Lights& light, const Exchange& exchange, double eta) {
   }
 }
 
+// Light that was scattered before falls off towards the surface within less than a thick grain's cell, more steeply the
+// nearer; what is left of it beside that of light that is even everywhere hardly does, and is linear between nodes.
+void divide_by_share_below(Lights& sources, const Grid& grid, double sigma_t) {
+  for (Eigen::Index row = 0; row < sources.rows(); ++row)
+    sources.row(row) /= static_cast<float>(
+        physics::scattered_share_below(sigma_t * static_cast<double>(grid.depths()[static_cast<std::size_t>(row)])));
+}
+
 }  // namespace
 
 double node_spacing(const Body& body, const Quality& quality) {
@@ -171,6 +180,7 @@ StoredTransport compute_transport(Walks& walks, const StoredMedium& medium, cons
     Terms terms = principal_terms(seen, light, first, kept);
     terms.make_lobes_at_most_one();
     terms.amounts *= static_cast<float>(medium.albedo[channel]);
+    if (!stored.has_unscattered) divide_by_share_below(terms.amounts, grid, extinctions[e]);
     const auto index = [&](std::size_t count, int term, std::size_t of) {
       return (static_cast<std::size_t>(term) * count + of) * static_cast<std::size_t>(channels) +
              static_cast<std::size_t>(channel);

@@ -36,8 +36,10 @@ struct StoredTransport {
   bool convex = false;           ///< no line leaves the body and enters it again
   bool has_unscattered = true;   ///< sources are also fed by light that nothing has scattered before
   std::vector<float> distances;  ///< from the surface at every node, negative inside; x runs fastest
-  std::vector<float> sources;  ///< [term][node][channel]: radiance that a mean free path would send out, per irradiance
-  std::vector<float> lobes;    ///< [term][texel of the octahedral map that the light comes from][channel]
+  /// [term][node][channel]: radiance that a mean free path would send out, per irradiance; without what light that
+  /// nothing has scattered feeds, if that is apart, over physics::scattered_share_below.
+  std::vector<float> sources;
+  std::vector<float> lobes;  ///< [term][texel of the octahedral map that the light comes from][channel]
 
   std::size_t nodes() const { return distances.size(); }
 };

@@ -107,6 +107,13 @@ Spectrum source_at(vec3 place) {
 #endif
   sum = max(sum, Spectrum(0.0));
 #ifndef REFRACTION
+  float depth = max(-distance_at(place), 0.0);
+#ifdef GREY
+  sum *= scattered_share_below(stored.sigma_t.r * depth);
+#else
+  sum *= vec3(scattered_share_below(stored.sigma_t.r * depth), scattered_share_below(stored.sigma_t.g * depth),
+              scattered_share_below(stored.sigma_t.b * depth));
+#endif
   // Light that nothing has scattered comes straight. Its shadows are too sharp for few products: they would be blotches.
   sum += SPECTRUM(stored.albedo) / (4.0 * PI) * exp(-SPECTRUM(stored.sigma_t) * way_of_light(place, looked_up));
 #endif

@@ -33,6 +33,13 @@ pure real mean_crossing(real x) {
   return 2.0 * (1.0 - (1.0 + x) * exp(-x)) / (x * x);
 }
 
+// The exponential integral E_2(x) (Abramowitz & Stegun 5.1.4), x >= 0, within 2 %: exp(-x) / (1 + x times what falls from -log x to 1).
+pure real second_exponential_integral(real x) { return exp(-x) / (1.0 + x * (1.0 + 0.59 * log(1.0 + 1.2 / max(x, 1e-6)))); }
+
+// Of the light that is everywhere in and beyond a plane's surface the same, how much reaches a point `depth` mean free paths below it that was
+// scattered on the way: all but what comes straight from beyond, E_2/2 (Chandrasekhar 1960, section 13).
+pure real scattered_share_below(real depth) { return 1.0 - 0.5 * second_exponential_integral(depth); }
+
 // A division or a product may round up to 1, whose exponential distance is none.
 const real LARGEST_BELOW_ONE = 1.0 - 1.0 / 16777216.0;
 

@@ -39,6 +39,22 @@ TEST(Elementary, MeanCrossingIsItsIntegral) {
   }
 }
 
+TEST(Elementary, SecondExponentialIntegralHoldsFromZeroOn) {
+  EXPECT_EQ(second_exponential_integral(0.0), 1.0);
+  for (double x = 1e-5; x < 20.0; x *= 1.3)
+    EXPECT_NEAR(second_exponential_integral(x) / (std::exp(-x) + x * std::expint(-x)), 1.0, 0.02) << x;
+}
+
+// An even source around a point, seen in all directions that a plane's half-space lies in.
+TEST(Elementary, ScatteredShareBelowAPlaneIsItsIntegral) {
+  for (const double depth : {0.0, 0.05, 0.3, 1.0, 4.0}) {
+    constexpr int steps = 20000;
+    double sum = 0.5;  // from below
+    for (int i = 0; i < steps; ++i) sum -= 0.5 * std::expm1(-depth / ((i + 0.5) / steps)) / steps;
+    EXPECT_NEAR(scattered_share_below(depth), sum, 2e-3) << depth;
+  }
+}
+
 TEST(Elementary, AttenuatedDistanceInvertsItsDistribution) {
   for (const double rate : {0.02, 0.5, 3.0, 40.0})
     for (double random = 0.0; random < 1.0; random += 0.01) {

@@ -23,17 +23,24 @@ constexpr Quality coarse{.nodes = 2500, .light_across = 16, .way_across = 12};
 
 /// The source function under radiance 1 from everywhere, at nodes inside the body. What albedo 1
 /// scatters of light that comes straight is added where it is not stored: as much as each node sees of the outside.
-std::vector<float> under_even_light(const StoredTransport& stored, const Grid& grid, const Exchange& exchange) {
+std::vector<float> under_even_light(const StoredTransport& stored, const Walks& walks, double sigma_t) {
+  const Grid& grid = walks.grid();
+  const Exchange exchange = walks.exchange(sigma_t);
   const std::array<float, octahedron_texels> angles = octahedron_solid_angles();
   std::vector<float> sources;
   for (std::size_t node = 0; node < stored.nodes(); ++node) {
     if (stored.distances[node] >= 0.0F) continue;
-    double source = stored.has_unscattered ? 0.0 : exchange.escape[static_cast<std::size_t>(grid.used()[node])];
+    const auto used = static_cast<std::size_t>(grid.used()[node]);
+    double source = stored.has_unscattered ? 0.0 : exchange.escape[used];
+    // What was scattered before is stored over 1 - E_2/2 of the depth (Abramowitz & Stegun 5.1.14).
+    const double depth = std::max(sigma_t * static_cast<double>(grid.depths()[used]), 1e-9);
+    const double share = stored.has_unscattered ? 1.0 : 1.0 - 0.5 * (std::exp(-depth) + depth * std::expint(-depth));
     for (int term = 0; term < stored.terms; ++term) {
       double lobe = 0.0;
       for (int texel = 0; texel < octahedron_texels; ++texel)
         lobe += angles[static_cast<std::size_t>(texel)] * stored.lobes[term * octahedron_texels + texel];
-      source += lobe * stored.sources[(term * stored.nodes() + node) * static_cast<std::size_t>(stored.channels)];
+      source +=
+          share * lobe * stored.sources[(term * stored.nodes() + node) * static_cast<std::size_t>(stored.channels)];
     }
     sources.push_back(static_cast<float>(source));
   }
@@ -49,7 +56,7 @@ TEST(StoredTransport, KeepsItsEnergy) {
       const double sigma_t = mean_free_paths * body->unit();
       const StoredTransport stored = compute_transport(walks, {glm::dvec3(sigma_t), glm::dvec3(1.0), eta});
       EXPECT_EQ(stored.has_unscattered, eta != 1.0);
-      for (const float source : under_even_light(stored, walks.grid(), walks.exchange(sigma_t)))
+      for (const float source : under_even_light(stored, walks, sigma_t))
         EXPECT_NEAR(source / (eta * eta), 1.0, 0.015) << "eta " << eta << ", " << mean_free_paths << " to the middle";
     }
 }
