@@ -94,6 +94,29 @@ Volume sources_volume(const StoredTransport& stored) {
   return volume;
 }
 
+// Which way the distance from the surface grows, at the nodes; beyond the box it is as on the box's side.
+Volume slopes_volume(const StoredTransport& stored) {
+  const glm::ivec3 last = stored.size - 1;
+  const auto distance_at = [&](glm::ivec3 node) {
+    node = glm::clamp(node, glm::ivec3(0), last);
+    const int index = (node.z * stored.size.y + node.y) * stored.size.x + node.x;
+    return stored.distances[static_cast<std::size_t>(index)];
+  };
+  Volume volume{stored.size.x, stored.size.y, stored.size.z, 3, {}};
+  volume.texels.reserve(3 * stored.nodes());
+  for (int z = 0; z <= last.z; ++z)
+    for (int y = 0; y <= last.y; ++y)
+      for (int x = 0; x <= last.x; ++x)
+        for (int axis = 0; axis < 3; ++axis) {
+          const glm::ivec3 node(x, y, z);
+          glm::ivec3 step(0);
+          step[axis] = 1;
+          volume.texels.push_back((distance_at(node + step) - distance_at(node - step)) /
+                                  (2.0F * stored.spacing[axis]));
+        }
+  return volume;
+}
+
 // Octahedral maps, one below the other, each with a frame of the texels across its edges: four terms a texel (a grey
 // medium) or the three channels of a term.
 Volume lobes_volume(const StoredTransport& stored) {
@@ -184,11 +207,12 @@ MaterialInputs prototype_inputs(const scene::Material& material, const StoredTra
   inputs.uniforms["stored.last_node"] = glm::vec3(stored.size - 1);
   inputs.uniforms["stored.units"] = static_cast<float>(1.0 / stored.unit);
   inputs.uniforms["stored.sigma_t"] = glm::vec3(sigma_t);
-  if (!stored.has_unscattered) {
-    inputs.uniforms["stored.albedo"] = glm::vec3(stored_medium(material).albedo);
-    if (stored.convex) inputs.defines.emplace_back("CONVEX");
+  if (!stored.has_unscattered) inputs.uniforms["stored.albedo"] = glm::vec3(stored_medium(material).albedo);
+  if (stored.convex && (!stored.has_unscattered || is_walked(material))) inputs.defines.emplace_back("CONVEX");
+  if (is_walked(material)) {
+    add_forward(material, stored, inputs);
+    inputs.volumes["slopes"] = slopes_volume(stored);
   }
-  if (is_walked(material)) add_forward(material, stored, inputs);
   // Of the sphere that has this mean chord.
   add_light_about(material, 0.75 * stored.unit * stored.mean_chord, inputs);
   inputs.volumes["lobes"] = lobes_volume(stored);

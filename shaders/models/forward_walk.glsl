@@ -21,6 +21,7 @@ struct Forward {
   float wide_g;        // of the rest
 };
 uniform Forward forward;
+uniform sampler3D slopes;  // of `distances`, at its nodes: a walk asks for many
 
 const int EXACT_SCATTERINGS = 4;  // wide ones; from then on two of them with one medium, then two with one that scatters less often
 const float LEAST_KEPT = 0.1;     // of the first direction, by the mean cosine: then the stored source function tells the rest
@@ -30,6 +31,12 @@ const float LEAST_EXTINCTION = 1e-12;  // a channel of less flies through
 const int FIRST_TRIES = 2;             // to find where light came in; for what is scattered next, it is looked for near there
 const float LEAST_WIDTH = 0.2;         // of a bundle of light, over what it was as it entered: a narrower one is seen by few places
 const float SUN_SHARPNESS = 50.0;      // of the lobe exp(sharpness (cosine - 1)) that reflected light comes from
+
+// What outwards_at says, with edges rounded off over a node to either side instead of a half.
+vec3 outwards_about(vec3 place) {
+  vec3 gradient = texture(slopes, (to_nodes(place) + 0.5) / (stored.last_node + 1.0)).xyz;
+  return gradient * inversesqrt(max(dot(gradient, gradient), 1e-12));
+}
 
 vec3 perpendicular(vec3 direction) {
   return normalize(abs(direction.z) < 0.7 ? vec3(direction.y, -direction.x, 0.0) : vec3(0.0, direction.z, -direction.y));
@@ -74,7 +81,7 @@ Unscattered unscattered_at(vec3 place, vec3 to_light, vec3 back, int tries) {
   for (int i = 0; i < tries; ++i) {
     way = way_through(place, back, FAR);
     entry = place + way * back;
-    normal = outwards_at(entry);
+    normal = outwards_about(entry);
     back = back_to_entry(to_light, normal);
   }
   float refracted = max(dot(normal, back), 0.1);
@@ -83,8 +90,8 @@ Unscattered unscattered_at(vec3 place, vec3 to_light, vec3 back, int tries) {
   vec3 along_first = first - dot(normal, first) / refracted * back;
   vec3 along_second = second - dot(normal, second) / refracted * back;
   float aside = 0.5 * min(1.0 / stored.nodes_a_unit.x, min(1.0 / stored.nodes_a_unit.y, 1.0 / stored.nodes_a_unit.z));
-  vec3 normal_first = outwards_at(entry + aside * along_first);
-  vec3 normal_second = outwards_at(entry + aside * along_second);
+  vec3 normal_first = outwards_about(entry + aside * along_first);
+  vec3 normal_second = outwards_about(entry + aside * along_second);
   vec3 turn_first = (back_to_entry(to_light, normal_first) - back) / aside;
   vec3 turn_second = (back_to_entry(to_light, normal_second) - back) / aside;
   mat2 spread = mat2(1.0) - way * mat2(dot(turn_first, first), dot(turn_first, second), dot(turn_second, first), dot(turn_second, second));
@@ -121,7 +128,7 @@ Spectrum walked_radiance(vec3 place, vec3 direction, vec3 to_light, int light) {
   float kept = 1.0;
   bool mirrored = false;
 #ifdef REFRACTION
-  vec3 here = outwards_at(place);
+  vec3 here = outwards_about(place);
   vec3 back = dot(here, to_light) > 0.0 ? back_to_entry(to_light, here) : to_light;
 #else
   vec3 back = to_light;
@@ -196,7 +203,7 @@ Spectrum walked_radiance(vec3 place, vec3 direction, vec3 to_light, int light) {
 #ifndef GREY
     left *= 3.0 * passed / (passed.r + passed.g + passed.b);
 #endif
-    vec3 normal = outwards_at(place);
+    vec3 normal = outwards_about(place);
     float cosine = dot(normal, direction);
     float again = fresnel_reflectance(min(cosine, 1.0), 1.0 / stored.eta);
     if (mirrored && !first_place && again < 1.0) {

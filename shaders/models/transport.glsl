@@ -125,6 +125,10 @@ const float FAR = 1e6;
 // How far it is through the grain, or `longest` if that is less, by steps as long as the surface is away.
 float way_through(vec3 place, vec3 direction, float longest) {
   float furthest = min(way_to_box(place, direction), longest);  // beyond the box the grid tells nothing
+#if defined(WALKED) && defined(CONVEX)
+  // What begins and ends inside has not left.
+  if (furthest == longest && distance_at(place + longest * direction) < 0.0) return longest;
+#endif
   vec3 spacing = 1.0 / stored.nodes_a_unit;
   float shortest = 0.3 * min(spacing.x, min(spacing.y, spacing.z));
   float way = shortest;
