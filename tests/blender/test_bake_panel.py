@@ -46,6 +46,52 @@ def test_a_cancelled_bake_writes_nothing(asked, tmp_path):
     assert not bake.finished and bake.error == "" and not list(tmp_path.iterdir())
 
 
+@pytest.fixture
+def relightable(asked):
+    asked.relightable, asked.components, asked.direction_samples = True, 3, 1
+    asked.compare = True  # left from another bake; no light of the scene's is there to compare
+    asked.width = asked.height = 16
+    return asked
+
+
+def test_a_relightable_bake_writes_all_its_files_and_says_its_error(relightable, tmp_path, native):
+    before = {name: len(getattr(bpy.data, name)) for name in ("images", "objects", "node_groups", "materials")}
+    assert bpy.ops.mesograin.bake() == {"FINISHED"}
+    assert {name: len(getattr(bpy.data, name)) for name in before} == before
+    assert sorted(path.name for path in tmp_path.iterdir()) == [
+        "a.atlas.exr", "a.blend", "a.exr", "a.glsl", "a.json", "a.lobes.exr"]
+    _, channels, attributes = native.read_exr(tmp_path / "a.exr")
+    told = json.loads(attributes[PROVENANCE])
+    assert len(channels) == 9 and (told["samples"], told["components"]) == (1, 3)
+    task = session.task
+    assert task.finished and task.error == "" and task.fraction == 1.0 and task.results is None
+    assert f"relative L1 {told['relative_l1_mean']:.2%} on average over 64 directions" in task.summary
+    assert "a.exr and 5 files beside it: Sphere, 3 components of 16 x 16 texels" in task.summary
+    with bpy.data.libraries.load(str(tmp_path / "a.blend")) as (there, _):
+        assert there.node_groups == ["Relit Sphere"]
+
+
+def test_a_cancelled_relightable_bake_writes_nothing(relightable, tmp_path):
+    relightable.width = relightable.height = 512
+    bake = prepare(bpy.context)
+    bake.start()
+    until = time.monotonic() + 60.0
+    while bake.fraction == 0.0:
+        assert bake.running and time.monotonic() < until, bake.error
+        time.sleep(0.01)
+    bake.cancel()
+    bake.wait()
+    bake.finish()
+    assert bake.cancelled and 0.0 < bake.fraction < 1.0 and not list(tmp_path.iterdir())
+
+
+def test_a_node_group_that_cannot_be_written_is_one_sentence(relightable, tmp_path):
+    (tmp_path / "a.blend" / "there").mkdir(parents=True)
+    with pytest.raises(RuntimeError, match="a.blend"):
+        bpy.ops.mesograin.bake()
+    assert not session.task.finished and session.task.error
+
+
 def test_the_active_object_is_baked(asked, tmp_path, native):
     bpy.ops.mesh.primitive_plane_add()
     assert prepare(bpy.context).surface.name == "Plane"

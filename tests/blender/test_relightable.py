@@ -11,8 +11,8 @@ from test_bake import start
 
 from mesograin import compat
 from mesograin.scene import export
-from mesograin.studies.baking import (lobes, relightable, relightable_command, relightable_files, relightable_nodes,
-                                      surface)
+from mesograin.studies.baking import lobes, relightable, relightable_files, relightable_nodes, surface
+from mesograin.studies.baking.relightable_bake import RelightableBake
 
 COUNT = 25  # a cosine that ends at the terminator takes many
 
@@ -36,10 +36,11 @@ def turned():
 def files(turned, tmp_path):
     """relightable_files.paths of a bake of it."""
     output = tmp_path / "paint.exr"
-    made, sentences = relightable_command.bake(depsgraph(), turned.name, (64, 32), 2, {}, COUNT, output, 4, False,
-                                               lambda share: None)
-    assert sentences == [] or all("light" in sentence for sentence in sentences)
-    assert made.errors.mean() < 0.06
+    bake = RelightableBake(depsgraph(), turned.name, (64, 32), 2, COUNT)
+    assert bake.bake().errors.mean() < 0.06
+    bake.write(output, 4, False)
+    bake.write_nodes(output)
+    assert all("light" in sentence for sentence in bake.warnings)
     return relightable_files.paths(output)
 
 

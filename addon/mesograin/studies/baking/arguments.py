@@ -9,7 +9,8 @@ from ...command_line import parser as shared
 from ...command_line.values import positive
 from ...schema.models import CHOICES
 from ..comparison.arguments import REFERENCES
-from .choices import DEFAULT_COMPONENTS, DEFAULT_MARGIN, LARGEST_COMPONENTS, LARGEST_MARGIN, LARGEST_SIDE, VIEW_FROM
+from .choices import (DEFAULT_COMPONENTS, DEFAULT_MARGIN, FEWEST_COMPONENTS, LARGEST_COMPONENTS, LARGEST_MARGIN,
+                      LARGEST_SIDE, SAMPLES, SAMPLES_OF_A_DIRECTION, VIEW_FROM)
 
 
 def build():
@@ -30,7 +31,8 @@ def build():
     parser.add_argument("--size", type=_size, default=(1024, 1024), metavar="SIDE|WxH",
                         help="texels (default: 1024, square)")
     parser.add_argument("--samples", type=positive, default=None, metavar="N",
-                        help="samples a texel (default: 64; with --relightable 4 for each direction)")
+                        help=f"samples a texel (default: {SAMPLES}; with --relightable"
+                        f" {SAMPLES_OF_A_DIRECTION} for each direction)")
     parser.add_argument("--view-from", choices=VIEW_FROM, default=VIEW_FROM[0], metavar="WHERE",
                         help=f"what looks at the surface: {' or '.join(VIEW_FROM)} (default: the first)")
     parser.add_argument("--margin", type=_margin, default=DEFAULT_MARGIN, metavar="N",
@@ -43,7 +45,8 @@ def build():
                         " OUT.atlas.exr, OUT.lobes.exr, a node group in OUT.blend, a shader's recipe OUT.glsl, and the"
                         " error over 64 directions in OUT.json")
     parser.add_argument("--components", type=_components, default=None, metavar="N",
-                        help=f"with --relightable: textures, 2 to {LARGEST_COMPONENTS} (default: {DEFAULT_COMPONENTS})")
+                        help=f"with --relightable: textures, {FEWEST_COMPONENTS} to {LARGEST_COMPONENTS}"
+                        f" (default: {DEFAULT_COMPONENTS})")
     parser.add_argument("--compare", action="store_true",
                         help="also bakes what can be compared with Cycles, without a margin: OUT.mesograin.exr,"
                         " OUT.cycles.exr, OUT.error.exr, PNGs, and numbers in OUT.json")
@@ -64,7 +67,7 @@ def parse(words):
         parser.error("--components needs --relightable")
     if chosen.relightable and (chosen.compare or chosen.view_from != VIEW_FROM[0]):
         parser.error("--relightable is neither compared nor baked for a camera: leave out --compare and --view-from")
-    chosen.samples = chosen.samples or (4 if chosen.relightable else 64)
+    chosen.samples = chosen.samples or (SAMPLES_OF_A_DIRECTION if chosen.relightable else SAMPLES)
     chosen.components = chosen.components or DEFAULT_COMPONENTS
     return chosen
 
@@ -85,8 +88,9 @@ def _size(text):
 
 
 def _components(text):
-    if not text.isdigit() or not 2 <= int(text) <= LARGEST_COMPONENTS:
-        raise argparse.ArgumentTypeError(f"a whole number from 2 to {LARGEST_COMPONENTS} is needed, '{text}' came")
+    if not text.isdigit() or not FEWEST_COMPONENTS <= int(text) <= LARGEST_COMPONENTS:
+        raise argparse.ArgumentTypeError(
+            f"a whole number from {FEWEST_COMPONENTS} to {LARGEST_COMPONENTS} is needed, '{text}' came")
     return int(text)
 
 

@@ -12,6 +12,11 @@ LARGEST_MARGIN = 32767
 DEFAULT_MARGIN = 16
 """Texels, as of Blender's own bake."""
 
+FEWEST_COMPONENTS = 2
 DEFAULT_COMPONENTS = 8
 LARGEST_COMPONENTS = 25
 """Textures of a relightable bake."""
+
+SAMPLES = 64
+SAMPLES_OF_A_DIRECTION = 4
+"""A texel, unless asked otherwise: of a bake, and of a relightable one."""

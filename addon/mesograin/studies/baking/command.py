@@ -64,20 +64,22 @@ def _bake_shown(chosen, depsgraph, progress):
 
 
 def _bake_relightable(chosen, depsgraph, name, overrides, progress):
-    from mesograin.studies.baking import relightable_command, relightable_files
+    from mesograin.studies.baking import relightable_files
+    from mesograin.studies.baking.relightable_bake import RelightableBake
 
+    bake = RelightableBake(depsgraph, name, chosen.size, chosen.samples, chosen.components, overrides)
     progress.plan([(f"baking {name} from all sides", "bake", 1.0)])
     progress.begin()
-    made, sentences = relightable_command.bake(depsgraph, name, chosen.size, chosen.samples, overrides,
-                                               chosen.components, chosen.output, chosen.margin, chosen.half,
-                                               progress.update)
+    bake.bake(progress.update)
+    bake.write(chosen.output, chosen.margin, chosen.half)
+    bake.write_nodes(chosen.output)
     progress.end()
-    for sentence in sentences:
+    for sentence in bake.warnings:
         progress.say(f"bake: {sentence}")
     progress.close()
     files = ", ".join(path.name for path in relightable_files.paths(chosen.output).values())
-    print(f"{name}, {chosen.components} components of {chosen.size[0]} x {chosen.size[1]} texels: relative L1 "
-          f"{made.errors.mean():.2%} on average over {made.errors.size} directions, {made.errors.max():.2%} at worst")
+    print(f"{name}, {chosen.components} components of {chosen.size[0]} x {chosen.size[1]} texels: "
+          f"{bake.errors_in_words()}")
     print(f"{chosen.output.absolute().parent}: {files}", flush=True)
 
 

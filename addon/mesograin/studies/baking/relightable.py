@@ -28,21 +28,26 @@ class Lit:
         self._to_world, self._samples = numpy.asarray(to_world, dtype=float), samples
         self.size = tuple(size)
         self._view = native.View(*size)
+        self._cancelled = False  # between two directions no view renders
 
     def __call__(self, to_light):
-        """(h, w, 4): premultiplied by the coverage in the last channel. None if it was cancelled."""
+        """(h, w, 4): premultiplied by the coverage in the last channel. None once it was cancelled."""
+        if self._cancelled:
+            return None
         towards = self._to_world @ to_light
         light = self._native.DirectionalLight(tuple(towards / numpy.linalg.norm(towards)), (1.0, 1.0, 1.0))
         self._view.set_scene(self._native.Scene(instances=self._instances, lights=[light], exchange="off"))
         self._view.set_bake(list(range(len(self._instances))), "above_surface")
         self._view.render(self._samples)
-        return self._view.read() if self._view.samples == self._samples else None
+        return None if self._cancelled or self._view.samples != self._samples else self._view.read()
 
     @property
     def warnings(self):
         return self._view.warnings
 
     def cancel(self):
+        """For good; from any thread."""
+        self._cancelled = True
         self._view.cancel()
 
 

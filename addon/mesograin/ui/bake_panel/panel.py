@@ -16,11 +16,18 @@ def draw_settings(layout, context):
     column = layout.column(align=True)
     column.prop(asked, "width", text="Texels X")
     column.prop(asked, "height", text="Y")
-    layout.prop(asked, "samples")
-    layout.prop(asked, "view_from")
+    layout.prop(asked, "relightable")
+    if asked.relightable:
+        layout.prop(asked, "components")
+        layout.prop(asked, "direction_samples", text="Samples")
+    else:
+        layout.prop(asked, "samples")
+        layout.prop(asked, "view_from")
     layout.prop(asked, "margin")
     layout.prop(asked, "half")
     layout.prop(asked, "out")
+    if asked.relightable:
+        return
     layout.column(heading="Cycles").prop(asked, "compare", text="Compare")
     if asked.compare:
         column = layout.column(align=True)
@@ -33,7 +40,8 @@ def draw_bake(layout, context):
     """The button, or how far the bake is; then what came of the last one."""
     bake = session.task
     active = context.view_layer.objects.active
-    compare = context.scene.mesograin_bake.compare
+    asked = context.scene.mesograin_bake
+    compare = asked.compare and not asked.relightable
     what = f"{active.name} to EXR" if active is not None else "to EXR"
     label = f"Bake {what} and with Cycles" if compare else f"Bake {what}"
     side_task.draw_task(layout, context, session, operators.MESOGRAIN_OT_bake, operators.MESOGRAIN_OT_cancel_bake,

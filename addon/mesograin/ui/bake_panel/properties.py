@@ -22,7 +22,7 @@ class BakeProperties(bpy.types.PropertyGroup):
 
     width: IntProperty(name="Width", default=1024, min=1, max=choices.LARGEST_SIDE, description="Texels across")
     height: IntProperty(name="Height", default=1024, min=1, max=choices.LARGEST_SIDE, description="Texels up")
-    samples: IntProperty(name="Samples", default=64, min=1, max=1 << 20, soft_max=4096,
+    samples: IntProperty(name="Samples", default=choices.SAMPLES, min=1, max=1 << 20, soft_max=4096,
                          description="Samples of each texel")
     view_from: EnumProperty(
         name="View from", default=choices.VIEW_FROM[0], description="What looks at the surface",
@@ -30,6 +30,16 @@ class BakeProperties(bpy.types.PropertyGroup):
     margin: IntProperty(name="Margin", default=choices.DEFAULT_MARGIN, min=0, max=choices.LARGEST_MARGIN, soft_max=64,
                         description="Texels by which what is baked reaches beyond the UVs")
     half: BoolProperty(name="Half floats", default=False, description="16-bit instead of 32-bit floats")
+    relightable: BoolProperty(
+        name="Relightable", default=False,
+        description="For light from anywhere, not the scene's: textures, each of which counts as much as the light's "
+        "direction says, with a node group for Cycles and EEVEE, a recipe in GLSL, and the error over 64 directions")
+    components: IntProperty(
+        name="Components", default=choices.DEFAULT_COMPONENTS, min=choices.FEWEST_COMPONENTS,
+        max=choices.LARGEST_COMPONENTS, description="Textures of a relightable bake: more are more exact")
+    direction_samples: IntProperty(
+        name="Samples of a Direction", default=choices.SAMPLES_OF_A_DIRECTION, min=1, max=1 << 20, soft_max=64,
+        description="Samples of each texel, for each direction that a relightable bake is lit from")
     compare: BoolProperty(
         name="Compare with Cycles", default=False,
         description="Bake besides, in a Blender of its own, what can be compared with Cycles, and Cycles' bake of it, "

@@ -1,8 +1,6 @@
 # The one bake that may be under way in this Blender, and what came of the last one.
-"""See `Bake`, and `compared.ComparedBake` for one that Cycles takes part in."""
+"""See `BakeSession`."""
 
-import threading
-import time
 from pathlib import Path
 
 import bpy
@@ -11,89 +9,11 @@ from ... import native_module
 from ...cycles import reference_cache
 from ...scene import as_rendered
 from ...studies.baking import surface
-from ...studies.comparison.progress import duration
+from ...studies.baking.relightable_bake import RelightableBake
 from ..side_task.session import Session
 from .compared import ComparedBake
+from .own import Bake, RelitBake, refusals
 from .properties import USUAL
-
-
-def refusals():
-    """The exceptions that say, in a sentence, why there is no texture."""
-    return surface.BakeError, surface.OutputError, native_module.get().Error
-
-
-class Bake:
-    """A texture that is being made: the surface is read at once, and a thread shades and writes it without Blender's
-    data. path: where it goes. After the end: `error`, one sentence or empty; `seconds`."""
-
-    detail = ""
-    results = None
-
-    def __init__(self, chosen, path, samples, margin, half):
-        self.surface, self.path, self.samples = chosen, path, samples
-        self._margin, self._half = margin, half
-        self.fraction = 0.0
-        self.finished = False
-        self.error = ""
-        self.seconds = 0.0
-        self._started = time.monotonic()
-        self._thread = threading.Thread(target=self._run, name="mesograin-bake", daemon=True)
-
-    def start(self):
-        self._thread.start()
-
-    @property
-    def running(self):
-        return self._thread.is_alive()
-
-    @property
-    def seconds_left(self):
-        """None while nothing is known yet."""
-        passed = time.monotonic() - self._started
-        return passed / self.fraction * (1.0 - self.fraction) if self.fraction > 0.0 else None
-
-    @property
-    def cancelled(self):
-        return not (self.running or self.finished or self.error)
-
-    @property
-    def sentences(self):
-        """What the scene has and we leave out."""
-        return self.surface.warnings
-
-    @property
-    def summary(self):
-        width, height = self.surface.size
-        return f"{self.path.name}: {self.surface.name}, {width} x {height} texels in {duration(self.seconds)}"
-
-    def cancel(self):
-        """Ends it soon, without a file."""
-        self.surface.cancel()
-
-    def look(self):
-        """Whether the thread, which goes on by itself, has ended."""
-        return not self._thread.is_alive()
-
-    def wait(self):
-        self._thread.join()
-
-    let_go = wait
-
-    def finish(self):
-        """The thread has written the file."""
-
-    def _run(self):
-        try:
-            self.finished = self.surface.render(self.samples, self._advance)
-            if self.finished:
-                surface.write(self.path, self.surface.texture(self._margin), self.surface.provenance(self._margin),
-                              self._half)
-        except refusals() as problem:
-            self.finished, self.error = False, str(problem)
-        self.seconds = time.monotonic() - self._started
-
-    def _advance(self, fraction):
-        self.fraction = fraction
 
 
 class BakeSession(Session):
@@ -130,17 +50,21 @@ register, unregister = session.register, session.unregister
 
 
 def prepare(context):
-    """The Bake or ComparedBake that the scene asks for, not yet started. Raises surface.BakeError, surface.OutputError,
-    native.Error or native_module.Unavailable with a sentence."""
+    """The Bake, RelitBake or ComparedBake that the scene asks for, not yet started. Raises surface.BakeError,
+    surface.OutputError, native.Error or native_module.Unavailable with a sentence."""
     native_module.get()
     asked = context.scene.mesograin_bake
     path = output(context.scene)
     surface.require_writable(path)
     with as_rendered.depsgraph(context) as depsgraph:
         name = surface.choose(depsgraph)
+        size = asked.width, asked.height
+        if asked.relightable:
+            relit = RelightableBake(depsgraph, name, size, asked.direction_samples, asked.components)
+            return RelitBake(relit, path, asked.margin, asked.half)
         if asked.compare:
             return _prepare_compared(asked, path, name)
-        chosen = surface.Surface(depsgraph, name, (asked.width, asked.height), asked.view_from)
+        chosen = surface.Surface(depsgraph, name, size, asked.view_from)
     return Bake(chosen, path, asked.samples, asked.margin, asked.half)
 
 
