@@ -102,6 +102,7 @@ std::shared_ptr<const Computation> Works::ask(Order order) {
   auto computation = std::make_shared<Computation>();
   Job job{std::move(order), {}, {}, {}, computation};
   job.about_body = describe_body(job.order);
+  remember(job.about_body, computation);
   job.about = job.about_body + describe(job.order.medium) + describe(of_thin(job.order.medium)) +
               describe(of_thick(job.order.medium)) + describe(of_thickest(job.order.medium)) +
               fmt::format("thick: {} {}\n", thick_spacing, thickest_spacing);
@@ -116,15 +117,27 @@ std::shared_ptr<const Computation> Works::ask(Order order) {
   return computation;
 }
 
+void Works::remember(const std::string& about_body, const std::shared_ptr<const Computation>& computation) {
+  const std::lock_guard lock(mutex_);
+  std::erase_if(asked_, [](const Asked& asked) { return asked.computation.expired(); });
+  asked_.push_back({about_body, computation});
+}
+
+bool Works::in_use(const std::string& about_body) const {
+  const std::lock_guard lock(mutex_);
+  return std::any_of(asked_.begin(), asked_.end(), [&](const Asked& asked) {
+    return asked.about_body == about_body && !asked.computation.expired();
+  });
+}
+
 std::shared_ptr<Walks> Works::walks(const Job& job, const Quality& quality, const Effort& effort) {
-  const std::string name = job.about_body + describe(quality);
-  std::shared_ptr<Walks> known = shelf_.find(name);
+  std::shared_ptr<Walks> known = shelf_.find(job.about_body, describe(quality));
   if (known) return known;
   // A mesh that is nothing for it is found out by the first of its walks; the others share the body.
-  const std::shared_ptr<Walks> other = shelf_.find(job.about_body + describe(coarse));
+  const std::shared_ptr<Walks> other = shelf_.find(job.about_body, describe(coarse));
   const auto body = other ? other->shared_body() : std::make_shared<const Body>(*job.order.mesh, job.order.stretch);
   known = std::make_shared<Walks>(body, job.order.medium.eta, quality, effort);
-  shelf_.put(name, known);
+  shelf_.put(job.about_body, describe(quality), known);
   return known;
 }
 
@@ -165,7 +178,8 @@ void Works::work(const Job& job, const std::stop_token& stop) {
   } catch (const std::exception& failure) {
     tell(nullptr, failure.what(), true);
   }
-  shelf_.trim();
+  shelf_.trim([this](const std::string& about_body) { return in_use(about_body); });
+  bytes_of_walks_ = shelf_.bytes();
 }
 
 }  // namespace mesograin::transport

@@ -9,6 +9,7 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <vector>
 
 #include "scene/mesh.h"
 #include "transport/backlog.h"
@@ -67,6 +68,9 @@ class Works {
   /// Returns at once, all being known already if it was kept. The order that came last is worked on first.
   std::shared_ptr<const Computation> ask(Order order);
 
+  /// Bytes of the walks that were kept for other media when the last order was done.
+  std::size_t bytes_of_walks() const { return bytes_of_walks_; }
+
  private:
   struct Job {
     Order order;
@@ -76,11 +80,22 @@ class Works {
     std::weak_ptr<Computation> computation;
   };
 
+  /// A body whose transport was asked for; it is in a scene for as long as the computation is held.
+  struct Asked {
+    std::string about_body;
+    std::weak_ptr<const Computation> computation;
+  };
+
+  void remember(const std::string& about_body, const std::shared_ptr<const Computation>& computation);
+  bool in_use(const std::string& about_body) const;
   void work(const Job& job, const std::stop_token& stop);
   std::shared_ptr<Walks> walks(const Job& job, const Quality& quality, const Effort& effort);
 
   TransportCache cache_;
+  mutable std::mutex mutex_;
+  std::vector<Asked> asked_;
   WalksShelf shelf_;  // of the thread
+  std::atomic<std::size_t> bytes_of_walks_{0};
   Backlog<Job> jobs_{[this](const Job& job, const std::stop_token& stop) { work(job, stop); }};
 };
 

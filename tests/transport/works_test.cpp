@@ -43,6 +43,26 @@ class WorksTest : public testing::Test {
     return stored;
   }
 
+  static Order stretched(double factor) {
+    Order stretched = order();
+    stretched.stretch[0][0] = factor;
+    return stretched;
+  }
+
+  static Order open() {
+    std::vector<glm::uvec3> faces = box_triangles();
+    faces.pop_back();
+    Order open = order();
+    open.mesh = std::make_shared<const scene::Mesh>(box_positions(), std::vector<glm::vec3>{}, faces);
+    return open;
+  }
+
+  /// What is kept after all that was asked for: an order that keeps nothing comes after it.
+  static std::size_t bytes_of_walks(Works& works) {
+    finish(*works.ask(open()));
+    return works.bytes_of_walks();
+  }
+
   static void finish(const Computation& computation) {
     while (!computation.wait(20ms)) continue;
   }
@@ -126,13 +146,33 @@ TEST_F(WorksTest, GivesUpWhatNobodyWaitsFor) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 1);
 }
 
+TEST_F(WorksTest, KeepsTheWalksOfBodiesInUseAndFewOfOthers) {
+  Works works{TransportCache(folder_)};
+  auto first = works.ask(stretched(1.0));
+  finish(*first);
+  const std::size_t one = bytes_of_walks(works);
+  ASSERT_GT(one, 0U);
+  auto second = works.ask(stretched(1.1));
+  finish(*second);
+  const std::size_t two = bytes_of_walks(works);
+  ASSERT_GT(2 * one, WalksShelf::default_limit_of_gone) << "or there is nothing to let go of";
+  EXPECT_GT(two, one + one / 2);
+  auto third = works.ask(stretched(1.2));
+  finish(*third);
+  const std::size_t three = bytes_of_walks(works);
+  EXPECT_GT(three, two + one / 2) << "all are in use";
+  first.reset();
+  second = works.ask(stretched(1.1));
+  EXPECT_TRUE(second->news().final) << "its file was found; it is in use all the same";
+  third.reset();
+  const auto fourth = works.ask(stretched(1.3));
+  finish(*fourth);
+  EXPECT_LE(bytes_of_walks(works), two + WalksShelf::default_limit_of_gone);
+}
+
 TEST_F(WorksTest, SaysWhatIsNothingForIt) {
   Works works{TransportCache(folder_)};
-  std::vector<glm::uvec3> faces = box_triangles();
-  faces.pop_back();
-  Order open = order();
-  open.mesh = std::make_shared<const scene::Mesh>(box_positions(), std::vector<glm::vec3>{}, faces);
-  const auto hole = works.ask(open);
+  const auto hole = works.ask(open());
   Order thick = order();
   thick.medium.sigma_t = glm::dvec3(1e4);
   const auto far = works.ask(thick);
