@@ -26,9 +26,12 @@ struct Quality {
 /// than the default, but with no more rays in all than 10^4 grains have there.
 Quality quality_for(std::size_t grains);
 
-/// For a first picture: within a tenth of what the default finds.
+/// For a first picture of 10^4 grains or more.
 inline constexpr Quality coarse{
     .rays = 16, .wall_rays = 32, .light_rays = 24, .seen_rays = 8, .tolerance = 5e-3F, .walks = 512, .quick = true};
+
+/// For a first picture of so many: within a tenth of what the default finds.
+Quality coarse_for(std::size_t grains);
 
 /// How often each part of a solution was found anew.
 struct Parts {

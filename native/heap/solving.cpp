@@ -107,7 +107,7 @@ void Solvers::work(const std::weak_ptr<Solving>& of, const std::stop_token& stop
     if (!wanted || stop.stop_requested()) given_up = true;
   };
   try {
-    solve(coarse, transport::part_of(effort, 0.0, quick_share), false);
+    solve(coarse_for(heap->grains.grains.size()), transport::part_of(effort, 0.0, quick_share), false);
     if (of.expired()) return;
     solve(quality_for(heap->grains.grains.size()), transport::part_of(effort, quick_share, 1.0), true);
   } catch (const transport::Stopped&) {

@@ -141,7 +141,7 @@ TEST(Solver, KeepsWhatItFoundBeforeItWasStopped) {
 TEST(Solver, HasFewerRaysWhereGrainsAreMany) {
   for (const int grains : {10'000, 100'000}) EXPECT_EQ(quality_for(grains).rays, Quality().rays);
   for (const std::size_t grains : {std::size_t{0}, std::size_t{1}, std::size_t{100'000'000}}) {
-    EXPECT_GE(quality_for(grains).rays, coarse.rays);
+    EXPECT_GE(quality_for(grains).rays, coarse_for(grains).rays);
     EXPECT_LE(quality_for(grains).rays, 8 * Quality().rays);
   }
   EXPECT_EQ(quality_for(1000).rays, 8 * Quality().rays);

@@ -245,6 +245,15 @@ def test_a_change_finds_anew_what_it_touches(viewport, change, redone):
     assert {name: found(view)[name] - before[name] for name in redone} == redone
 
 
+# Measured: 8.9 %; with the rays of a heap of 10^4, 14.4 %.
+def test_the_first_answer_after_grains_moved_is_within_a_tenth(viewport):
+    view, array = viewport
+    view.set_scene(lit(native.InstanceArray(ROUND, array.material, array.transforms * MOVED)))
+    pictures = list(each_news(view))
+    assert len(pictures) == 2
+    assert apart(pictures[0], pictures[1]) < 0.1
+
+
 MOVED = numpy.ones((len(SPHERES), 4, 4))
 MOVED[::7, :3, 3] = 1.01
 
