@@ -15,6 +15,7 @@ from addon_rooms import ADDON, room
 
 colours = room("report.colours")
 payload = room("report.payload")
+plots = room("report.plots")
 
 BUILDER = ADDON / "mesograin" / "report" / "build.py"
 
@@ -182,6 +183,28 @@ def test_plots_are_files_too(built):
         assert words in figure, words
     page = (built / "report.html").read_text()
     assert "#010203" not in page, "a plot in the page has the page's colours"
+
+
+def test_names_in_the_plot_of_costs_cover_nothing():
+    def case(model, reference, seconds, error, their_seconds, noise):
+        return {"model": model, "reference_title": reference, "our_seconds": seconds, "reference_seconds": their_seconds,
+                "metrics": {"relative_l1_corrected": error}, "noise_floor": {"relative_l1": noise}}
+
+    cases = [case("lambert", "Cycles Diffuse BSDF", 0.33, 0.0003, 0.31, 0.0007),
+             case("conductor", "Cycles Glossy BSDF, GGX", 0.23, 0.0016, 0.3, 0.0029),
+             case("model_2", "Cycles volume", 0.97, 0.007, 4.4, 0.044),
+             case("model_3", "Cycles volume", 0.75, 0.0034, 4.4, 0.044)]
+    figure = plots.cost(cases)(plots.PAPER)
+    figure.canvas.draw()
+    axes = figure.axes[0]
+    names = {text.get_text(): text.get_window_extent() for text in axes.texts}
+    assert {"model 3", "Cycles Glossy BSDF, GGX"} <= set(names)
+    dots = [axes.transData.transform(line.get_xydata()[0]) for line in axes.lines if len(line.get_xydata()) == 1]
+    assert len(dots) == 7
+    for name, box in names.items():
+        covered = [other for other, its in names.items() if other != name and box.overlaps(its)]
+        assert not covered, (name, covered)
+        assert not [dot for dot in dots if box.contains(*dot)], name
 
 
 def test_every_number_has_its_definition_one_click_away(built):

@@ -15,6 +15,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
+from matplotlib.transforms import Bbox
 
 from . import colours
 from .wording import form, headline, named
@@ -126,25 +127,45 @@ def cost(cases):
             fewer = at * (noise / top) ** 2
             axes.plot([fewer, at], [top, noise], color=palette.theirs, linewidth=1.0, linestyle=(0, (1, 2)))
             axes.plot([at], [noise], marker="s", color=palette.theirs, markersize=6)
-            axes.annotate(title, (at, noise), (7, 0), textcoords="offset points", va="center", fontsize=8.5,
-                          color=palette.quiet)
-        labelled = []
         models = [dot[2]["model"] for dot in shown]
-        for number, (at, error, case) in enumerate(shown):
+        names = [(title, place, palette.quiet, (_RIGHT, _ABOVE, _BELOW)) for title, place in theirs.items()]
+        for at, error, case in shown:
             axes.plot([at], [error], marker="o", color=palette.ours, markersize=6)
             twice = models.count(case["model"]) > 1
             label = named(case["model"]) + (f", {case['reference_title']}" if twice else "")
-            # Above and below by turns: models of one kind are often as far off as each other.
-            side = 1 if number % 2 == 0 else -1
-            near = [other for other in labelled if other[0] == side and at < 2.5 * other[1] and
-                    abs(numpy.log10(error / other[2])) < 0.4]
-            labelled.append((side, at, error))
-            axes.annotate(label, (at, error), (0, (8 + 11 * len(near)) * side), textcoords="offset points", ha="center",
-                          va="bottom" if side > 0 else "top", fontsize=8.5)
+            names.append((label, (at, error), palette.ink, (_ABOVE, _BELOW, _RIGHT, _LEFT, _HIGHER, _LOWER)))
+        _put_names(axes, names)
         axes.grid(True, which="major")
         return figure
 
     return draw
+
+
+# Where a name stands beside its dot: the offset in points, and which of its sides lie there.
+_ABOVE, _BELOW = ((0, 8), "center", "bottom"), ((0, -8), "center", "top")
+_RIGHT, _LEFT = ((7, 0), "left", "center"), ((-7, 0), "right", "center")
+_HIGHER, _LOWER = ((0, 20), "center", "bottom"), ((0, -20), "center", "top")
+
+
+def _put_names(axes, names):
+    """Names of dots, [(text, (x, y), colour, places)], each at the first of its places where it covers no dot and no
+    name before it, or where it covers least. Once the axes have their limits."""
+    axes.figure.draw_without_rendering()  # lays the axes out
+    dots = axes.transData.transform([place for _, place, _, _ in names])
+    taken = [Bbox.from_extents(*(dot - 4.0), *(dot + 4.0)) for dot in dots]
+
+    def covered(text):
+        over = [Bbox.intersection(text.get_window_extent(), box) for box in taken]
+        return sum(box.width * box.height for box in over if box is not None)
+
+    for name, dot, colour, places in names:
+        tried = [axes.annotate(name, dot, offset, textcoords="offset points", ha=across, va=along, fontsize=8.5,
+                               color=colour) for offset, across, along in places]
+        kept = min(tried, key=covered)
+        taken.append(kept.get_window_extent())
+        for text in tried:
+            if text is not kept:
+                text.remove()
 
 
 def _ours(case):
