@@ -187,8 +187,9 @@ def test_plots_are_files_too(built):
 
 def test_names_in_the_plot_of_costs_cover_nothing():
     def case(model, reference, seconds, error, their_seconds, noise):
-        return {"model": model, "reference_title": reference, "our_seconds": seconds, "reference_seconds": their_seconds,
-                "metrics": {"relative_l1_corrected": error}, "noise_floor": {"relative_l1": noise}}
+        return {"model": model, "reference_title": reference, "our_seconds": seconds,
+                "reference_seconds": their_seconds, "metrics": {"relative_l1_corrected": error},
+                "noise_floor": {"relative_l1": noise}}
 
     cases = [case("lambert", "Cycles Diffuse BSDF", 0.33, 0.0003, 0.31, 0.0007),
              case("conductor", "Cycles Glossy BSDF, GGX", 0.23, 0.0016, 0.3, 0.0029),
