@@ -21,6 +21,9 @@ std::unique_ptr<ContextThread>& instance_slot() {
   return *slot;
 }
 
+// Asked by work on the thread, which must not wait for shut_down(), which waits for it.
+thread_local ContextThread* own = nullptr;
+
 const char* error_name(GLenum error) {
   switch (error) {
     case GL_INVALID_ENUM:
@@ -41,6 +44,7 @@ const char* error_name(GLenum error) {
 }  // namespace
 
 ContextThread& ContextThread::instance() {
+  if (own != nullptr) return *own;
   const std::lock_guard lock(instance_mutex());
   std::unique_ptr<ContextThread>& slot = instance_slot();
   if (!slot) slot.reset(new ContextThread);
@@ -88,6 +92,7 @@ void ContextThread::enqueue(std::function<void()> work) {
 }
 
 void ContextThread::loop(std::promise<DeviceInfo> started) {
+  own = this;
   std::unique_ptr<EglContext> context;
   try {
     context = std::make_unique<EglContext>();

@@ -6,11 +6,13 @@
 
 #include <condition_variable>
 #include <deque>
+#include <exception>
 #include <functional>
 #include <future>
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <type_traits>
@@ -24,7 +26,8 @@ namespace mesograin::gl {
 
 class ContextThread {
  public:
-  /// Starts the thread and creates the context on first use. Throws Error if no device offers a context.
+  /// Starts the thread and creates the context on first use. Throws Error if no device offers a context. On the thread
+  /// itself it is that thread, while it is being shut down as well.
   static ContextThread& instance();
 
   /// Ends the thread and destroys the context, so that the driver unloads in order; a later instance() starts anew.
@@ -53,6 +56,16 @@ class ContextThread {
     return post(std::forward<Work>(work)).get();
   }
 
+  /// Calls `step` on the thread over and over until it returns something, which is the result. Whatever else is posted
+  /// comes in between. What it throws ends it, and so does shut_down(): the future throws it.
+  template <typename Result>
+  std::future<Result> repeat(std::function<std::optional<Result>()> step) {
+    auto repetition = std::make_shared<Repetition<Result>>(Repetition<Result>{std::move(step), {}});
+    std::future<Result> result = repetition->result.get_future();
+    enqueue_step(std::move(repetition));
+    return result;
+  }
+
   /// The one object of this type that lives as long as the context and is destroyed on its thread, before the context.
   /// To be called on that thread only.
   template <typename Companion>
@@ -68,7 +81,28 @@ class ContextThread {
   std::vector<std::string> take_gl_errors();
 
  private:
+  template <typename Result>
+  struct Repetition {
+    std::function<std::optional<Result>()> step;
+    std::promise<Result> result;
+  };
+
   ContextThread();
+
+  template <typename Result>
+  void enqueue_step(std::shared_ptr<Repetition<Result>> repetition) {
+    enqueue([this, repetition = std::move(repetition)] {
+      try {
+        if (std::optional<Result> result = repetition->step())
+          repetition->result.set_value(*std::move(result));
+        else
+          enqueue_step(repetition);
+      } catch (...) {
+        repetition->result.set_exception(std::current_exception());
+      }
+    });
+  }
+
   void enqueue(std::function<void()> work);
   void loop(std::promise<DeviceInfo> started);
   void collect_gl_errors();

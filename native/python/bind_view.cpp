@@ -53,7 +53,7 @@ bool on_main_thread() {
 // Waits without the GIL, but looks for Ctrl-C often enough that it seems immediate. On another thread it does not look:
 // each look is Python running beside Blender's main thread, which Blender before Python 3.12 does not always survive.
 void render(render::View& view, int samples) {
-  std::future<double> done = view.start(samples);
+  const std::shared_future<double> done = view.start(samples);
   if (!on_main_thread()) {
     const py::gil_scoped_release release;
     done.get();

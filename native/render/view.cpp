@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <functional>
 #include <map>
 #include <utility>
 
@@ -34,6 +35,13 @@ std::uint64_t next_id() {
 
 }  // namespace
 
+// After the samples that were asked for before.
+template <typename Change>
+auto View::change(Change&& work) {
+  if (under_way_.valid()) under_way_.wait();
+  return gl::ContextThread::instance().run(std::forward<Change>(work));
+}
+
 View::View(int width, int height, std::uint32_t seed, bool patient)
     : id_(next_id()), width_(width), height_(height), patient_(patient) {
   gl::ContextThread::instance().run([&] {
@@ -45,14 +53,14 @@ View::View(int width, int height, std::uint32_t seed, bool patient)
 View::~View() {
   cancel();
   if (!gl::ContextThread::running()) return;
-  gl::ContextThread::instance().run([this] {
+  change([this] {
     device().frames.erase(id_);
     device().cache.prune();
   });
 }
 
 void View::resize(int width, int height) {
-  gl::ContextThread::instance().run([&] { frame(id_).resize(width, height); });
+  change([&] { frame(id_).resize(width, height); });
   if (width != width_ || height != height_) *samples_ = 0;
   width_ = width;
   height_ = height;
@@ -60,7 +68,7 @@ void View::resize(int width, int height) {
 
 void View::set_scene(scene::Scene scene) {
   validate(scene);
-  gl::ContextThread::instance().run([&] {
+  change([&] {
     frame(id_).set_scene(std::move(scene));
     computations_ = frame(id_).computations();
     solving_ = frame(id_).solving();
@@ -70,18 +78,18 @@ void View::set_scene(scene::Scene scene) {
 
 void View::set_camera(const scene::Camera& camera) {
   validate(camera);
-  gl::ContextThread::instance().run([&] { frame(id_).set_camera(camera); });
+  change([&] { frame(id_).set_camera(camera); });
   *samples_ = 0;
 }
 
 void View::set_moment(const scene::Camera& camera, const scene::Scene* scene) {
   validate(camera);
   if (scene != nullptr) validate(*scene);
-  gl::ContextThread::instance().run([&] { frame(id_).set_moment(camera, scene); });
+  change([&] { frame(id_).set_moment(camera, scene); });
 }
 
 void View::set_portions(const std::vector<Portion>& portions) {
-  gl::ContextThread::instance().run([&] { frame(id_).set_portions(portions); });
+  change([&] { frame(id_).set_portions(portions); });
   *samples_ = 0;
 }
 
@@ -90,7 +98,7 @@ void View::read_portion(Portion portion, float* pixels) {
 }
 
 void View::set_bake(const Bake& bake) {
-  gl::ContextThread::instance().run([&] {
+  change([&] {
     frame(id_).set_bake(bake);
     solving_ = frame(id_).solving();
   });
@@ -103,12 +111,12 @@ UvUse View::uv_use() {
 
 void View::set_taps(int taps) {
   if (taps < 1 || taps > 65536) throw Error("taps must be in [1, 65536]; got {}.", taps);
-  gl::ContextThread::instance().run([&] { frame(id_).set_taps(taps); });
+  change([&] { frame(id_).set_taps(taps); });
   *samples_ = 0;
 }
 
 bool View::take_news() {
-  const bool news = gl::ContextThread::instance().run([&] { return frame(id_).take_news(); });
+  const bool news = change([&] { return frame(id_).take_news(); });
   if (news) *samples_ = 0;
   return news;
 }
@@ -141,52 +149,58 @@ std::vector<std::string> View::warnings() const {
 }
 
 void View::set_visibility(Visibility visibility) {
-  gl::ContextThread::instance().run([&] { frame(id_).set_visibility(visibility); });
+  change([&] { frame(id_).set_visibility(visibility); });
   *samples_ = 0;
 }
 
 void View::render(int samples) { start(samples).get(); }
 
-std::future<double> View::start(int samples) {
+std::shared_future<double> View::start(int samples) {
   if (samples < 1) throw Error("A view needs at least one sample to render; got {}.", samples);
-  *cancelled_ = false;
-  const auto draw = [id = id_, samples, done = samples_, cancelled = cancelled_, patient = patient_] {
+  const auto go_on = [cancelled = cancelled_, number = ++started_] { return *cancelled < number; };
+  std::function<std::optional<double>()> add_sample = [id = id_, done = samples_, go_on, news = patient_,
+                                                       left = samples, seconds = 0.0]() mutable {
+    if (!go_on()) return std::optional(seconds);
     const auto started = std::chrono::steady_clock::now();
     Frame& target = frame(id);
-    const auto go_on = [&] { return !*cancelled; };
-    if (patient && target.take_news()) *done = 0;
-    for (int i = 0; i < samples && go_on(); ++i) {
-      if (!target.add_sample(go_on)) break;
-      // Without this the driver would queue samples faster than it draws them, and cancelling would come too late.
-      target.finish();
-      ++*done;
-    }
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+    if (std::exchange(news, false) && target.take_news()) *done = 0;
+    const bool whole = target.add_sample(go_on);
+    // Without this the driver would queue samples faster than it draws them, and cancelling would come too late.
+    target.finish();
+    if (whole) ++*done;
+    seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+    return whole && --left > 0 ? std::nullopt : std::optional(seconds);
   };
-  if (!patient_ || !preparing()) return gl::ContextThread::instance().post(draw);
+  const bool earlier = under_way_.valid() && under_way_.wait_for(std::chrono::seconds(0)) != std::future_status::ready;
+  if (!earlier && (!patient_ || !preparing())) {
+    under_way_ = gl::ContextThread::instance().repeat(std::move(add_sample)).share();
+    return under_way_;
+  }
   // The context's thread goes on drawing for others meanwhile.
-  return std::async(std::launch::async,
-                    [draw, computations = computations_, solving = solving_, cancelled = cancelled_] {
-                      constexpr std::chrono::milliseconds patience(20);
-                      const auto known = [&](const auto& computation) {
-                        while (!computation->wait(patience))
-                          if (*cancelled) return false;
-                        return true;
-                      };
-                      if (!std::all_of(computations.begin(), computations.end(), known) || (solving && !known(solving)))
-                        return 0.0;
-                      return gl::ContextThread::instance().run(draw);
-                    });
+  under_way_ = std::async(std::launch::async, [add_sample = std::move(add_sample), go_on, before = under_way_,
+                                               computations = computations_, solving = solving_]() mutable {
+                 if (before.valid()) before.wait();
+                 constexpr std::chrono::milliseconds patience(20);
+                 const auto known = [&](const auto& computation) {
+                   while (!computation->wait(patience))
+                     if (!go_on()) return false;
+                   return true;
+                 };
+                 if (!std::all_of(computations.begin(), computations.end(), known) || (solving && !known(solving)))
+                   return 0.0;
+                 return gl::ContextThread::instance().repeat(std::move(add_sample)).get();
+               }).share();
+  return under_way_;
 }
 
-void View::cancel() { *cancelled_ = true; }
+void View::cancel() { *cancelled_ = started_.load(); }
 
 void View::read(float* pixels) {
   gl::ContextThread::instance().run([&] { frame(id_).read(pixels); });
 }
 
 void View::read_surfaces(float* positions, float* normals) {
-  gl::ContextThread::instance().run([&] { frame(id_).read_surfaces(positions, normals); });
+  change([&] { frame(id_).read_surfaces(positions, normals); });
 }
 
 std::vector<PassTiming> View::timings() {

@@ -18,7 +18,9 @@
 namespace mesograin::render {
 
 /// May be used from any thread, by one at a time, except cancel() and samples(), which may be called at any time.
-/// Every call posts to the context's thread. Throws Error for what cannot be drawn, always before anything changes.
+/// Every call posts to the context's thread, which draws started samples one by one: what reads this view, and all that
+/// is asked of others, comes in between them, what changes this view after the last. Throws Error for what cannot be
+/// drawn, always before anything changes.
 class View {
  public:
   /// Light's transport in meshes and light between grains are computed for seconds, elsewhere. A patient view draws
@@ -78,9 +80,9 @@ class View {
 
   /// As render(), without waiting; the future is ready when the samples are drawn or were cancelled, and holds the
   /// seconds that they took.
-  std::future<double> start(int samples);
+  std::shared_future<double> start(int samples);
 
-  /// Ends the start() or render() under way after its current sample; without one it does nothing.
+  /// Ends each start() and render() under way after its current sample; without one it does nothing.
   void cancel();
 
   /// Samples in the mean so far.
@@ -115,7 +117,13 @@ class View {
   std::vector<std::shared_ptr<const transport::Computation>> computations_;
   std::shared_ptr<const heap::Solving> solving_;  // null where no light goes from grain to grain
   std::shared_ptr<std::atomic<int>> samples_ = std::make_shared<std::atomic<int>>(0);
-  std::shared_ptr<std::atomic<bool>> cancelled_ = std::make_shared<std::atomic<bool>>(false);
+  std::shared_future<double> under_way_;  // what was started last; not valid before
+  std::atomic<std::uint64_t> started_ = 0;
+  // How many of those started are to end.
+  std::shared_ptr<std::atomic<std::uint64_t>> cancelled_ = std::make_shared<std::atomic<std::uint64_t>>(0);
+
+  template <typename Change>
+  auto change(Change&& work);
 };
 
 }  // namespace mesograin::render

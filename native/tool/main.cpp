@@ -101,7 +101,7 @@ void run(const Options& options) {
   view.set_camera(file.camera);
   if (options.bake) set_bake(view, options, file.scene.instances.size());
   tool::Progress progress(options.samples);
-  std::future<double> done = view.start(options.samples);
+  const std::shared_future<double> done = view.start(options.samples);
   while (done.wait_for(std::chrono::milliseconds(50)) != std::future_status::ready)
     if (!options.quiet) progress.show(view.samples(), view.preparing());
   done.get();

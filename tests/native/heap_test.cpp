@@ -417,7 +417,7 @@ TEST_F(HeapTest, ACancelledSampleAddsNothing) {
   View view(64, 64);
   view.set_scene(array_of(ball, {}, places, {sun({0.5, 0.0, 1.0}, pi)}));
   view.set_camera(scene::Camera::look_at({0, 0, 8}, {0, 0, 0}, {0, 1, 0}, 30.0));
-  std::future<double> done = view.start(1000);
+  const std::shared_future<double> done = view.start(1000);
   view.cancel();
   done.get();
   EXPECT_LT(view.samples(), 1000);

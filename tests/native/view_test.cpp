@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
@@ -251,12 +252,99 @@ TEST_F(ViewTest, CancelEndsARenderEarly) {
   View view(256, 256);
   view.set_scene(one_square_);
   view.set_camera(straight_camera());
-  std::future<double> done = view.start(1'000'000);
+  const std::shared_future<double> done = view.start(1'000'000);
   while (view.samples() == 0) std::this_thread::yield();
   view.cancel();
   done.get();
   EXPECT_GE(view.samples(), 1);
   EXPECT_LT(view.samples(), 1'000'000);
+}
+
+TEST_F(ViewTest, ReadingWaitsForTheSampleUnderWayAndNotForAll) {
+  View drawing(64, 64);
+  View beside(64, 64);
+  for (View* view : {&drawing, &beside}) {
+    view->set_scene(one_square_);
+    view->set_camera(straight_camera());
+  }
+  const std::shared_future<double> done = drawing.start(1'000'000);
+  while (drawing.samples() == 0) std::this_thread::yield();
+  EXPECT_EQ(pixel(picture(beside, 2), 64, 32, 32)[3], 1.0F);
+  std::vector<float> pixels(std::size_t{64} * 64 * 4);
+  drawing.read(pixels.data());
+  EXPECT_FLOAT_EQ(pixel(pixels, 64, 32, 32)[0], 0.5F);
+  EXPECT_FALSE(drawing.timings().empty());
+  EXPECT_EQ(drawing.statistics().instances, 0U);
+  EXPECT_NE(done.wait_for(std::chrono::seconds(0)), std::future_status::ready);
+  drawing.cancel();
+  EXPECT_GT(done.get(), 0.0);
+}
+
+TEST_F(ViewTest, WhatComesBetweenSamplesLeavesThePictureAsItIsBitForBit) {
+  const scene::Scene sphere{{{std::make_shared<scene::Mesh>(scene::unit_sphere(24, 12)), lambert_}},
+                            {scene::DirectionalLight{{0.3, 0.4, 1}, {pi, 2 * pi, 3 * pi}, 0.5}}};
+  View alone(24, 24, 7);
+  View disturbed(24, 24, 7);
+  View other(16, 16, 3);
+  for (View* view : {&alone, &disturbed}) {
+    view->set_scene(sphere);
+    view->set_camera(scene::Camera::look_at({0.3, 0.2, 4}, {0, 0, 0}, {0, 1, 0}, 45.0));
+  }
+  other.set_scene(one_square_);
+  other.set_camera(straight_camera());
+  const std::vector<float> expected = picture(alone, 200);
+  std::vector<float> found(expected.size());
+  const std::shared_future<double> done = disturbed.start(200);
+  int between = 0;
+  for (; done.wait_for(std::chrono::seconds(0)) != std::future_status::ready; ++between) {
+    disturbed.read(found.data());
+    picture(other, 1);
+  }
+  EXPECT_GT(between, 2);
+  EXPECT_EQ(disturbed.samples(), 200);
+  disturbed.read(found.data());
+  EXPECT_EQ(found, expected);
+}
+
+TEST_F(ViewTest, AChangeComesAfterTheSamplesThatWereAskedForBefore) {
+  View view(32, 32);
+  view.set_scene(one_square_);
+  view.set_camera(straight_camera());
+  const std::shared_future<double> first = view.start(20);
+  const std::shared_future<double> second = view.start(30);
+  view.set_camera(scene::Camera::look_at({0, 0, -4}, {0, 0, 0}, {0, 1, 0}, 45.0));
+  EXPECT_EQ(first.wait_for(std::chrono::seconds(0)), std::future_status::ready);
+  EXPECT_EQ(second.wait_for(std::chrono::seconds(0)), std::future_status::ready);
+  EXPECT_EQ(view.samples(), 0);
+  EXPECT_EQ(pixel(picture(view), 32, 16, 16)[0], 0.0F);  // a sample of before would have left light
+  EXPECT_EQ(view.samples(), 4);
+}
+
+TEST_F(ViewTest, ACancelEndsAllThatWasStartedBeforeItAndNothingAfter) {
+  View view(64, 64);
+  view.set_scene(one_square_);
+  view.set_camera(straight_camera());
+  const std::shared_future<double> first = view.start(1'000'000);
+  const std::shared_future<double> second = view.start(1'000'000);
+  view.cancel();
+  const std::shared_future<double> third = view.start(3);
+  third.wait();
+  EXPECT_EQ(first.wait_for(std::chrono::seconds(0)), std::future_status::ready);
+  EXPECT_EQ(second.wait_for(std::chrono::seconds(0)), std::future_status::ready);
+  EXPECT_GE(view.samples(), 3);
+  EXPECT_LE(view.samples(), 5);
+}
+
+TEST_F(ViewTest, ShuttingDownEndsSamplesUnderWayWithAnError) {
+  View view(64, 64);
+  view.set_scene(one_square_);
+  view.set_camera(straight_camera());
+  const std::shared_future<double> done = view.start(1'000'000);
+  while (view.samples() == 0) std::this_thread::yield();
+  gl::ContextThread::shut_down();
+  EXPECT_LT(view.samples(), 1'000'000);
+  expect_error([&] { done.get(); }, "has been shut down");
+  expect_error([&] { view.render(1); }, "make a new one");
 }
 
 TEST_F(ViewTest, TimingsNameThePassesThatRan) {

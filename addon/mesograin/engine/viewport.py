@@ -217,7 +217,7 @@ class Session:
         if self._pixels is None or self._pixels.shape[:2] != (height, width):
             self._pixels = np.empty((height, width, 4), dtype=np.float32)
         self._view.read(self._pixels)
-        # Asked along with the picture: later they would wait for the samples that are under way by then.
+        # Asked along with the picture: later they would be of samples that are under way by then.
         self.timings = tuple((timing["pass"], timing["milliseconds"]) for timing in self._view.timings())
         self.exchange = status.exchange(self._view)
         np.minimum(self._pixels, LARGEST_DISPLAYED, out=self._pixels)
