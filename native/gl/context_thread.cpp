@@ -82,11 +82,11 @@ ContextThread::~ContextThread() {
   if (thread_.joinable()) thread_.join();
 }
 
-void ContextThread::enqueue(std::function<void()> work) {
+void ContextThread::enqueue(Queue& queue, std::function<void()> work) {
   {
     const std::lock_guard lock(mutex_);
     if (stopping_) throw Error("The renderer has been shut down; start it again before asking for more.");
-    queue_.push_back(std::move(work));
+    queue.push_back(std::move(work));
   }
   wake_.notify_one();
 }
@@ -105,10 +105,11 @@ void ContextThread::loop(std::promise<DeviceInfo> started) {
     std::function<void()> work;
     {
       std::unique_lock lock(mutex_);
-      wake_.wait(lock, [this] { return stopping_ || !queue_.empty(); });
-      if (queue_.empty()) break;
-      work = std::move(queue_.front());
-      queue_.pop_front();
+      wake_.wait(lock, [this] { return stopping_ || !queue_.empty() || !steps_.empty(); });
+      Queue& queue = queue_.empty() ? steps_ : queue_;
+      if (queue.empty()) break;
+      work = std::move(queue.front());
+      queue.pop_front();
     }
     work();
     work = nullptr;

@@ -46,7 +46,7 @@ class ContextThread {
     using Result = std::invoke_result_t<Work>;
     auto task = std::make_shared<std::packaged_task<Result()>>(std::forward<Work>(work));
     std::future<Result> result = task->get_future();
-    enqueue([task] { (*task)(); });
+    enqueue(queue_, [task] { (*task)(); });
     return result;
   }
 
@@ -57,7 +57,7 @@ class ContextThread {
   }
 
   /// Calls `step` on the thread over and over until it returns something, which is the result. Whatever else is posted
-  /// comes in between. What it throws ends it, and so does shut_down(): the future throws it.
+  /// goes before the next step of anybody. What it throws ends it, and so does shut_down(): the future throws it.
   template <typename Result>
   std::future<Result> repeat(std::function<std::optional<Result>()> step) {
     auto repetition = std::make_shared<Repetition<Result>>(Repetition<Result>{std::move(step), {}});
@@ -91,7 +91,7 @@ class ContextThread {
 
   template <typename Result>
   void enqueue_step(std::shared_ptr<Repetition<Result>> repetition) {
-    enqueue([this, repetition = std::move(repetition)] {
+    const auto take_step = [this, repetition = std::move(repetition)] {
       try {
         if (std::optional<Result> result = repetition->step())
           repetition->result.set_value(*std::move(result));
@@ -100,17 +100,21 @@ class ContextThread {
       } catch (...) {
         repetition->result.set_exception(std::current_exception());
       }
-    });
+    };
+    enqueue(steps_, take_step);
   }
 
-  void enqueue(std::function<void()> work);
+  using Queue = std::deque<std::function<void()>>;
+
+  void enqueue(Queue& queue, std::function<void()> work);
   void loop(std::promise<DeviceInfo> started);
   void collect_gl_errors();
 
   DeviceInfo device_info_;
   std::mutex mutex_;
   std::condition_variable wake_;
-  std::deque<std::function<void()>> queue_;
+  Queue queue_;
+  Queue steps_;  // taken while there is nothing else
   std::vector<std::string> gl_errors_;
   std::map<std::type_index, std::shared_ptr<void>> companions_;
   bool stopping_ = false;

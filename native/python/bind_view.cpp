@@ -96,13 +96,17 @@ class Rendering {
   std::shared_future<double> seconds_;
 };
 
-Pixels read(render::View& view, std::optional<Pixels> out) {
+float* pixels_of(const render::View& view, Pixels& out) {
   const auto height = static_cast<py::ssize_t>(view.height());
   const auto width = static_cast<py::ssize_t>(view.width());
-  if (!out) out = Pixels({height, width, py::ssize_t{4}});
-  if (out->ndim() != 3 || out->shape(0) != height || out->shape(1) != width || out->shape(2) != 4)
+  if (out.ndim() != 3 || out.shape(0) != height || out.shape(1) != width || out.shape(2) != 4)
     throw Error("read() needs a C-contiguous float32 array of shape ({}, {}, 4).", height, width);
-  float* pixels = out->mutable_data();
+  return out.mutable_data();
+}
+
+Pixels read(render::View& view, std::optional<Pixels> out) {
+  if (!out) out = Pixels({py::ssize_t{view.height()}, py::ssize_t{view.width()}, py::ssize_t{4}});
+  float* pixels = pixels_of(view, *out);
   const py::gil_scoped_release release;
   view.read(pixels);
   return *std::move(out);
@@ -149,12 +153,7 @@ py::dict read_surfaces(render::View& view) {
   return result;
 }
 
-py::list timings(render::View& view) {
-  std::vector<render::PassTiming> passes;
-  {
-    const py::gil_scoped_release release;
-    passes = view.timings();
-  }
+py::list of_timings(const std::vector<render::PassTiming>& passes) {
   py::list result;
   for (const render::PassTiming& timing : passes) {
     py::dict entry;
@@ -163,6 +162,13 @@ py::list timings(render::View& view) {
     result.append(entry);
   }
   return result;
+}
+
+py::list timings(render::View& view) {
+  return of_timings([&] {
+    const py::gil_scoped_release release;
+    return view.timings();
+  }());
 }
 
 py::dict of_exchange(const render::ExchangeStatistics& exchange) {
@@ -195,17 +201,32 @@ py::dict of_exchange(const render::ExchangeStatistics& exchange) {
   return result;
 }
 
-py::dict statistics(render::View& view) {
-  const render::Statistics counts = [&] {
-    const py::gil_scoped_release release;
-    return view.statistics();
-  }();
+py::dict of_statistics(const render::Statistics& counts) {
   py::dict result;
   result["instances"] = counts.instances;
   result["drawn"] = counts.drawn;
   result["cast"] = counts.cast;
   result["seen"] = counts.seen;
   result["exchange"] = counts.exchange ? py::object(of_exchange(*counts.exchange)) : py::object(py::none());
+  return result;
+}
+
+py::dict statistics(render::View& view) {
+  return of_statistics([&] {
+    const py::gil_scoped_release release;
+    return view.statistics();
+  }());
+}
+
+py::dict read_told(render::View& view, Pixels out) {
+  float* pixels = pixels_of(view, out);
+  const render::View::Told told = [&] {
+    const py::gil_scoped_release release;
+    return view.read_told(pixels);
+  }();
+  py::dict result;
+  result["timings"] = of_timings(told.timings);
+  result["statistics"] = of_statistics(told.statistics);
   return result;
 }
 
@@ -361,6 +382,9 @@ void bind_view(py::module_& module) {
            "about "
            "that, 'stuff': [{'surface', 'thickness', 'albedo'}] of what they are made of, the last two from least to "
            "most, in mean free paths to the radius and of one scattering}}.")
+      .def("read_told", &read_told, py::arg("out"),
+           "As read(), and what is told of the same samples: {'timings', 'statistics'}. One after the other each would "
+           "wait for the sample under way.")
       .def("read_surfaces", &read_surfaces,
            "What rays through the pixels' middles meet, whatever the samples so far: {'position': (height, width, 4) "
            "float32, in the world, and 1, or 0 where they meet nothing; 'normal': (height, width, 3), of unit length, "

@@ -199,6 +199,14 @@ void View::read(float* pixels) {
   gl::ContextThread::instance().run([&] { frame(id_).read(pixels); });
 }
 
+View::Told View::read_told(float* pixels) {
+  return gl::ContextThread::instance().run([&] {
+    Frame& target = frame(id_);
+    target.read(pixels);
+    return Told{target.timings(), target.statistics()};
+  });
+}
+
 void View::read_surfaces(float* positions, float* normals) {
   change([&] { frame(id_).read_surfaces(positions, normals); });
 }

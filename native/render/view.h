@@ -95,6 +95,15 @@ class View {
   /// in a bake is v = 1.
   void read(float* pixels);
 
+  struct Told {
+    std::vector<PassTiming> timings;
+    Statistics statistics;
+  };
+
+  /// As read(), and what timings() and statistics() tell of the same samples: who asks one after the other waits for
+  /// the sample under way each time.
+  Told read_told(float* pixels);
+
   /// What rays through the pixels' middles meet, whatever the samples so far: (height, width, 4) floats, where in the
   /// world, and 1, or 0 where they meet nothing; and (height, width, 3), the normal on the side that is seen. First row
   /// at the top. Throws Error for a bake.

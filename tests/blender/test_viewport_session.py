@@ -116,6 +116,17 @@ def test_a_change_gives_up_samples_that_would_only_refine(drag, native):
     assert session.samples == 1
 
 
+def test_it_is_known_how_long_a_change_waits_for_its_picture(drag):
+    _, session = drag(sample_seconds=0.3, redraw_seconds=0.0)
+    time.sleep(0.2)
+    assert 0.2 <= session.seconds_behind < 60.0
+    deadline = time.monotonic() + 60.0
+    while session.busy or session.samples < 2:
+        assert time.monotonic() < deadline
+        session.advance(2)
+    assert session.seconds_behind == 0.0
+
+
 def test_an_error_of_what_was_shown_before_is_not_that_of_what_is_shown(drag, native, monkeypatch):
     _, session = drag(sample_seconds=0.0, redraw_seconds=0.02)
     session.advance(64)

@@ -3,10 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
+#include <memory>
 #include <thread>
 
 #include "expect_error.h"
@@ -275,9 +277,35 @@ TEST_F(ViewTest, ReadingWaitsForTheSampleUnderWayAndNotForAll) {
   EXPECT_FLOAT_EQ(pixel(pixels, 64, 32, 32)[0], 0.5F);
   EXPECT_FALSE(drawing.timings().empty());
   EXPECT_EQ(drawing.statistics().instances, 0U);
+  std::fill(pixels.begin(), pixels.end(), 0.0F);
+  EXPECT_EQ(drawing.read_told(pixels.data()).timings.size(), 2U);
+  EXPECT_FLOAT_EQ(pixel(pixels, 64, 32, 32)[0], 0.5F);
   EXPECT_NE(done.wait_for(std::chrono::seconds(0)), std::future_status::ready);
   drawing.cancel();
   EXPECT_GT(done.get(), 0.0);
+}
+
+TEST_F(ViewTest, ReadingGoesBeforeTheSamplesOfOthers) {
+  std::vector<std::unique_ptr<View>> views;
+  std::vector<std::shared_future<double>> done;
+  for (int i = 0; i < 8; ++i) {
+    views.push_back(std::make_unique<View>(64, 64));
+    views.back()->set_scene(one_square_);
+    views.back()->set_camera(straight_camera());
+    done.push_back(views.back()->start(1'000'000));
+  }
+  while (views.back()->samples() == 0) std::this_thread::yield();
+  const auto samples = [&] {
+    int sum = 0;
+    for (const auto& view : views) sum += view->samples();
+    return sum;
+  };
+  std::vector<float> pixels(std::size_t{64} * 64 * 4);
+  constexpr int readings = 20;
+  const int before = samples();
+  for (int i = 0; i < readings; ++i) views[0]->read(pixels.data());
+  EXPECT_LE(samples() - before, 3 * readings);  // where it waited its turn, 8 * readings
+  for (const auto& view : views) view->cancel();
 }
 
 TEST_F(ViewTest, WhatComesBetweenSamplesLeavesThePictureAsItIsBitForBit) {

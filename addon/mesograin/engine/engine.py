@@ -17,6 +17,8 @@ SHOW_SECONDS = 0.5
 # How often a viewport that waits for light between grains is asked for news. Redraws for that would take the processor
 # from what is waited for: Blender's own cost more than ours.
 LOOK_SECONDS = 0.05
+# After so long without a picture of what changed a viewport says that it is drawing: a new program may take seconds.
+BEHIND_SECONDS = 1.0
 
 _sessions = weakref.WeakSet()
 
@@ -90,8 +92,9 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
         for warning in view.warnings:
             self.report({"WARNING"}, warning)
         timings = tuple((timing["pass"], timing["milliseconds"]) for timing in view.timings())
+        exchange = status.exchange(view.statistics())
         status.put(status.RENDER, status.Status(view.samples, region.width, region.height, timings,
-                                                (*warnings, *view.warnings), exchange=status.exchange(view)))
+                                                (*warnings, *view.warnings), exchange=exchange))
 
     def _camera(self, depsgraph, width, height, region, eye):
         """native.Camera of the eye of this name, or of the camera as it is."""
@@ -189,6 +192,8 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
                 pixels = session.picture()  # at rest nothing new would come
             if pixels is not None:
                 self._take(pixels, region, scene)
+            elif session.seconds_behind > BEHIND_SECONDS:
+                self.update_stats("", f"Drawing, {session.seconds_behind:.0f} s")
             if pixels is not None or (session.busy and not session.waits):
                 self.tag_redraw()  # the text line of a redraw is what was said before it
             elif session.waits and not bpy.app.timers.is_registered(_look):

@@ -30,9 +30,9 @@ class Exchange:
                 + ("" if self.final else ", being refined"))
 
 
-def exchange(view):
-    """Exchange of what a native.View draws; None where no light goes from grain to grain."""
-    counts = view.statistics()["exchange"]
+def exchange(statistics):
+    """Exchange of what native.View.statistics() tells; None where no light goes from grain to grain."""
+    counts = statistics["exchange"]
     return counts and Exchange(**{field.name: counts[field.name] for field in dataclasses.fields(Exchange)
                                   if field.name in counts}, stated_error=stated_error.sentence(counts))
 

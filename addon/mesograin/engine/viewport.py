@@ -34,6 +34,7 @@ class Session:
         self._pixels = None
         self._kept = None  # (picture, samples) that is finished, and not yet returned
         self._seen = False  # whether a picture of the view's scene and camera was returned
+        self._restarted = 0.0  # when the view's picture was last begun
         self._task = None
         self._preparing = False  # whether more may become known of what the view draws
         self._fade = None  # (picture before that, when the other's first was read)
@@ -109,6 +110,11 @@ class Session:
         """Whether a session that waits has a reason for a redraw. Starts samples of what has become known."""
         self._keep_busy()
         return not self.waits
+
+    @property
+    def seconds_behind(self):
+        """How long what was asked for has waited for its first picture; 0 if there is one."""
+        return 0.0 if self._seen else time.perf_counter() - self._restarted
 
     @property
     def preparing(self):
@@ -204,6 +210,7 @@ class Session:
         self._chunk = 1
         self.samples = 0
         self._seen = False
+        self._restarted = time.perf_counter()
 
     def _adapt(self, seconds):
         # A fast device does several samples between two redraws, which cost as much as many samples.
@@ -216,10 +223,9 @@ class Session:
         width, height = self.size
         if self._pixels is None or self._pixels.shape[:2] != (height, width):
             self._pixels = np.empty((height, width, 4), dtype=np.float32)
-        self._view.read(self._pixels)
-        # Asked along with the picture: later they would be of samples that are under way by then.
-        self.timings = tuple((timing["pass"], timing["milliseconds"]) for timing in self._view.timings())
-        self.exchange = status.exchange(self._view)
+        told = self._view.read_told(self._pixels)
+        self.timings = tuple((timing["pass"], timing["milliseconds"]) for timing in told["timings"])
+        self.exchange = status.exchange(told["statistics"])
         np.minimum(self._pixels, LARGEST_DISPLAYED, out=self._pixels)
         if self._fade:
             self._fade_over()
