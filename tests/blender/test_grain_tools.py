@@ -6,6 +6,7 @@ from mathutils import Vector
 
 from mesograin.grains import kinds, objects, pile
 from mesograin.scene import export, meshes
+from mesograin.ui import look, notes
 
 
 def read_scene():
@@ -95,6 +96,18 @@ def test_a_pile_is_instances_that_do_not_overlap(native):
     assert (middles[:, 2] - radii).min() > -0.002
     assert 0.08 <= radii.min() < 0.085 and 0.115 < radii.max() <= 0.12
     assert middles[:, 2].max() > 0.5, "it is a heap"
+
+
+def test_a_piles_material_is_that_of_its_grains(native):
+    assert bpy.ops.mesograin.add_pile(kind="sand", count=20, segments=4) == {"FINISHED"}
+    heap = bpy.context.object
+    [material] = heap.data.materials
+    assert {shape.active_material for shape in bpy.data.collections["Pile grains"].objects} == {material}
+    assert not notes.lacks_grain(heap)
+    assert look.hint(material, heap, 1.0) == "", "it is no grain as large as the pile"
+    material.mesograin.sigma_s = (3.0, 4.0, 5.0)
+    drawn = read_scene().instances
+    assert len(drawn) == 20 and {dict(grain.material.values)["sigma_s"] for grain in drawn} == {(3.0, 4.0, 5.0)}
 
 
 def test_a_pile_fills_a_box_and_lies_on_a_surface(native):

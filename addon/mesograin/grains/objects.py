@@ -47,9 +47,12 @@ def add_grain(kind, name=None, size=1.0, **habit):
 
 def add_pile(placings, shapes, name="Pile"):
     """bpy.types.Object, in no collection yet, that holds an instance of one of the objects `shapes`, each as large as
-    the unit sphere, at each of pile.Placings: the vertices of its mesh, instanced by geometry nodes."""
+    the unit sphere, at each of pile.Placings: the vertices of its mesh, instanced by geometry nodes. It has the shapes'
+    materials, too: nobody would look for them in the collection."""
     data = bpy.data.meshes.new(name)
     data.from_pydata(placings.middles.tolist(), [], [])
+    for each in dict.fromkeys(each for shape in shapes for each in shape.data.materials):
+        data.materials.append(each)
     for attribute, kind, values in (("turn", "FLOAT_VECTOR", placings.angles), ("size", "FLOAT", placings.radii),
                                     ("shape", "INT", placings.shapes)):
         layer = data.attributes.new(attribute, kind, "POINT")

@@ -102,6 +102,8 @@ class LookProperties(bpy.types.PropertyGroup):
 
 def hint(material, thing, millimetres_per_unit):
     """A sentence on how thick a bpy.types.Object of this material is for light; empty where there is nothing to say."""
+    if thing.type == "MESH" and not thing.data.polygons:  # a pile, whose grains are elsewhere
+        return ""
     paths = _paths(material.mesograin_look)
     sizes = [size * millimetres_per_unit for size in thing.dimensions]
     thick = thick_layer.thickness(sizes, paths)
