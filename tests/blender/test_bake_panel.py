@@ -212,3 +212,9 @@ def test_a_bake_that_is_refused_before_the_end_of_another_was_told_disturbs_noth
     with pytest.raises(session.refusals()):
         session.start(bpy.context)
     assert session.task is None and session.poll() is None
+
+
+@pytest.mark.parametrize("fraction, percent", [(0.0026, 0.0), (0.336, 34.0), (1.0, 100.0)])
+def test_the_bar_has_no_digits_behind_the_point(monkeypatch, fraction, percent):
+    monkeypatch.setattr(type(session), "fraction", fraction)
+    assert bpy.context.window_manager.mesograin_bake_progress == percent

@@ -12,7 +12,7 @@ from . import conversion, look, named_things, presets
 ENGINES = {engine.MesograinRenderEngine.bl_idname}
 # At a UI scale of 1, in pixels: the average width of a character, and what margins and an icon take of a panel's width.
 CHARACTER_WIDTH = 6.5
-MARGINS = 95
+MARGINS = 75
 # What is left for text of one of a popover's units of width, 20 pixels.
 POPOVER_UNIT = 17
 MEDIUM = ("sigma_s", "sigma_a", "scale", "g", "profile")

@@ -91,7 +91,7 @@ class Session:
         # A property, because a slider is how Blender before 4.0 draws a bar; it is read from here and cannot be set.
         setattr(bpy.types.WindowManager, self.progress, FloatProperty(
             name="Progress", min=0.0, max=100.0, subtype="PERCENTAGE", precision=0,
-            get=lambda _: 100.0 * self.fraction))
+            get=lambda _: float(round(100.0 * self.fraction))))  # of smaller numbers Blender shows digits
         bpy.app.handlers.load_pre.append(self._forget_handler)
 
     def unregister(self):
