@@ -12,7 +12,7 @@ import resident
 from mesograin import compat
 from mesograin.engine import status
 
-SCREEN = (900, 640)
+SCREEN = (640, 480)  # small: without a GPU a redraw of Blender costs by its pixels
 BETWEEN = (0.02, 0.05, 0.15, 0.4)  # s that may pass between two operations
 TOO_LONG = 20.0  # s without an answer that are worth a word
 STEPS_OF_A_DRAG = 6

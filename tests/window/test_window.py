@@ -9,14 +9,14 @@ import pytest
 from launch import HERE, launch
 
 EMPTY_FOLDER = tempfile.mkdtemp(prefix="mesograin-no-native-")
-SMALL, TALL, TALLER = (900, 640), (1100, 1000), (1100, 1400)
+SMALLEST, SMALL, TALL, TALLER = (640, 480), (900, 640), (1100, 1000), (1100, 1400)
 SIMULATED = ["--enable-event-simulate"]
 LIMIT = 1500 + 3 * int(os.environ.get("MESOGRAIN_MONKEY", "0"))  # s, of one launch
 LAUNCHES = {  # what is checked, in which environment, on a screen of which size, with which of Blender's options
     "viewport": ("checks_viewport", {}, SMALL, SIMULATED),
     "upheaval": ("checks_upheaval", {}, TALL, SIMULATED),
     "cancel": ("checks_cancel", {}, SMALL, []),
-    "monkey": ("checks_monkey", {}, SMALL, []),
+    "monkey": ("checks_monkey", {}, SMALLEST, []),
     "heap": ("checks_heap", {}, SMALL, SIMULATED),
     "pile": ("checks_pile", {}, SMALL, SIMULATED),
     "compare": ("checks_compare", {}, TALL, SIMULATED),
