@@ -208,7 +208,7 @@ MaterialInputs prototype_inputs(const scene::Material& material, const StoredTra
   inputs.uniforms["stored.units"] = static_cast<float>(1.0 / stored.unit);
   inputs.uniforms["stored.sigma_t"] = glm::vec3(sigma_t);
   if (!stored.has_unscattered) inputs.uniforms["stored.albedo"] = glm::vec3(stored_medium(material).albedo);
-  if (stored.convex && (!stored.has_unscattered || is_walked(material))) inputs.defines.emplace_back("CONVEX");
+  if (stored.convex) inputs.defines.emplace_back("CONVEX");
   if (is_walked(material)) {
     add_forward(material, stored, inputs);
     inputs.volumes["slopes"] = slopes_volume(stored);

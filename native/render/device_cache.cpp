@@ -248,12 +248,20 @@ const gl::Program& DeviceCache::light_map_program(bool tessellated) {
   return programs_.find(tessellated ? "light_map tessellated" : "light_map", stages);
 }
 
-const gl::Program& DeviceCache::sum_program(const DeviceMaterial& material) {
+const gl::Program& DeviceCache::sum_program(const DeviceMaterial& material, bool together) {
   std::vector<std::string> defines;
   for (const std::string define : {"GREY", "MANY_TERMS", "REFRACTION"})
     if (material.has(define)) defines.push_back(define);
+  if (together) defines.emplace_back("TOGETHER");
   return programs_.find(fmt::format("sum_products {}", fmt::join(defines, " ")),
                         {{GL_COMPUTE_SHADER, gl::ShaderSource({"passes/sum_products.comp"}, defines)}});
+}
+
+const gl::Program& DeviceCache::unscattered_program(const DeviceMaterial& material) {
+  std::vector<std::string> defines = {"REFRACTION"};
+  if (material.has("CONVEX")) defines.emplace_back("CONVEX");
+  return programs_.find(fmt::format("unscattered_light {}", fmt::join(defines, " ")),
+                        {{GL_COMPUTE_SHADER, gl::ShaderSource({"passes/unscattered_light.comp"}, defines)}});
 }
 
 const gl::Program& DeviceCache::count_program() {
@@ -280,6 +288,7 @@ const gl::Program& DeviceCache::shading(const DeviceMaterial& material, const Sh
   if (shading.near_lights) defines.emplace_back("NEAR_LIGHTS");
   if (shading.lights_about) defines.emplace_back("LIGHTS_ABOUT");
   if (shading.summed) defines.emplace_back("SUMMED");
+  if (shading.together) defines.emplace_back("TOGETHER");
   if (shading.portion) defines.push_back(fmt::format("PORTION {}", static_cast<int>(*shading.portion)));
   return program(fmt::format("{} {} {}", pass, model, fmt::join(defines, " ")), gl::ShaderSource({vertex}, {}),
                  gl::ShaderSource({"passes/" + pass + ".frag", "models/" + model + ".glsl"}, defines));

@@ -44,6 +44,7 @@ struct Shading {
   bool near_lights = false;      ///< such lights send each point of a grain that has light maps what they send there
   bool lights_about = false;     ///< and are so near that it matters where light comes in
   bool summed = false;           ///< what is stored of a prototype was summed for each light
+  bool together = false;         ///< and for all of them together
   std::optional<Portion> portion{};  ///< told alone
 };
 
@@ -148,8 +149,11 @@ class DeviceCache {
   /// The program that draws a light map, of triangles or of patches; compiled when the first material needs one.
   const gl::Program& light_map_program(bool tessellated);
 
-  /// The program that sums what is stored of a material's prototype for each light.
-  const gl::Program& sum_program(const DeviceMaterial& material);
+  /// The program that sums what is stored of a material's prototype for each light, or for all together.
+  const gl::Program& sum_program(const DeviceMaterial& material, bool together);
+
+  /// The program that finds how each light comes through it unscattered.
+  const gl::Program& unscattered_program(const DeviceMaterial& material);
 
   /// The program that counts how many triangles cover each texel of an unwrapped mesh.
   const gl::Program& count_program();

@@ -33,7 +33,7 @@ float surface_transmittance(float mu, float mu_refracted) {
 #endif
 }
 
-Outwards look_outwards(SurfacePoint point) {
+Outwards through_surface(SurfacePoint point) {
   float mu = clamp(dot(point.normal, point.to_viewer), 0.0, 1.0);
 #ifdef REFRACTION
   float mu_refracted = refracted_cosine(mu, surface.eta);

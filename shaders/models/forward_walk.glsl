@@ -3,8 +3,8 @@
 // The phase function's narrow peak is told apart: light that met nothing else is followed exactly; on the way of light that has also been
 // scattered widely the peak counts as unscattered (Iwabuchi and Suzuki, "Fast and accurate radiance calculations using truncation
 // approximation for anisotropic scattering phase functions", 2009), so that no rare walk finds as much light as thousands of others.
-// Not physical: where refraction gathers light from several places on the surface, one of them is found; what the surface reflected inside before
-// its first scattering comes from a sun that is some degrees wide; light that has left does not come back.
+// Not physical: what the surface reflected inside before its first scattering comes from a sun that is some degrees wide; light that has left
+// does not come back.
 //
 // Pasted into transport.glsl, whose grid it reads.
 
@@ -21,7 +21,6 @@ struct Forward {
   float wide_g;        // of the rest
 };
 uniform Forward forward;
-uniform sampler3D slopes;  // of `distances`, at its nodes: a walk asks for many
 
 const int EXACT_SCATTERINGS = 4;  // wide ones; from then on two of them with one medium, then two with one that scatters less often
 const float LEAST_KEPT = 0.1;     // of the first direction, by the mean cosine: then the stored source function tells the rest
@@ -29,18 +28,7 @@ const int MOST_STEPS = 40;
 const float LEAST_FLIGHT = 1e-7;       // in mean free paths
 const float LEAST_EXTINCTION = 1e-12;  // a channel of less flies through
 const int FIRST_TRIES = 2;             // to find where light came in; for what is scattered next, it is looked for near there
-const float LEAST_WIDTH = 0.2;         // of a bundle of light, over what it was as it entered: a narrower one is seen by few places
 const float SUN_SHARPNESS = 50.0;      // of the lobe exp(sharpness (cosine - 1)) that reflected light comes from
-
-// What outwards_at says, with edges rounded off over a node to either side instead of a half.
-vec3 outwards_about(vec3 place) {
-  vec3 gradient = texture(slopes, (to_nodes(place) + 0.5) / (stored.last_node + 1.0)).xyz;
-  return gradient * inversesqrt(max(dot(gradient, gradient), 1e-12));
-}
-
-vec3 perpendicular(vec3 direction) {
-  return normalize(abs(direction.z) < 0.7 ? vec3(direction.y, -direction.x, 0.0) : vec3(0.0, direction.z, -direction.y));
-}
 
 vec3 turned(vec3 direction, float versine, float random) {
   float sine = sqrt(versine * (2.0 - versine));
@@ -56,61 +44,16 @@ float scattered_versine(float g, float one_minus_g, float random) {
   return clamp((ratio - one_minus_g) * (ratio + one_minus_g) / (2.0 * g), 0.0, 2.0);
 }
 
-// Light on its way from the surface to a place inside, unscattered.
-struct Unscattered {
-  vec3 back;         // towards where it came in
-  float way;         // from there
-  float irradiance;  // on a plane that faces it, were nothing lost on the way; of parallel light of irradiance 1
-};
+#if defined(SUMMED) && defined(REFRACTION)
+uniform sampler3D unscattered_light;  // as passes/unscattered_light.comp leaves it: nodes of each light, behind one another
 
-#ifdef REFRACTION
-// Towards where light comes from that was refracted at a surface of this normal; grazing light where the surface faces away.
-vec3 back_to_entry(vec3 to_light, vec3 normal) {
-  float cosine = dot(normal, to_light);
-  vec3 aside = to_light - cosine * normal;
-  if (cosine < 0.0) aside = normalize(aside);
-  return normalize(aside / stored.eta + refracted_cosine(max(cosine, 0.0), stored.eta) * normal);
+Unscattered unscattered_found(vec3 place) {
+  vec3 node = float(FINER) * to_nodes(place) + 0.5;
+  float behind = float(looked_up_light) * (float(FINER) * stored.last_node.z + 1.0);
+  vec4 value = texture(unscattered_light, vec3(node.xy, node.z + behind) / vec3(textureSize(unscattered_light, 0)));
+  float irradiance = length(value.xyz);
+  return Unscattered(value.xyz / max(irradiance, 1e-9), max(value.w, 0.0), irradiance);
 }
-
-// `back`: about where it comes from. The light that comes in at the other end of that line passes beside the place; how far, and how that changes
-// with where it comes in, tells where light comes in that does not (a step of Newton's method).
-Unscattered unscattered_at(vec3 place, vec3 to_light, vec3 back, int tries) {
-  float way;
-  vec3 entry;
-  vec3 normal;
-  for (int i = 0; i < tries; ++i) {
-    way = way_through(place, back, FAR);
-    entry = place + way * back;
-    normal = outwards_about(entry);
-    back = back_to_entry(to_light, normal);
-  }
-  float refracted = max(dot(normal, back), 0.1);
-  vec3 first = perpendicular(back);
-  vec3 second = cross(back, first);
-  vec3 along_first = first - dot(normal, first) / refracted * back;
-  vec3 along_second = second - dot(normal, second) / refracted * back;
-  float aside = 0.5 * min(1.0 / stored.nodes_a_unit.x, min(1.0 / stored.nodes_a_unit.y, 1.0 / stored.nodes_a_unit.z));
-  vec3 normal_first = outwards_about(entry + aside * along_first);
-  vec3 normal_second = outwards_about(entry + aside * along_second);
-  vec3 turn_first = (back_to_entry(to_light, normal_first) - back) / aside;
-  vec3 turn_second = (back_to_entry(to_light, normal_second) - back) / aside;
-  mat2 spread = mat2(1.0) - way * mat2(dot(turn_first, first), dot(turn_first, second), dot(turn_second, first), dot(turn_second, second));
-  float wide = determinant(spread);
-  if (abs(wide) < LEAST_WIDTH) wide = wide < 0.0 ? -LEAST_WIDTH : LEAST_WIDTH;
-  vec3 missed = place - entry + way * back;
-  vec2 beside = vec2(dot(missed, first), dot(missed, second));
-  vec2 move = vec2(spread[1][1] * beside.x - spread[1][0] * beside.y, spread[0][0] * beside.y - spread[0][1] * beside.x) / wide;
-  move *= min(1.0, aside / max(length(move), 1e-9));  // the surface may bend otherwise farther off
-  back = normalize(back + move.x * turn_first + move.y * turn_second);
-  way = length(entry + move.x * along_first + move.y * along_second - place);
-  normal = normalize(normal + (move.x * (normal_first - normal) + move.y * (normal_second - normal)) / aside);
-  float cosine = dot(normal, to_light);
-  if (cosine <= 0.0) return Unscattered(back, way, 0.0);
-  refracted = refracted_cosine(cosine, stored.eta);
-  return Unscattered(back, way, fresnel_transmittance(cosine, refracted, stored.eta) * cosine / (refracted * abs(wide)));
-}
-#else
-Unscattered unscattered_at(vec3 place, vec3 to_light, vec3 back, int tries) { return Unscattered(to_light, way_through(place, to_light, FAR), 1.0); }
 #endif
 
 Spectrum walked_radiance(vec3 place, vec3 direction, vec3 to_light, int light) {
@@ -127,11 +70,10 @@ Spectrum walked_radiance(vec3 place, vec3 direction, vec3 to_light, int light) {
   bool first_place = true;
   float kept = 1.0;
   bool mirrored = false;
-#ifdef REFRACTION
-  vec3 here = outwards_about(place);
-  vec3 back = dot(here, to_light) > 0.0 ? back_to_entry(to_light, here) : to_light;
-#else
   vec3 back = to_light;
+#if defined(REFRACTION) && !defined(SUMMED)
+  vec3 here = outwards_about(place);
+  if (dot(here, to_light) > 0.0) back = back_to_entry(to_light, here);
 #endif
   for (int i = 0; i < MOST_STEPS; ++i) {
     vec4 random = vec4(pcg4d(seed + uvec4(0u, 0u, 0u, uint(i + 1) << 8u)) >> 8u) * (1.0 / 16777216.0);
@@ -162,7 +104,11 @@ Spectrum walked_radiance(vec3 place, vec3 direction, vec3 to_light, int light) {
         break;
       }
       mirrored = false;
+#if defined(SUMMED) && defined(REFRACTION)
+      Unscattered unscattered = unscattered_found(place);
+#else
       Unscattered unscattered = unscattered_at(place, to_light, back, first_place ? FIRST_TRIES : 1);
+#endif
       first_place = false;
       back = unscattered.back;
       float versine = 1.0 - dot(back, direction);

@@ -39,5 +39,9 @@ Outwards look_outwards(SurfacePoint point);
 // Radiance that leaves the point towards the viewer because of this light; the cosine on the light's side is inside.
 vec3 evaluate_model(SurfacePoint point, Outwards outwards, LightSample light);
 
+// That because of all lights together, but for what the surface mirrors of them; of models that are compiled TOGETHER, whose evaluate_model tells
+// that alone.
+vec3 together_lit(SurfacePoint point, Outwards outwards);
+
 // Radiance of the world that comes through the grain unscattered; of models that define CLEAR.
 vec3 crossing_light(SurfacePoint point, Outwards outwards);

@@ -4,6 +4,8 @@
 #include "models/interface.glsl"
 #include "models/portions.glsl"
 
+Outwards look_outwards(SurfacePoint point) { return through_surface(point); }
+
 vec3 evaluate_model(SurfacePoint point, Outwards outwards, LightSample light) {
   HalfSpaceLight result = half_space_light(point, outwards, light);
   vec3 radiance = portion(SINGLE_SCATTERING_PORTION, result.single) + portion(SUBSURFACE_PORTION, result.multiple);

@@ -14,6 +14,8 @@ uniform sampler2D single_difference;
 uniform float separate_single;  // how much of it is; the rest is as all that is scattered more often
 #endif
 
+Outwards look_outwards(SurfacePoint point) { return through_surface(point); }
+
 vec3 evaluate_model(SurfacePoint point, Outwards outwards, LightSample light) {
   BodyFit fit = fit_body(point, outwards, light, light_frame(light));
   HalfSpaceLight half_space = half_space_light(point, outwards, light);

@@ -328,6 +328,8 @@ Spectrum turned_to_light(BodyFit fit) {
 }
 #endif
 
+Outwards look_outwards(SurfacePoint point) { return through_surface(point); }
+
 vec3 evaluate_model(SurfacePoint point, Outwards outwards, LightSample light) {
   LightFrame frame = light_frame(light);
   BodyFit fit = fit_body(point, outwards, light, frame);

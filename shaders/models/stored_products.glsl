@@ -45,8 +45,7 @@ const int TERMS = 10;
 // Terms of the source function: of the place, blocks of nodes behind one another; of the light's direction, octahedral maps with frames below
 // one another, four terms a texel or three channels.
 uniform sampler3D sources;
-uniform sampler3D lobes;      // one texel deep
-uniform sampler3D distances;  // from the surface, negative inside
+uniform sampler3D lobes;  // one texel deep
 
 #ifdef GREY
 const int LOBE_TEXELS = TERMS / 4;

@@ -9,71 +9,35 @@
 //   CONVEX               no line leaves the grain and enters it again
 //   MANY_TERMS           more of them: the grain is not of the thickest
 //   GREY                 red, green and blue are the same medium: a texel of `sources` holds four terms, else one in three colours
-//   SUMMED               the products were summed for each light beforehand (passes/sum_products.comp)
+//   SUMMED               the products were summed for each light beforehand (passes/sum_products.comp), and where light is refracted and walked,
+//                        what is unscattered was found (passes/unscattered_light.comp)
+//   TOGETHER             and for all lights together, nothing standing in their way
 #include "heap/open_beyond.glsl"
 #include "models/dielectric.glsl"
 #include "models/interface.glsl"
 #include "models/pixel_random.glsl"
 #include "models/portions.glsl"
+#include "models/stored_grid.glsl"
 #include "models/stored_products.glsl"
+#include "models/unscattered.glsl"
 #include "physics/prelude.glsl"
 #include "physics/elementary.glsl"
 #include "physics/fresnel.glsl"
 #include "physics/henyey_greenstein.glsl"
 #include "scene/world.glsl"
 
-vec3 to_nodes(vec3 place) { return clamp((place - stored.lower) * stored.nodes_a_unit, vec3(0.0), stored.last_node); }
-
-float distance_at(vec3 place) { return texture(distances, (to_nodes(place) + 0.5) / (stored.last_node + 1.0)).r; }
-
-vec3 outwards_at(vec3 place) {
-  vec3 step = 0.5 / stored.nodes_a_unit;
-  vec3 gradient = vec3(distance_at(place + vec3(step.x, 0.0, 0.0)) - distance_at(place - vec3(step.x, 0.0, 0.0)),
-                       distance_at(place + vec3(0.0, step.y, 0.0)) - distance_at(place - vec3(0.0, step.y, 0.0)),
-                       distance_at(place + vec3(0.0, 0.0, step.z)) - distance_at(place - vec3(0.0, 0.0, step.z))) /
-                  step;
-  return gradient * inversesqrt(max(dot(gradient, gradient), 1e-12));
-}
-
-// How far it is to the side of the body's box that a line inside it leaves through.
-float way_to_box(vec3 place, vec3 direction) {
-  vec3 upper = stored.lower + stored.last_node / stored.nodes_a_unit;
-  vec3 steep =
-      vec3(abs(direction.x) > 1e-6 ? direction.x : 1e-6, abs(direction.y) > 1e-6 ? direction.y : 1e-6, abs(direction.z) > 1e-6 ? direction.z : 1e-6);
-  vec3 ways = max((stored.lower - place) / steep, (upper - place) / steep);
-  return max(min(ways.x, min(ways.y, ways.z)), 0.0);
-}
-
-#ifndef REFRACTION
-const int MOST_STEPS_ASIDE = 32;
-
-// How much of the straight line to a light is inside the grain, which it may leave and enter again.
-float way_of_light(vec3 place, vec3 to_light) {
-  float furthest = way_to_box(place, to_light);
-  vec3 spacing = 1.0 / stored.nodes_a_unit;
-  float shortest = 0.3 * min(spacing.x, min(spacing.y, spacing.z));
-  float before = distance_at(place);
-  float way = 0.0;
-  float inside = 0.0;
-  for (int i = 0; i < MOST_STEPS_ASIDE && way < furthest; ++i) {
-    float step = min(max(abs(before), shortest), furthest - way);
-    way += step;
-    float after = distance_at(place + way * to_light);
-    float below = max(-before, 0.0) + max(-after, 0.0);
-    inside += step * below / max(abs(before) + abs(after), 1e-9);
-#ifdef CONVEX
-    if (after > 0.0) break;
-#endif
-    before = after;
-  }
-  return inside;
-}
+// What the source function is told in: all lights together have colours.
+#ifdef TOGETHER
+#define Radiance vec3
+#else
+#define Radiance Spectrum
 #endif
 
 vec3 looked_up;  // the direction towards the light whose source function is told
 #ifdef SUMMED
 uniform sampler3D summed;  // the source function of each light, blocks of nodes behind one another
 int looked_up_light;
+
 #else
 vec4 lobe[LOBE_TEXELS];
 #endif
@@ -87,11 +51,13 @@ void look_up(vec3 to_light, int light) {
 #endif
 }
 
-// Radiance that a mean free path of the medium adds, per irradiance of the light that was looked up.
-Spectrum source_at(vec3 place) {
+// Radiance that a mean free path of the medium adds, per irradiance of the light that was looked up; TOGETHER: of all.
+Radiance source_at(vec3 place) {
   vec3 size = stored.last_node + 1.0;
   vec3 node = to_nodes(place) + 0.5;
-#ifdef SUMMED
+#ifdef TOGETHER
+  Radiance sum = texture(summed, node / size).rgb;
+#elif defined(SUMMED)
   Spectrum sum = SPECTRUM(texture(summed, vec3(node.xy, node.z + float(looked_up_light) * size.z) / vec3(textureSize(summed, 0))));
 #else
   vec3 scale = 1.0 / vec3(size.xy, size.z * float(LOBE_TEXELS));
@@ -105,7 +71,7 @@ Spectrum source_at(vec3 place) {
 #endif
   }
 #endif
-  sum = max(sum, Spectrum(0.0));
+  sum = max(sum, Radiance(0.0));
 #ifndef REFRACTION
   float depth = max(-distance_at(place), 0.0);
 #ifdef GREY
@@ -120,44 +86,14 @@ Spectrum source_at(vec3 place) {
   return sum;
 }
 
-const float FAR = 1e6;
-
-// How far it is through the grain, or `longest` if that is less, by steps as long as the surface is away.
-float way_through(vec3 place, vec3 direction, float longest) {
-  float furthest = min(way_to_box(place, direction), longest);  // beyond the box the grid tells nothing
-#if defined(WALKED) && defined(CONVEX)
-  // What begins and ends inside has not left.
-  if (furthest == longest && distance_at(place + longest * direction) < 0.0) return longest;
-#endif
-  vec3 spacing = 1.0 / stored.nodes_a_unit;
-  float shortest = 0.3 * min(spacing.x, min(spacing.y, spacing.z));
-  float way = shortest;
-  float before = 0.0;
-  float below = 0.0;
-  for (int i = 0; i < 48; ++i) {
-    if (way >= furthest) return furthest;
-    float above = distance_at(place + way * direction);
-    // The first step may not have got below the surface yet, where the grid rounds an edge off.
-    if (above >= 0.0 && i > 0) return mix(before, way, below / max(below + above, 1e-6));
-    below = max(-above, 0.0);
-    before = way;
-    way += max(below, shortest);
-  }
-  return way;
-}
-
-struct Marched {
-  Spectrum radiance;
-  Spectrum passed;  // the share of light that comes through from the other end
-};
-
-// What is sent towards the beginning of a way through the grain.
-Marched march(vec3 place, vec3 direction, float way, int taps) {
+// What is sent towards the beginning of a piece of a way through the grain.
+Radiance march(vec3 place, vec3 direction, float way, int taps) {
   Spectrum sigma_t = SPECTRUM(stored.sigma_t);
   float mean_sigma_t = (stored.sigma_t.r + stored.sigma_t.g + stored.sigma_t.b) / 3.0;
   float thickness = mean_sigma_t * way;
   float within = thickness > 1e-3 ? 1.0 - exp(-thickness) : thickness;
-  Marched marched = Marched(Spectrum(0.0), Spectrum(1.0));
+  Radiance radiance = Radiance(0.0);
+  Spectrum passed = Spectrum(1.0);
   for (int i = 0; i < taps; ++i) {
     // Intervals in each of which as much is scattered.
     float middle = (float(i) + 0.5) / float(taps);
@@ -165,10 +101,10 @@ Marched march(vec3 place, vec3 direction, float way, int taps) {
     float at = thickness > 1e-3 ? -log(1.0 - middle * within) / mean_sigma_t : middle * way;
     float until = i + 1 == taps ? way : thickness > 1e-3 ? -log(1.0 - end * within) / mean_sigma_t : end * way;
     Spectrum left = exp(-sigma_t * until);
-    marched.radiance += (marched.passed - left) * source_at(place + at * direction);
-    marched.passed = left;
+    radiance += (passed - left) * source_at(place + at * direction);
+    passed = left;
   }
-  return marched;
+  return radiance;
 }
 
 float largest(Spectrum value) {
@@ -189,44 +125,93 @@ const int MOST_WAYS = 4;
 // Light that is reflected wholly for ever, where nothing is scattered, is told as if so little of it left.
 const float TRAPPED = 1e-6;
 
-Spectrum radiance_inside(vec3 place, vec3 direction) {
-  Spectrum sum = Spectrum(0.0);
+#ifndef WALKED
+// A straight piece of the view ray's way through the grain.
+struct Piece {
+  vec3 place;
+  vec3 direction;
+  float way;
+  Spectrum left;  // of what it sends, where the ray comes out
+};
+Piece pieces[MOST_WAYS];
+int piece_count;
+vec3 last_place;
+Spectrum beyond;  // how much the source there counts for all pieces that follow
+
+// Follows the view ray.
+void follow(vec3 place, vec3 direction) {
   Spectrum left = Spectrum(1.0);
+  beyond = Spectrum(0.0);
   for (int i = 0; i < MOST_WAYS; ++i) {
     float way = way_through(place, direction, FAR);
-    Marched marched = march(place, direction, way, i == 0 ? 6 : 3);
-    sum += left * marched.radiance;
+    pieces[i] = Piece(place, direction, way, left);
+    piece_count = i + 1;
 #ifdef REFRACTION
+    Spectrum passed = exp(-SPECTRUM(stored.sigma_t) * way);
     place += way * direction;
     vec3 normal = outwards_at(place);
     float cosine = dot(normal, direction);
     float again = cosine > 0.0 ? fresnel_reflectance(min(cosine, 1.0), 1.0 / stored.eta) : 0.0;
-    left *= marched.passed * again;
+    left *= passed * again;
     if (largest(left) < LEAST_PASSED) break;
-    // From there on as if every way were like this one and the source as it is there.
-    if (i + 1 == MOST_WAYS) sum += left * source_at(place) * (1.0 - marched.passed) / (1.0 - again * marched.passed + TRAPPED);
+    // From there on as if every piece were like this one and the source as it is there.
+    last_place = place;
+    if (i + 1 == MOST_WAYS) beyond = left * (1.0 - passed) / (1.0 - again * passed + TRAPPED);
     direction = direction - 2.0 * cosine * normal;
 #else
     break;
 #endif
   }
+}
+
+Radiance radiance_inside() {
+  Radiance sum = Radiance(0.0);
+  for (int i = 0; i < piece_count; ++i) sum += pieces[i].left * march(pieces[i].place, pieces[i].direction, pieces[i].way, i == 0 ? 6 : 3);
+#ifdef REFRACTION
+  if (largest(beyond) > 0.0) sum += beyond * source_at(last_place);
+#endif
   return sum;
 }
+#endif
 
 #ifdef WALKED
 #include "models/forward_walk.glsl"
 #endif
 
-vec3 evaluate_model(SurfacePoint point, Outwards outwards, LightSample light) {
+// Where the view ray is inside, and where it goes on to.
+vec3 place_below;
+vec3 direction_below;
+
+Outwards look_outwards(SurfacePoint point) {
+  Outwards outwards = through_surface(point);
   mat3 to_body = grain_to_body();
-  look_up(to_body * light.to_light, light.index);
-  vec3 inwards = (outwards.mu * point.normal - point.to_viewer) / stored.eta - outwards.mu_refracted * point.normal;
-#ifdef WALKED
-  Spectrum inside = walked_radiance(to_body * point.on_triangle * stored.units, normalize(to_body * inwards), to_body * light.to_light, light.index);
-#else
-  Spectrum inside = radiance_inside(to_body * point.on_triangle * stored.units, normalize(to_body * inwards));
+  place_below = to_body * point.on_triangle * stored.units;
+  direction_below = normalize(to_body * ((outwards.mu * point.normal - point.to_viewer) / stored.eta - outwards.mu_refracted * point.normal));
+#ifndef WALKED
+  follow(place_below, direction_below);
 #endif
-  vec3 radiance = portion(SUBSURFACE_PORTION, light.entering * (outwards.transmittance / (stored.eta * stored.eta) * inside));
+  return outwards;
+}
+
+// What comes out of radiance that is on its way to the viewer inside.
+vec3 comes_out(Outwards outwards, vec3 inside) { return portion(SUBSURFACE_PORTION, outwards.transmittance / (stored.eta * stored.eta) * inside); }
+
+#ifdef TOGETHER
+vec3 together_lit(SurfacePoint point, Outwards outwards) { return comes_out(outwards, radiance_inside()); }
+#endif
+
+vec3 evaluate_model(SurfacePoint point, Outwards outwards, LightSample light) {
+  vec3 radiance = vec3(0.0);
+#ifndef TOGETHER
+  vec3 to_light = grain_to_body() * light.to_light;
+  look_up(to_light, light.index);
+#ifdef WALKED
+  Spectrum inside = walked_radiance(place_below, direction_below, to_light, light.index);
+#else
+  Spectrum inside = radiance_inside();
+#endif
+  radiance = comes_out(outwards, light.entering * inside);
+#endif
 #ifdef SPECULAR
   radiance += portion(SPECULAR_PORTION, specular_reflection(point, outwards, light));
 #endif
@@ -237,11 +222,9 @@ vec3 evaluate_model(SurfacePoint point, Outwards outwards, LightSample light) {
 // What is refracted out of the grain after each reflection inside; the last stands for all that follow. Lengths are too short to tell the world
 // from elsewhere.
 vec3 crossing_light(SurfacePoint point, Outwards outwards) {
-  mat3 to_body = grain_to_body();
-  mat3 to_world = transpose(to_body);
-  vec3 inwards = (outwards.mu * point.normal - point.to_viewer) / stored.eta - outwards.mu_refracted * point.normal;
-  vec3 place = to_body * point.on_triangle * stored.units;
-  vec3 direction = normalize(to_body * inwards);
+  mat3 to_world = transpose(grain_to_body());
+  vec3 place = place_below;
+  vec3 direction = direction_below;
   vec3 left = vec3(open_beyond(point.normal, point.to_viewer) * outwards.transmittance);
   vec3 sum = vec3(0.0);
   for (int i = 0; i < MOST_WAYS; ++i) {

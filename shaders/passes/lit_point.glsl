@@ -7,6 +7,7 @@
 //   NEAR_LIGHTS          lights have a place: the light map of each shows the grain from one direction, but each point has its light from where it is
 //   LIGHTS_ABOUT         one of them is so near that it matters where its light comes in
 //   CLEAR, WORLD         the model knows what crosses the grain unscattered, and there is a world to be seen through it
+//   TOGETHER             what the model makes of all lights but for mirroring was summed, and nothing stands in their way
 //   WHOLE_GRAIN          the model knows what light does in all of the grain, but not where it enters
 //   EMITS                the surface sends out light of its own
 //   PORTION              of all that, one thing alone is told (models/portions.glsl)
@@ -207,6 +208,9 @@ vec3 lit_point(SurfacePoint point) {
 #endif
 #endif
   if (light_count == 0 || !LIGHTS_TELL) return sum;
+#ifdef TOGETHER
+  sum += together_lit(point, outwards);
+#endif
   // Software renderers run a loop's body once more, masked, to find that a condition at its head has failed: it is at the foot.
   int i = 0;
   do {

@@ -84,6 +84,27 @@ std::vector<scene::Material> every_choice() {
   return materials;
 }
 
+/// The programs of `transport` that read what was summed for each light, and of the passes that sum it.
+void write_sums(Writer& writer, const std::string& name, const std::vector<std::string>& defines, std::size_t number) {
+  const auto has = [&](const char* word) { return std::find(defines.begin(), defines.end(), word) != defines.end(); };
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), defines.begin(), defines.end());
+    return more;
+  };
+  std::vector<std::vector<std::string>> summed = {{"SUMMED", "CONVEX"}};
+  if (has("REFRACTION") && !has("WALKED")) summed.push_back({"SUMMED", "TOGETHER"});
+  for (const std::vector<std::string>& more : summed) {
+    writer.write(fmt::format("{}+{}", name, fmt::join(more, "+")), ShaderSource({"passes/full_screen.vert"}, {}),
+                 ShaderSource({"passes/shade.frag", "models/transport.glsl"}, with(more)));
+    writer.write_stage(fmt::format("sum_products_{}_{}.comp", number, more.back()),
+                       ShaderSource({"passes/sum_products.comp"}, with(more)));
+  }
+  if (!has("REFRACTION") || !has("WALKED")) return;
+  for (const std::string convex : {"", "CONVEX"})
+    writer.write_stage(fmt::format("unscattered_light_{}{}.comp", number, convex),
+                       ShaderSource({"passes/unscattered_light.comp"}, convex.empty() ? defines : with({convex})));
+}
+
 void write_shading(Writer& writer) {
   // As render::Shading.
   const std::vector<std::string> clear = {"CLEAR", "WORLD", "MANY_TERMS"};
@@ -124,14 +145,7 @@ void write_shading(Writer& writer) {
     if (!written.insert(name).second) continue;
     writer.write(name, ShaderSource({"passes/full_screen.vert"}, {}),
                  ShaderSource({"passes/shade.frag", "models/" + model + ".glsl"}, defines));
-    if (material.model == scene::Model::transport) {
-      std::vector<std::string> summed = defines;
-      summed.emplace_back("SUMMED");
-      writer.write(name + "+SUMMED", ShaderSource({"passes/full_screen.vert"}, {}),
-                   ShaderSource({"passes/shade.frag", "models/" + model + ".glsl"}, summed));
-      writer.write_stage(fmt::format("sum_products_{}.comp", written.size()),
-                         ShaderSource({"passes/sum_products.comp"}, defines));
-    }
+    if (material.model == scene::Model::transport) write_sums(writer, name, defines, written.size());
     if (facets && written.insert(model + " mirrors").second)
       for (const std::vector<std::string>& shading : mirrors) {
         std::vector<std::string> all = defines;

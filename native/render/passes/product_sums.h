@@ -1,7 +1,10 @@
-// Stored transport under the very lights of a sample: what pixels would each sum anew is summed once at its nodes.
+// Stored transport under the very lights of a sample: what pixels would each sum anew is summed once at its nodes, and
+// how unscattered light comes in is looked for there.
 #pragma once
 
 #include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -9,6 +12,7 @@
 #include "gl/program.h"
 #include "gl/volume.h"
 #include "render/device_cache.h"
+#include "render/draw.h"
 #include "render/lighting.h"
 
 namespace mesograin::render {
@@ -18,17 +22,32 @@ class ProductSums {
   /// Whether it costs less than what it spares a thing that so many pixels show.
   static bool pay(const DeviceMaterial& material, const std::vector<LightDirection>& lights, double pixels);
 
-  /// For a material that they pay for; `grain_to_prototype` is a turn. Binds textures of its own: a program's come
-  /// after.
-  void sum(DeviceCache& cache, const DeviceMaterial& material, const std::vector<LightDirection>& lights,
-           const glm::mat3& grain_to_prototype);
+  /// Whether pixels ask for nothing but the sums: then all lights may have one, where nothing stands in their way.
+  static bool can_be_together(const DeviceMaterial& material);
+
+  /// For a draw that they pay for, if it, its turn or a light is another than the last time. Binds textures of its own:
+  /// a program's come after.
+  void sum(DeviceCache& cache, const Draw& draw, const std::vector<LightDirection>& lights, bool together);
 
   /// To a program that is compiled for them.
-  void bind(const gl::Program& program) const { program.set("summed", *sums_); }
+  void bind(const gl::Program& program) const;
 
  private:
+  /// What they depend on.
+  struct Of {
+    std::weak_ptr<const DeviceMaterial> material;
+    int version = 0;
+    glm::mat3 grain_to_prototype{0.0F};
+    std::vector<glm::vec3> to_lights;
+    std::vector<glm::vec3> irradiances;  // if they are summed together
+  };
+
+  bool hold(const Of& of) const;
+
+  Of of_;
   std::optional<gl::Buffer> directions_;
   std::optional<gl::Volume> sums_;
+  std::optional<gl::Volume> unscattered_;
 };
 
 }  // namespace mesograin::render

@@ -186,7 +186,8 @@ const gl::Program& ShadePass::prepare(const Sample& sample, std::size_t unit, Sh
   const Draw* draw = sample.content.draw(unit);
   shading.summed = draw != nullptr && !shading.mirrored && !sample.lighting.any_local() &&
                    ProductSums::pay(material, sample.lights.distant, pixels_of(sample, *draw));
-  if (shading.summed) sums_.sum(sample.cache, material, sample.lights.distant, glm::mat3(draw->grain_to_prototype));
+  shading.together = shading.summed && shading.shadows == Shadows::none && ProductSums::can_be_together(material);
+  if (shading.summed) sums_.sum(sample.cache, *draw, sample.lights.distant, shading.together);
   const gl::Program& program = sample.cache.shading(material, shading);
   material.bind(program);
   if (shading.summed) sums_.bind(program);

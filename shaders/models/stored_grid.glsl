@@ -1,0 +1,82 @@
+// Where one prototype's surface is, as far as its nodes tell, and how straight lines go through it.
+//
+// What is chosen at compile time:
+//   CONVEX               no line leaves the grain and enters it again
+#include "models/stored_products.glsl"
+
+uniform sampler3D distances;  // from the surface, at the nodes; negative inside
+
+vec3 to_nodes(vec3 place) { return clamp((place - stored.lower) * stored.nodes_a_unit, vec3(0.0), stored.last_node); }
+
+float distance_at(vec3 place) { return texture(distances, (to_nodes(place) + 0.5) / (stored.last_node + 1.0)).r; }
+
+vec3 outwards_at(vec3 place) {
+  vec3 step = 0.5 / stored.nodes_a_unit;
+  vec3 gradient = vec3(distance_at(place + vec3(step.x, 0.0, 0.0)) - distance_at(place - vec3(step.x, 0.0, 0.0)),
+                       distance_at(place + vec3(0.0, step.y, 0.0)) - distance_at(place - vec3(0.0, step.y, 0.0)),
+                       distance_at(place + vec3(0.0, 0.0, step.z)) - distance_at(place - vec3(0.0, 0.0, step.z))) /
+                  step;
+  return gradient * inversesqrt(max(dot(gradient, gradient), 1e-12));
+}
+
+float shortest_spacing() {
+  vec3 spacing = 1.0 / stored.nodes_a_unit;
+  return min(spacing.x, min(spacing.y, spacing.z));
+}
+
+// How far it is to the side of the body's box that a line inside it leaves through.
+float way_to_box(vec3 place, vec3 direction) {
+  vec3 upper = stored.lower + stored.last_node / stored.nodes_a_unit;
+  vec3 steep =
+      vec3(abs(direction.x) > 1e-6 ? direction.x : 1e-6, abs(direction.y) > 1e-6 ? direction.y : 1e-6, abs(direction.z) > 1e-6 ? direction.z : 1e-6);
+  vec3 ways = max((stored.lower - place) / steep, (upper - place) / steep);
+  return max(min(ways.x, min(ways.y, ways.z)), 0.0);
+}
+
+const float FAR = 1e6;
+const float SHORTEST_STEP = 0.3;  // of the way between nodes
+
+#ifdef CONVEX
+// How far it is until a line leaves the grain, or `longest` if that is less. Along a line the distance from a convex body grows ever faster:
+// secants from beyond it come nearer and nearer to where the line leaves, and never come in.
+float way_out(vec3 place, vec3 direction, float longest) {
+  float far = min(way_to_box(place, direction), longest);  // beyond the box the grid tells nothing
+  float above_far = distance_at(place + far * direction);
+  float near_enough = 0.002 * shortest_spacing();
+  if (above_far <= near_enough) return far;  // a flat side lies on the box's but for rounding
+  float way = far - above_far;
+  for (int i = 0; i < 8 && way > 0.0; ++i) {
+    float above = distance_at(place + way * direction);
+    float steep = (above_far - above) / (far - way);
+    if (steep <= 0.0) return 0.0;
+    far = way;
+    above_far = above;
+    way -= above / steep;
+    if (abs(above) < near_enough) break;
+  }
+  return max(way, 0.0);
+}
+#endif
+
+// How far it is through the grain, or `longest` if that is less. A line that begins at an edge, which the grid rounds off, begins outside.
+float way_through(vec3 place, vec3 direction, float longest) {
+  float shortest = SHORTEST_STEP * shortest_spacing();
+#ifdef CONVEX
+  return max(way_out(place, direction, longest), min(shortest, longest));
+#else
+  float furthest = min(way_to_box(place, direction), longest);  // beyond the box the grid tells nothing
+  float way = shortest;
+  float before = 0.0;
+  float below = 0.0;
+  // By steps as long as the surface is away.
+  for (int i = 0; i < 48; ++i) {
+    if (way >= furthest) return furthest;
+    float above = distance_at(place + way * direction);
+    if (above >= 0.0 && i > 0) return mix(before, way, below / max(below + above, 1e-6));
+    below = max(-above, 0.0);
+    before = way;
+    way += max(below, shortest);
+  }
+  return way;
+#endif
+}
