@@ -35,7 +35,7 @@ def draw_results(layout, context):
     if found is None:
         return
     box = layout.box()
-    box.label(text=f"{found['material']}, by {models.MODELS[found['model']].label}")
+    panels.draw_sentence(box, context, f"{found['material']}, by {models.MODELS[found['model']].label}", icon="NONE")
     for name, title in TITLES.items():
         if name in found["intervals"]:
             halves = box.split(factor=0.5)
