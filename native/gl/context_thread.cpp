@@ -3,6 +3,7 @@
 
 #include <epoxy/gl.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "base/error.h"
@@ -82,7 +83,7 @@ ContextThread::~ContextThread() {
   if (thread_.joinable()) thread_.join();
 }
 
-void ContextThread::enqueue(Queue& queue, std::function<void()> work) {
+void ContextThread::enqueue(Queue& queue, Work work) {
   {
     const std::lock_guard lock(mutex_);
     if (stopping_) throw Error("The renderer has been shut down; start it again before asking for more.");
@@ -108,8 +109,11 @@ void ContextThread::loop(std::promise<DeviceInfo> started) {
       wake_.wait(lock, [this] { return stopping_ || !queue_.empty() || !steps_.empty(); });
       Queue& queue = queue_.empty() ? steps_ : queue_;
       if (queue.empty()) break;
-      work = std::move(queue.front());
-      queue.pop_front();
+      const auto urgent =
+          std::find_if(queue.begin(), queue.end(), [](const Work& each) { return each.urgent && each.urgent(); });
+      const auto next = urgent == queue.end() ? queue.begin() : urgent;
+      work = std::move(next->run);
+      queue.erase(next);
     }
     work();
     work = nullptr;

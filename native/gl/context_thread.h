@@ -46,7 +46,7 @@ class ContextThread {
     using Result = std::invoke_result_t<Work>;
     auto task = std::make_shared<std::packaged_task<Result()>>(std::forward<Work>(work));
     std::future<Result> result = task->get_future();
-    enqueue(queue_, [task] { (*task)(); });
+    enqueue(queue_, {[task] { (*task)(); }});
     return result;
   }
 
@@ -57,10 +57,11 @@ class ContextThread {
   }
 
   /// Calls `step` on the thread over and over until it returns something, which is the result. Whatever else is posted
-  /// goes before the next step of anybody. What it throws ends it, and so does shut_down(): the future throws it.
+  /// goes before the next step of anybody, and a step that is `urgent` by then before those of others. What it throws
+  /// ends it, and so does shut_down(): the future throws it.
   template <typename Result>
-  std::future<Result> repeat(std::function<std::optional<Result>()> step) {
-    auto repetition = std::make_shared<Repetition<Result>>(Repetition<Result>{std::move(step), {}});
+  std::future<Result> repeat(std::function<std::optional<Result>()> step, std::function<bool()> urgent) {
+    auto repetition = std::make_shared<Repetition<Result>>(Repetition<Result>{std::move(step), std::move(urgent), {}});
     std::future<Result> result = repetition->result.get_future();
     enqueue_step(std::move(repetition));
     return result;
@@ -84,6 +85,7 @@ class ContextThread {
   template <typename Result>
   struct Repetition {
     std::function<std::optional<Result>()> step;
+    std::function<bool()> urgent;
     std::promise<Result> result;
   };
 
@@ -91,7 +93,7 @@ class ContextThread {
 
   template <typename Result>
   void enqueue_step(std::shared_ptr<Repetition<Result>> repetition) {
-    const auto take_step = [this, repetition = std::move(repetition)] {
+    const auto take_step = [this, repetition] {
       try {
         if (std::optional<Result> result = repetition->step())
           repetition->result.set_value(*std::move(result));
@@ -101,12 +103,16 @@ class ContextThread {
         repetition->result.set_exception(std::current_exception());
       }
     };
-    enqueue(steps_, take_step);
+    enqueue(steps_, {take_step, repetition->urgent});
   }
 
-  using Queue = std::deque<std::function<void()>>;
+  struct Work {
+    std::function<void()> run;
+    std::function<bool()> urgent{};
+  };
+  using Queue = std::deque<Work>;
 
-  void enqueue(Queue& queue, std::function<void()> work);
+  void enqueue(Queue& queue, Work work);
   void loop(std::promise<DeviceInfo> started);
   void collect_gl_errors();
 

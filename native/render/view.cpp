@@ -157,7 +157,8 @@ void View::render(int samples) { start(samples).get(); }
 
 std::shared_future<double> View::start(int samples) {
   if (samples < 1) throw Error("A view needs at least one sample to render; got {}.", samples);
-  const auto go_on = [cancelled = cancelled_, number = ++started_] { return *cancelled < number; };
+  const auto cancelled = [up_to = cancelled_, number = ++started_] { return *up_to >= number; };
+  const auto go_on = [cancelled] { return !cancelled(); };
   std::function<std::optional<double>()> add_sample = [id = id_, done = samples_, go_on, news = patient_,
                                                        left = samples, seconds = 0.0]() mutable {
     if (!go_on()) return std::optional(seconds);
@@ -173,22 +174,22 @@ std::shared_future<double> View::start(int samples) {
   };
   const bool earlier = under_way_.valid() && under_way_.wait_for(std::chrono::seconds(0)) != std::future_status::ready;
   if (!earlier && (!patient_ || !preparing())) {
-    under_way_ = gl::ContextThread::instance().repeat(std::move(add_sample)).share();
+    under_way_ = gl::ContextThread::instance().repeat(std::move(add_sample), cancelled).share();
     return under_way_;
   }
   // The context's thread goes on drawing for others meanwhile.
-  under_way_ = std::async(std::launch::async, [add_sample = std::move(add_sample), go_on, before = under_way_,
+  under_way_ = std::async(std::launch::async, [add_sample = std::move(add_sample), cancelled, before = under_way_,
                                                computations = computations_, solving = solving_]() mutable {
                  if (before.valid()) before.wait();
                  constexpr std::chrono::milliseconds patience(20);
                  const auto known = [&](const auto& computation) {
                    while (!computation->wait(patience))
-                     if (!go_on()) return false;
+                     if (cancelled()) return false;
                    return true;
                  };
                  if (!std::all_of(computations.begin(), computations.end(), known) || (solving && !known(solving)))
                    return 0.0;
-                 return gl::ContextThread::instance().repeat(std::move(add_sample)).get();
+                 return gl::ContextThread::instance().repeat(std::move(add_sample), cancelled).get();
                }).share();
   return under_way_;
 }
