@@ -8,7 +8,7 @@ from .node_patterns import follow
 
 @follow("TEX_SKY")
 def _sky(node, _socket, places):
-    towards = vector(node.inputs["Vector"], places, "generated")
+    towards = vector(_turned_by(node), places, "generated")
     towards = towards / np.maximum(np.linalg.norm(towards, axis=1, keepdims=True), 1e-30)
     if node.sky_type == "PREETHAM":
         return np.maximum(sky.daylight(towards, node.sun_direction, node.turbidity), 0.0)
@@ -22,6 +22,11 @@ def _sky(node, _socket, places):
     return np.maximum(seen, 0.0)
 
 
+def _turned_by(node):
+    """The input of directions; None in Blender 4 where there is a sun's disc, which is not turned."""
+    return node.inputs.get("Vector")
+
+
 def _altitude(node):
     return min(max(node.altitude, 1.0), 59999.0)
 
@@ -33,7 +38,8 @@ def suns(socket):
     for node in {link.from_node.name: link.from_node for link in _links(socket)}.values():
         if node.type != "TEX_SKY" or node.sky_type != "NISHITA" or not node.sun_disc or node.mute:
             continue
-        if node.inputs["Vector"].is_linked and not _is_plain(node.inputs["Vector"]):
+        turned_by = _turned_by(node)
+        if turned_by is not None and turned_by.is_linked and not _is_plain(turned_by):
             raise Unknown(f"{node.name}: a sun that is turned by nodes")
         towards, half = sky.sun_direction(node.sun_elevation, node.sun_rotation), 0.5 * node.sun_size
         points = _disc(towards, half)
