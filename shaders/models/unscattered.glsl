@@ -24,6 +24,9 @@ uniform sampler3D slopes;  // of `distances`, at its nodes: they are asked for o
 
 const float LEAST_WIDTH = 0.2;  // of a bundle of light, over what it was as it entered: a narrower one is seen by few places
 
+// Of unit length, unless it has none: where normals of opposite sides meet.
+vec3 unit_vector(vec3 v) { return v * inversesqrt(max(dot(v, v), 1e-20)); }
+
 // What outwards_at says, with edges rounded off over a node to either side instead of a half.
 vec3 outwards_about(vec3 place) {
   vec3 gradient = texture(slopes, (to_nodes(place) + 0.5) / (stored.last_node + 1.0)).xyz;
@@ -34,8 +37,8 @@ vec3 outwards_about(vec3 place) {
 vec3 back_to_entry(vec3 to_light, vec3 normal) {
   float cosine = dot(normal, to_light);
   vec3 aside = to_light - cosine * normal;
-  if (cosine < 0.0) aside = normalize(aside);
-  return normalize(aside / stored.eta + refracted_cosine(max(cosine, 0.0), stored.eta) * normal);
+  if (cosine < 0.0) aside = unit_vector(aside);
+  return unit_vector(aside / stored.eta + refracted_cosine(max(cosine, 0.0), stored.eta) * normal);
 }
 
 // `back`: about where it comes from. The light that comes in at the other end of that line passes beside the place; how far, and how that changes
@@ -67,9 +70,9 @@ Unscattered unscattered_at(vec3 place, vec3 to_light, vec3 back, int tries) {
   vec2 beside = vec2(dot(missed, first), dot(missed, second));
   vec2 move = vec2(spread[1][1] * beside.x - spread[1][0] * beside.y, spread[0][0] * beside.y - spread[0][1] * beside.x) / wide;
   move *= min(1.0, aside / max(length(move), 1e-9));  // the surface may bend otherwise farther off
-  back = normalize(back + move.x * turn_first + move.y * turn_second);
+  back = unit_vector(back + move.x * turn_first + move.y * turn_second);
   way = length(entry + move.x * along_first + move.y * along_second - place);
-  normal = normalize(normal + (move.x * (normal_first - normal) + move.y * (normal_second - normal)) / aside);
+  normal = unit_vector(normal + (move.x * (normal_first - normal) + move.y * (normal_second - normal)) / aside);
   float cosine = dot(normal, to_light);
   if (cosine <= 0.0) return Unscattered(back, way, 0.0);
   refracted = refracted_cosine(cosine, stored.eta);

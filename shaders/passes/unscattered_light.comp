@@ -35,6 +35,8 @@ void main() {
     vec3 normal = outwards_about(inside + unscattered.way * unscattered.back);
     float way = unscattered.way + dot(inside - place, normal) / max(dot(unscattered.back, normal), LEAST_COSINE);
     value = vec4(unscattered.irradiance * unscattered.back, way);
+    // Pixels about it read it as well.
+    if (any(isnan(value)) || any(isinf(value))) value = vec4(0.0);
   }
   imageStore(found, ivec3(at.xy, at.z + light * size.z), value);
 }

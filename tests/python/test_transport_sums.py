@@ -6,6 +6,7 @@ import numpy
 import pytest
 
 from test_transport_colours import sphere
+from test_transport_energy import cube
 
 SUNS = (((0.5, 0.5, 0.7), (1.0, 0.8, 0.6)), ((-0.4, 0.3, -0.85), (0.5, 1.0, 0.2)))
 TURN = numpy.array([[0.6, -0.8, 0.0, 0.1], [0.8, 0.6, 0.0, -0.05], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]])
@@ -72,3 +73,14 @@ def test_walks_find_unscattered_light_at_nodes_as_they_do_by_themselves():
     found, anew = (picture(material, lamps=lamps, samples=64).sum(axis=2) for lamps in ([], [faint]))
     assert abs(found.sum() / anew.sum() - 1.0) < 0.03
     assert numpy.abs(blocks(found) - blocks(anew)).sum() < 0.06 * blocks(anew).sum()
+
+
+@pytest.mark.parametrize("to_light", [(0.5, 0.5, 0.7), (0.8, 0.6, 0.0), (0.0, 0.0, 1.0)])
+def test_walks_in_a_cube_with_flat_faces_are_numbers(to_light):
+    view = native.View(48, 48)
+    material = medium("dielectric", (0.1,) * 3, g=0.85, sigma_s=(8.0,) * 3)
+    view.set_scene(native.Scene(instances=[native.Instance(cube(), material, numpy.eye(4))],
+                                lights=[native.DirectionalLight(to_light, (1.0,) * 3)]))
+    view.set_camera(native.Camera.look_at((2.0, 1.5, 5.0), (0.0,) * 3, (0.0, 1.0, 0.0), 28.0))
+    view.render(16)
+    assert numpy.isfinite(view.read()).all()
