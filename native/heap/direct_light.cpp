@@ -89,29 +89,30 @@ bool touched(const Moves& moves, const std::vector<Look>& looks) {
 void find_direct_light(const Space& space, const Heap& heap, const Rays& rays, const Moves* moves, Lit& lit,
                        const transport::Effort& effort) {
   const std::vector<Draw> draws = draws_of(heap);
-  const std::size_t grains = space.grains().size();
   const std::size_t count = space.size();
   if (draws.empty()) return;
   constexpr std::size_t grains_a_piece = 64;
   transport::run_pieces(effort, (count + grains_a_piece - 1) / grains_a_piece, [&](std::size_t piece) {
     std::vector<Look> looks;
     for (std::size_t i = piece * grains_a_piece; i < std::min(count, (piece + 1) * grains_a_piece); ++i) {
-      transport::Random random(effort.seed + 1, i);
+      const std::uint32_t number = space.seats()->number(i);
+      const bool of_grain = space.of_grain(i);
+      transport::Random random(effort.seed + 1, number);
       looks.clear();
       for (const Draw& draw : draws)
-        if (i < grains)
-          look_from_grain(space, space.grains()[i], heap.anchor, draw, rays.of(i), random, looks);
+        if (of_grain)
+          look_from_grain(space, space.grains()[number], heap.anchor, draw, rays.of(i), random, looks);
         else
-          look_from_node(space, space.patches().nodes()[i - grains], heap.anchor, draw, rays.of_node, random, looks);
-      if (moves != nullptr && !(i < grains && moves->moved(i)) && !touched(*moves, looks)) continue;
+          look_from_node(space, space.node(i), heap.anchor, draw, rays.of_node, random, looks);
+      if (moves != nullptr && !(of_grain && moves->moved(number)) && !touched(*moves, looks)) continue;
       lit.direct[i] = {};
       lit.crossed[i] = {};
       for (Look& look : looks) {
         const glm::vec3 left = space.passed(look.ray, look.reach);
         if (left == glm::vec3(0.0F)) continue;
         Coefficients& sum = look.ray.crossed ? lit.crossed[i] : lit.direct[i];
-        if (i < grains)
-          add_grain(*space.kind(static_cast<std::uint32_t>(i)).from_light, look, left, rays.fine(space, i), sum);
+        if (of_grain)
+          add_grain(*space.kind(number).from_light, look, left, rays.fine(space, i), sum);
         else
           sum.add(left * look.brings, glm::vec3(0.0F), false);  // as much at every normal
       }

@@ -19,17 +19,23 @@ int finer_for(std::size_t grains, std::size_t most) {
 }  // namespace
 
 Quality quality_for(std::size_t grains) {
-  constexpr std::size_t most_links = 16'000'000;
-  const auto each = static_cast<int>(most_links / std::max(grains, std::size_t{1}));
   Quality quality;
   const int finer = finer_for(grains, 8);
   quality.rays *= finer;
   quality.light_rays *= finer;
   quality.seen_rays *= finer;
-  quality.rays = std::clamp(each, coarse.rays, quality.rays);
-  quality.light_rays = std::clamp(each, coarse.light_rays, quality.light_rays);
-  quality.seen_rays = std::clamp(each / 2, coarse.seen_rays, quality.seen_rays);
   return quality;
+}
+
+Quality affordable(const Quality& quality, std::size_t seats, std::size_t links_of_others) {
+  constexpr std::size_t most_links = 16'000'000;
+  const std::size_t left = most_links - std::min(links_of_others, most_links);
+  const auto each = static_cast<int>(left / std::max(seats, std::size_t{1}));
+  Quality result = quality;
+  result.rays = std::clamp(each, std::min(coarse.rays, quality.rays), quality.rays);
+  result.light_rays = std::clamp(each, std::min(coarse.light_rays, quality.light_rays), quality.light_rays);
+  result.seen_rays = std::clamp(each / 2, std::min(coarse.seen_rays, quality.seen_rays), quality.seen_rays);
+  return result;
 }
 
 Quality coarse_for(std::size_t grains) {

@@ -3,6 +3,7 @@
 // all grains at once).
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "heap/coefficients.h"
@@ -20,15 +21,25 @@ struct Quality {
   int walks = GrainTable::most_walks;  ///< for each interval of a kind's table, where kinds are few
   bool quick = false;                  ///< links that were found at other materials will do
   int deep_rays = 16;                  ///< of each kind, of grains that lie deep in a heap of many
+  int sharing_rays = 12;               ///< of each kind, of each of the few that answer for all that share numbers
+  std::size_t shared_from = 50'000;    ///< as many grains or more share numbers where they lie deep
 };
 
-/// As fine as the memory for a heap of so many grains allows: half a gigabyte for its links. Where there are few, finer
-/// than the default, but with no more rays in all than 10^4 grains have there.
+/// Where there are few grains, finer than the default, but with no more rays in all than 10^4 grains have there.
 Quality quality_for(std::size_t grains);
 
+/// As fine as the memory for so many seats allows: half a gigabyte for links, of which others have so many.
+Quality affordable(const Quality& quality, std::size_t seats, std::size_t links_of_others = 0);
+
 /// For a first picture of 10^4 grains or more.
-inline constexpr Quality coarse{
-    .rays = 16, .wall_rays = 32, .light_rays = 24, .seen_rays = 8, .tolerance = 5e-3F, .walks = 512, .quick = true};
+inline constexpr Quality coarse{.rays = 16,
+                                .wall_rays = 32,
+                                .light_rays = 24,
+                                .seen_rays = 8,
+                                .tolerance = 5e-3F,
+                                .walks = 512,
+                                .quick = true,
+                                .sharing_rays = 8};
 
 /// For a first picture of so many: within a tenth of what the default finds.
 Quality coarse_for(std::size_t grains);
@@ -42,17 +53,18 @@ struct Parts {
   std::size_t renewed = 0;  ///< grains and nodes whose links were found again because a few grains had moved
 };
 
-/// Of every grain, in their order, and then of every node of the walls. Radiance that leaves a grain at a normal and a
+/// As `seats` tell it, grains and then nodes of the walls. Radiance that leaves a grain at a normal and a
 /// cosine: that of `answer` times the lobe of its kind's table, and that of `behind` times what crosses the grain
 /// there.
 struct HeapLight {
   Field answer;   ///< exitance over pi, but for what answers to light that comes straight from a light
   Field crossed;  ///< of `answer`: what comes from lights straight through others, but from no even world
   Field behind;   ///< of grains only: what is seen through a transparent one, by look_through()
-  /// Of grains only: how much of the world is seen through one that lets light through unscattered, by look_through()
-  /// or, refracted, by the place that tells `answer`.
+  /// Of grains in seats of their own only: how much of the world is seen through one that lets light through
+  /// unscattered, by look_through() or, refracted, by the place that tells `answer`.
   std::vector<Share> open;
   Field sent;  ///< exitance over pi because of all light, to begin the next solution from
+  std::shared_ptr<const Seats> seats;
   Patches patches;
   std::vector<Kind> kinds;
   std::size_t links = 0;

@@ -82,13 +82,13 @@ class Asking {
 Gather::Gather(Heap heap, std::shared_ptr<const HeapLight> light)
     : heap_(std::move(heap)),
       light_(std::move(light)),
-      space_(heap_.grains, light_->kinds),
+      space_(heap_.grains, light_->kinds, light_->seats),
       draws_(draws_of(heap_)),
       looks_find_all_(std::all_of(heap_.lights.begin(), heap_.lights.end(), found_by_looks)) {}
 
 glm::vec3 Gather::sent_to(Ray ray, transport::Random& random, bool open) const {
   if (const std::optional<Source> source = space_.follow(ray, random))
-    return ray.weight / source->met * light_->sent[source->number].at(source->normal);
+    return ray.weight / source->met * light_->seats->light_at(light_->sent, source->number, source->normal, true);
   if (heap_.world.image || !(open || ray.crossed)) return glm::vec3(0.0F);
   return ray.weight * glm::vec3(heap_.world.radiance);
 }
@@ -106,7 +106,8 @@ glm::vec3 Gather::look(std::uint32_t grain, const glm::vec3& normal, const glm::
         random, false);
   }
   sum /= static_cast<float>(rays);
-  sum += kind.from_light->lobe_at(mu) * light_->crossed[grain].at(kind.from_light->seen_place(normal, towards));
+  sum += kind.from_light->lobe_at(mu) *
+         light_->seats->of(light_->crossed, grain).at(kind.from_light->seen_place(normal, towards));
   Ray through = ray_through(grain, normal, towards);
   sum += space_.seen_along(through, light_->sent, random);
   return glm::max(sum, 0.0F);
@@ -157,7 +158,8 @@ glm::vec3 Gather::look_into(const SeenFacet& seen, const Facets& facets, int ray
   sum /= static_cast<float>(rays);
   const float mu = std::clamp(glm::dot(seen.normal, seen.towards), 0.0F, 1.0F);
   const GrainTable& table = *space_.kind(seen.grain).from_light;
-  sum += table.lobe_at(mu) * light_->crossed[seen.grain].at(table.seen_place(seen.normal, seen.towards));
+  sum += table.lobe_at(mu) *
+         light_->seats->of(light_->crossed, seen.grain).at(table.seen_place(seen.normal, seen.towards));
   return glm::max(sum, 0.0F);
 }
 
@@ -176,7 +178,8 @@ glm::vec3 Gather::found_through(SeenFacet seen, const Facets& facets, transport:
     if (!on) {
       Ray ray{passage->place, passage->direction, weight};
       const std::optional<Source> source = space_.source(*meeting, ray, random);
-      return source ? ray.weight / source->met * light_->sent[source->number].at(source->normal) : glm::vec3(0.0F);
+      if (!source) return glm::vec3(0.0F);
+      return ray.weight / source->met * light_->seats->light_at(light_->sent, source->number, source->normal, true);
     }
     seen = {meeting->number, meeting->place, meeting->normal, -passage->direction};
   }

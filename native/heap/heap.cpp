@@ -36,12 +36,26 @@ std::vector<Kind> kinds_of(const Grains& grains, int most_walks, const transport
   return kinds;
 }
 
-Space::Space(const Grains& grains, const std::vector<Kind>& kinds)
+Space::Space(const Grains& grains, const std::vector<Kind>& kinds, std::shared_ptr<const Seats> seats)
     : grains_(grains.grains),
       walls_(grains.walls),
       kinds_(kinds),
+      seats_(seats ? std::move(seats) : std::make_shared<const Seats>(grains.grains.size())),
       patches_(grains, fewest_nodes + grains.grains.size() / 4),
       neighbourhood_(grains) {}
+
+bool Space::is_open(std::uint32_t grain, float far) const {
+  for (int x = -1; x <= 1; ++x)
+    for (int y = -1; y <= 1; ++y)
+      for (int z = -1; z <= 1; ++z) {
+        if (x == 0 && y == 0 && z == 0) continue;
+        const glm::vec3 direction = glm::normalize(glm::vec3(x, y, z));
+        const glm::vec3 from = place(grains_[grain], direction);
+        const std::optional<Meeting> meeting = neighbourhood_.first(from, direction);
+        if (!meeting || glm::distance(from, meeting->place) > far) return true;
+      }
+  return false;
+}
 
 WallPlace Space::place(const Patches::Node& node, float u, float v) const {
   // As the node's share of the light falls off.
@@ -118,7 +132,7 @@ glm::vec3 Space::seen_along(Ray& ray, const Field& sent, transport::Random& rand
     if (!from) break;
     const float cosine = std::clamp(-glm::dot(meeting->normal, ray.direction), 0.0F, 1.0F);
     const glm::vec3 crossing = meeting->wall ? glm::vec3(0.0F) : kind(meeting->number).from_light->crossing(cosine);
-    seen += ray.weight * (1.0F - crossing) / from->met * sent[from->number].at(from->normal);
+    seen += ray.weight * (1.0F - crossing) / from->met * seats_->light_at(sent, from->number, from->normal, true);
     ray.weight *= crossing;
     if (!meeting->wall) cross(ray, *meeting, cosine);
   }

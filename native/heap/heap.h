@@ -4,12 +4,14 @@
 #include <glm/vec3.hpp>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "heap/coefficients.h"
 #include "heap/grain_table.h"
 #include "heap/grains.h"
 #include "heap/patches.h"
+#include "heap/seats.h"
 #include "scene/light.h"
 #include "scene/world.h"
 
@@ -57,15 +59,25 @@ struct WallPlace {
 /// The heap as rays go through it.
 class Space {
  public:
-  Space(const Grains& grains, const std::vector<Kind>& kinds);
+  Space(const Grains& grains, const std::vector<Kind>& kinds, std::shared_ptr<const Seats> seats = nullptr);
+
+  /// From now on what they send out is told by these; else each grain has a seat of its own.
+  void seat(std::shared_ptr<const Seats> seats) { seats_ = std::move(seats); }
+  const std::shared_ptr<const Seats>& seats() const { return seats_; }
 
   const std::vector<Grain>& grains() const { return grains_; }
   const Kind& kind(std::uint32_t grain) const { return kinds_[grains_[grain].kind]; }
   const Kind& kind(const Patches::Node& node) const { return kinds_[walls_[node.wall].kind]; }
   const Patches& patches() const { return patches_; }
 
-  /// Of all that sends out light.
-  std::size_t size() const { return grains_.size() + patches_.nodes().size(); }
+  /// Of all that answers: grains in their seats, then nodes.
+  std::size_t size() const { return seats_->answering() + patches_.nodes().size(); }
+
+  bool of_grain(std::size_t answering) const { return answering < seats_->answering(); }
+  const Patches::Node& node(std::size_t answering) const { return patches_.nodes()[answering - seats_->answering()]; }
+
+  /// Whether light reaches far from a grain's surface: out of the heap, or to what stands as far away.
+  bool is_open(std::uint32_t grain, float far) const;
 
   /// A place for which a node stands, `u` and `v` in [0, 1): the likelier the nearer.
   WallPlace place(const Patches::Node& node, float u, float v) const;
@@ -98,6 +110,7 @@ class Space {
   const std::vector<Grain>& grains_;
   const std::vector<Wall>& walls_;
   const std::vector<Kind>& kinds_;
+  std::shared_ptr<const Seats> seats_;
   Patches patches_;
   Neighbourhood neighbourhood_;
 };

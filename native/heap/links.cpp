@@ -179,16 +179,24 @@ struct Seen {
   glm::vec3 towards;
 };
 
+/// Of random numbers. A grain in a seat of its own has the same whoever shares; one that answers for others may do so
+/// for a cell more than once.
+std::uint64_t stream_of(const Space& space, std::size_t answering) {
+  constexpr std::uint64_t of_sharing = std::uint64_t{1} << 32U;
+  const Seats& seats = *space.seats();
+  return answering >= seats.own() && space.of_grain(answering) ? of_sharing + answering : seats.number(answering);
+}
+
 /// The rays of a grain through its table, or of a node.
-std::vector<Look> looks_from(const Space& space, std::size_t number, const Rays& rays, std::uint64_t seed) {
-  transport::Random random(seed, number);
+std::vector<Look> looks_from(const Space& space, std::size_t answering, const Rays& rays, std::uint64_t seed) {
+  transport::Random random(seed, stream_of(space, answering));
   const Spread spread(random);
   std::vector<Look> looks;
-  const std::size_t grains = space.grains().size();
-  if (number < grains) {
+  if (space.of_grain(answering)) {
+    const std::uint32_t number = space.seats()->number(answering);
     const Grain& grain = space.grains()[number];
-    const GrainTable& table = *space.kind(static_cast<std::uint32_t>(number)).from_viewer;
-    const int count = rays.of(number);
+    const GrainTable& table = *space.kind(number).from_viewer;
+    const int count = rays.of(answering);
     looks.reserve(static_cast<std::size_t>(count));
     for (int i = 0; i < count; ++i) {
       const std::array<float, 5> point = spread.point(i);
@@ -200,7 +208,7 @@ std::vector<Look> looks_from(const Space& space, std::size_t number, const Rays&
     }
     return looks;
   }
-  const Patches::Node& node = space.patches().nodes()[number - grains];
+  const Patches::Node& node = space.node(answering);
   const glm::vec3 weight = space.kind(node).from_viewer->albedo() / static_cast<float>(rays.of_node);
   looks.reserve(static_cast<std::size_t>(rays.of_node));
   for (int i = 0; i < rays.of_node; ++i) {
@@ -214,14 +222,15 @@ std::vector<Look> looks_from(const Space& space, std::size_t number, const Rays&
 }
 
 /// Rays straight through a transparent grain.
-std::vector<Look> looks_through(const Space& space, std::size_t number, const Rays& rays, std::uint64_t seed) {
+std::vector<Look> looks_through(const Space& space, std::size_t answering, const Rays& rays, std::uint64_t seed) {
   std::vector<Look> looks;
-  const GrainTable& table = *space.kind(static_cast<std::uint32_t>(number)).from_viewer;
+  const std::uint32_t number = space.seats()->number(answering);
+  const GrainTable& table = *space.kind(number).from_viewer;
   if (table.crossing(0.0F) == glm::vec3(0.0F)) return looks;
-  transport::Random random(seed, number);
+  transport::Random random(seed, stream_of(space, answering));
   const Spread spread(random);
   const Grain& grain = space.grains()[number];
-  const int count = rays.of(number);
+  const int count = rays.of(answering);
   looks.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) {
     const Seen seen(spread.point(i));
@@ -232,20 +241,21 @@ std::vector<Look> looks_through(const Space& space, std::size_t number, const Ra
 }
 
 /// Random numbers of one ray's way, so that it is the same whatever the others meet.
-transport::Random on_way(std::uint64_t seed, std::size_t number, std::size_t look) {
-  return {seed, (static_cast<std::uint64_t>(number) << 16U) + look};
+transport::Random on_way(std::uint64_t seed, std::uint64_t stream, std::size_t look) {
+  return {seed, (stream << 16U) + look};
 }
 
 constexpr std::uint64_t ways_seed = 0x5ca1ab1eU;  // more than that of the looks
 
 /// Whether any of these meets a place where a grain was or is that has moved.
-bool touched(const Space& space, const Moves& moves, const std::vector<Look>& looks, std::size_t number,
+bool touched(const Space& space, const Moves& moves, const std::vector<Look>& looks, std::size_t answering,
              std::uint64_t seed) {
+  const std::uint64_t stream = stream_of(space, answering);
   for (std::size_t i = 0; i < looks.size(); ++i) {
     const std::optional<float> distance = moves.distance(looks[i].ray.origin, looks[i].ray.direction);
     if (!distance) continue;
     Ray ray = looks[i].ray;
-    transport::Random random = on_way(seed + ways_seed, number, i);
+    transport::Random random = on_way(seed + ways_seed, stream, i);
     // What it meets before is as it was.
     if (!space.follow(ray, random) ||
         glm::dot(ray.origin - looks[i].ray.origin, ray.direction) >= *distance * (1.0F - 1e-5F))
@@ -254,17 +264,18 @@ bool touched(const Space& space, const Moves& moves, const std::vector<Look>& lo
   return false;
 }
 
-Found found_by(const Space& space, std::size_t number, const std::vector<Look>& looks, bool fine,
+Found found_by(const Space& space, std::size_t answering, const std::vector<Look>& looks, bool fine,
                const glm::vec3& radiance, std::uint64_t seed) {
   Found found;
   std::vector<Departing> departing;
   std::vector<Ending> endings(looks.size());
   departing.reserve(looks.size());
-  const bool of_grain = number < space.grains().size();
-  const GrainTable* table = of_grain ? space.kind(static_cast<std::uint32_t>(number)).from_viewer.get() : nullptr;
+  const bool of_grain = space.of_grain(answering);
+  const GrainTable* table = of_grain ? space.kind(space.seats()->number(answering)).from_viewer.get() : nullptr;
+  const std::uint64_t stream = stream_of(space, answering);
   for (std::size_t i = 0; i < looks.size(); ++i) {
     Ray ray = looks[i].ray;
-    transport::Random random = on_way(seed + ways_seed, number, i);
+    transport::Random random = on_way(seed + ways_seed, stream, i);
     departing.push_back({ray.weight, of_grain ? table->seen_place(looks[i].normal, looks[i].towards) : nowhere});
     endings[i].source = space.follow(ray, random);
     endings[i].crossed = ray.crossed;
@@ -273,7 +284,9 @@ Found found_by(const Space& space, std::size_t number, const std::vector<Look>& 
       endings[i].left[channel] =
           departing[i].weight[channel] > 0.0F ? ray.weight[channel] / departing[i].weight[channel] : 0.0F;
   }
-  if (of_grain) balance(departing, table->albedo(), fine ? most_numbers : 4);
+  // The few rays of one of many that share tell too little to be turned so.
+  const std::size_t numbers = answering >= space.seats()->own() ? 1 : fine ? most_numbers : 4;
+  if (of_grain) balance(departing, table->albedo(), numbers);
   found.links.reserve(static_cast<std::size_t>(
       std::count_if(endings.begin(), endings.end(), [](const Ending& ending) { return ending.source.has_value(); })));
   Opening opening;
@@ -290,13 +303,14 @@ Found found_by(const Space& space, std::size_t number, const std::vector<Look>& 
   return found;
 }
 
-Behind seen_behind(const Space& space, std::size_t number, const std::vector<Look>& looks, std::uint64_t seed) {
+Behind seen_behind(const Space& space, std::size_t answering, const std::vector<Look>& looks, std::uint64_t seed) {
+  const std::uint64_t stream = stream_of(space, answering);
   Behind behind;
   Opening opening;
   glm::vec3 all(0.0F);
   for (std::size_t i = 0; i < looks.size(); ++i) {
     Ray ray = looks[i].ray;
-    transport::Random random = on_way(seed + ways_seed, number, i);
+    transport::Random random = on_way(seed + ways_seed, stream, i);
     const glm::vec3 weight = ray.weight;
     all += weight;
     const glm::vec3 look = look_through(looks[i].normal, looks[i].towards);
@@ -331,29 +345,29 @@ std::size_t Links::count() const {
 }
 
 void Links::gather(const Field& sent, Field& answer, const transport::Effort& effort, const Change* change) const {
-  answer.resize(sent.size());
+  answer.resize(of.size());
   constexpr std::size_t at_once = 512;
-  transport::run_pieces(effort, (sent.size() + at_once - 1) / at_once, [&](std::size_t piece) {
-    for (std::size_t i = piece * at_once; i < std::min(sent.size(), (piece + 1) * at_once); ++i) {
+  transport::run_pieces(effort, (of.size() + at_once - 1) / at_once, [&](std::size_t piece) {
+    for (std::size_t i = piece * at_once; i < std::min(of.size(), (piece + 1) * at_once); ++i) {
       Coefficients sum;
       const bool of_fine = !fine.empty() && fine[i];
       for (const Link& link : of[i]) {
         glm::vec3 weight(link.weight[0], link.weight[1], link.weight[2]);
         if (change != nullptr) weight *= change->received[link.from];
-        const glm::vec3 sent_at = unpacked(link.sent_at);
-        const glm::vec3 light = fine.empty() ? sent[link.from].first_at(sent_at) : sent[link.from].at(sent_at);
+        const glm::vec3 light = seats->light_at(sent, link.from, unpacked(link.sent_at), !fine.empty());
         sum.add(weight * light, unpacked(link.leaves_at), of_fine);
       }
-      if (change != nullptr && !change->answered.empty()) sum = sum * change->answered[i];
+      if (change != nullptr && !change->answered.empty()) sum = sum * change->answered[seats->number(i)];
       answer[i] = sum;
     }
   });
+  answer = seats->told(std::move(answer));
 }
 
-bool Rays::fine(const Space& space, std::size_t number) const {
+bool Rays::fine(const Space& space, std::size_t answering) const {
   constexpr int least = 64;
-  return number < space.grains().size() && of(number) >= least &&
-         space.kind(static_cast<std::uint32_t>(number)).from_viewer->is_fine();
+  return space.of_grain(answering) && of(answering) >= least &&
+         space.kind(space.seats()->number(answering)).from_viewer->is_fine();
 }
 
 Deep find_deep(const Space& space, int ways, const transport::Effort& effort) {
@@ -385,7 +399,7 @@ Deep find_deep(const Space& space, int ways, const transport::Effort& effort) {
 Links find_links(const Space& space, const Rays& rays, const glm::vec3& radiance, Lit& lit,
                  const transport::Effort& effort) {
   const std::size_t count = space.size();
-  Links links{std::vector<std::vector<Link>>(count), {}, Openness(space.grains().size())};
+  Links links{std::vector<std::vector<Link>>(count), {}, Openness(space.seats()->answering()), space.seats()};
   bool any_fine = false;
   for (std::size_t i = 0; i < count; ++i) {
     links.fine.push_back(rays.fine(space, i));
@@ -411,9 +425,10 @@ glm::vec3 look_through(const glm::vec3& normal, const glm::vec3& towards) {
 }
 
 Links find_behind(const Space& space, const Rays& rays, const transport::Effort& effort) {
-  Links behind{std::vector<std::vector<Link>>(space.size()), {}, Openness(space.grains().size())};
+  Links behind{std::vector<std::vector<Link>>(space.size()), {}, Openness(space.seats()->own()), space.seats()};
   const std::uint64_t seed = effort.seed + behind_seed;
-  for_each(space.grains().size(), effort, [&](std::size_t i) {
+  // What stands behind those that share is seen by nobody.
+  for_each(space.seats()->own(), effort, [&](std::size_t i) {
     Behind found = seen_behind(space, i, looks_through(space, i, rays, seed), seed);
     behind.of[i] = std::move(found.links);
     behind.open[i] = found.open;
@@ -427,7 +442,7 @@ std::size_t renew(const Space& space, const Moves& moves, const Rays& rays, cons
   std::vector<std::pair<std::size_t, Found>> found;
   for_each(space.size(), transport::part_of(effort, 0.0, 0.8), [&](std::size_t i) {
     const std::vector<Look> looks = looks_from(space, i, rays, effort.seed);
-    const bool moved = i < space.grains().size() && moves.moved(i);
+    const bool moved = space.of_grain(i) && moves.moved(space.seats()->number(i));
     if (!moved && !touched(space, moves, looks, i, effort.seed)) return;
     Found anew = found_by(space, i, looks, rays.fine(space, i), radiance, effort.seed);
     const std::lock_guard lock(mutex);
@@ -435,9 +450,9 @@ std::size_t renew(const Space& space, const Moves& moves, const Rays& rays, cons
   });
   std::vector<std::pair<std::size_t, Behind>> behind;
   const std::uint64_t seed = effort.seed + behind_seed;
-  for_each(space.grains().size(), transport::part_of(effort, 0.8, 1.0), [&](std::size_t i) {
+  for_each(space.seats()->own(), transport::part_of(effort, 0.8, 1.0), [&](std::size_t i) {
     const std::vector<Look> looks = looks_through(space, i, rays_through, seed);
-    if (!moves.moved(i) && !touched(space, moves, looks, i, seed)) return;
+    if (!moves.moved(space.seats()->number(i)) && !touched(space, moves, looks, i, seed)) return;
     Behind anew = seen_behind(space, i, looks, seed);
     const std::lock_guard lock(mutex);
     behind.emplace_back(i, std::move(anew));

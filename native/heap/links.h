@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -28,18 +29,20 @@ struct Change {
   std::vector<glm::vec3> received;  ///< how much more comes to others of what each sends out
 };
 
-/// Of each grain, the share of the world in what is seen through it unscattered: straight, by look_through(), or
-/// refracted, by GrainTable::seen_place(), as what it sends out is told.
+/// Of each grain that answers, the share of the world in what is seen through it unscattered: straight, by
+/// look_through(), or refracted, by GrainTable::seen_place(), as what it sends out is told.
 using Openness = std::vector<Share>;
 
 struct Links {
-  std::vector<std::vector<Link>> of;  ///< each grain, then each node of walls
+  std::vector<std::vector<Link>> of;  ///< each that answers: grains in their seats, then nodes of walls
   std::vector<bool> fine;             ///< of each, whether it is told to order 2; empty: none is
   Openness open;                      ///< of what the looks that were followed let through
+  std::shared_ptr<const Seats> seats;
 
   std::size_t count() const;
 
-  /// What light sent out by others makes the grains send out. `change`: since the links were found; or null.
+  /// What light sent out by others makes the grains send out, as Seats tell it. `change`: since the links were found;
+  /// or null.
   void gather(const Field& sent, Field& answer, const transport::Effort& effort, const Change* change = nullptr) const;
 };
 
@@ -52,8 +55,13 @@ struct Rays {
   int of_node;      ///< of walls
   int of_deep = 0;  ///< of grains that lie deep
   Deep deep{};
+  std::size_t own = std::numeric_limits<std::size_t>::max();  ///< how many have a seat of their own
+  int of_sharing = 0;                                         ///< of the others
 
-  int of(std::size_t grain) const { return deep && (*deep)[grain] ? of_deep : of_grain; }
+  int of(std::size_t answering) const {
+    if (deep && (*deep)[answering]) return of_deep;
+    return answering < own ? of_grain : of_sharing;
+  }
 
   /// Whether they tell of a grain or node to order 2: order 1 leaves 4 % in a heap of bright opaque balls, whose light
   /// changes at contacts, and a fifth too much light in one of clear glass under a sun, which goes on forward; of

@@ -45,6 +45,11 @@ glm::dvec3 ratio(const glm::dvec3& over, const glm::dvec3& under) {
   return result;
 }
 
+/// What is left falls by about as much with each step.
+double share_done(float begun, float left, float enough) {
+  return std::clamp(std::log(begun / std::max(left, enough)) / std::log(begun / enough), 0.0F, 1.0F);
+}
+
 }  // namespace
 
 Solved solve(const Links& links, const Change* change, const Field& direct, const Field& guess, const Goal& goal,
@@ -72,6 +77,7 @@ Solved solve(const Links& links, const Change* change, const Field& direct, cons
   solved.residual = left();
   const float enough =
       goal.share < 1.0F ? std::clamp(goal.share * solved.residual, least_left, goal.tolerance) : goal.tolerance;
+  const float begun = solved.residual;
   while (solved.residual > enough && solved.steps < most_steps) {
     apply(search, product_p);
     const glm::dvec3 alpha = ratio(rho, product(shadow, product_p));
@@ -89,7 +95,7 @@ Solved solve(const Links& links, const Change* change, const Field& direct, cons
     scale_and_add(search, beta, residual);
     ++solved.steps;
     solved.residual = left();
-    if (effort.progress) effort.progress(static_cast<double>(solved.steps) / most_steps);
+    if (effort.progress) effort.progress(share_done(begun, solved.residual, enough));
   }
   solved.left = std::move(residual);
   return solved;

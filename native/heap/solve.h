@@ -19,7 +19,8 @@ struct Goal {
   float share = 1.0F;  ///< and over what was left to begin with: of a change of few grains D does not tell
 };
 
-/// From `guess`, which may be of any size, to the `goal`. `change`: as for Links::gather().
+/// From `guess`, which may be of any size, to the `goal`. All fields as Seats tell them. `change`: as for
+/// Links::gather().
 Solved solve(const Links& links, const Change* change, const Field& direct, const Field& guess, const Goal& goal,
              const transport::Effort& effort);
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <utility>
 
 #include "heap/direct_light.h"
@@ -38,12 +39,56 @@ bool is_small(const glm::vec3& change) {
          std::min({change.r, change.g, change.b}) * greatest_change >= 1.0F;
 }
 
-void scale(Field& field, const std::vector<glm::vec3>& by) {
-  for (std::size_t i = 0; i < field.size(); ++i) field[i] = field[i] * by[i];
+/// `field`: of all that answer.
+void scale(Field& field, const Seats& seats, const std::vector<glm::vec3>& by) {
+  for (std::size_t i = 0; i < field.size(); ++i) field[i] = field[i] * by[seats.number(i)];
 }
 
 void add(Field& sum, const Field& of, const glm::vec3& by) {
   for (std::size_t i = 0; i < sum.size(); ++i) sum[i] = sum[i] + of[i] * by;
+}
+
+// Of grains, that may have moved where seats are kept.
+constexpr std::size_t most_moved_of = 20;
+
+/// Whether seats found before are these grains', too: all that share them are where they were, and nearly all others.
+bool still_seated(const Seats& seats, const std::vector<Grain>& before, const std::vector<Grain>& now) {
+  if (before.size() != now.size()) return false;
+  std::size_t moved = 0;
+  for (std::uint32_t i = 0; i < now.size(); ++i) {
+    if (before[i].middle == now[i].middle && before[i].radius == now[i].radius) continue;
+    if (seats.shares(i) || ++moved > now.size() / most_moved_of) return false;
+  }
+  return true;
+}
+
+/// How many cells of Seats below the surface grains begin to share: farther than light goes on one way.
+int cells_below(const Grains& grains, const std::vector<Kind>& kinds) {
+  std::vector<std::size_t> counts(kinds.size(), 0);
+  for (const Grain& grain : grains.grains) ++counts[grain.kind];
+  double met = 0.0;
+  for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
+    const glm::vec3& of = kinds[kind].from_light->met();
+    met += static_cast<double>(counts[kind]) * static_cast<double>(of.r + of.g + of.b) / 3.0;
+  }
+  met /= static_cast<double>(std::max(grains.grains.size(), std::size_t{1}));
+  constexpr double fewest = 1.0;
+  constexpr double most = 64.0;
+  return static_cast<int>(std::ceil(std::clamp(0.9 / std::max(met, 1e-6), fewest, most)));
+}
+
+/// What was sent by grains in other seats.
+Field carried(const Field& sent, const Seats& from, const Space& to) {
+  Coefficients mean;
+  for (const Coefficients& one : sent) mean = mean + one * glm::vec3(1.0F / static_cast<float>(sent.size()));
+  Field answers(to.size(), mean);
+  for (std::size_t i = 0; i < to.seats()->answering(); ++i)
+    if (const std::uint32_t number = to.seats()->number(i); number < from.grains()) answers[i] = from.of(sent, number);
+  const std::size_t nodes = to.patches().nodes().size();
+  if (sent.size() - from.told() == nodes)
+    std::copy(sent.end() - static_cast<std::ptrdiff_t>(nodes), sent.end(),
+              answers.end() - static_cast<std::ptrdiff_t>(nodes));
+  return to.seats()->told(std::move(answers));
 }
 
 /// The numbers of the first grains as they were, and their mean for those that came.
@@ -58,7 +103,7 @@ Field resized(Field field, std::size_t count) {
 }  // namespace
 
 bool Solver::serves(const std::shared_ptr<const Matter>& other, int rays, int wanted, const Quality& quality) const {
-  if (rays < wanted) return false;
+  if (rays < wanted || other->seats != matter_->seats) return false;
   if (other->grains == matter_->grains && other->walks >= quality.walks) return true;
   return quality.quick && same_places(other->grains, matter_->grains) && change_from(*other);
 }
@@ -85,6 +130,13 @@ std::optional<Change> Solver::change_from(const Matter& other) const {
   return change;
 }
 
+void Solver::take_seats(const Matter& of, Matter& by) const {
+  if (by.seats || !of.seats || of.cells_below != by.cells_below) return;
+  if (!still_seated(*of.seats, *of.seated, by.grains.grains)) return;
+  by.seats = of.seats;
+  by.seated = of.seated;
+}
+
 void Solver::find_matter(const Grains& grains, const Quality& quality, const transport::Effort& effort) {
   if (matter_ && matter_->grains == grains && matter_->walks >= quality.walks) return;
   auto matter = std::make_shared<Matter>();
@@ -97,12 +149,30 @@ void Solver::find_matter(const Grains& grains, const Quality& quality, const tra
     matter->kinds = kinds_of(grains, quality.walks, effort);
     ++parts_.tables;
   }
+  if (grains.grains.size() >= quality.shared_from) {
+    matter->cells_below = cells_below(grains, matter->kinds);
+    if (traced_) take_seats(*traced_->matter, *matter);
+    if (matter_) take_seats(*matter_, *matter);
+  }
   matter_ = std::move(matter);
 }
 
 const Space& Solver::space() {
-  if (!matter_->space) matter_->space.emplace(matter_->grains, matter_->kinds);
-  return *matter_->space;
+  if (matter_->space) return *matter_->space;
+  Space space(matter_->grains, matter_->kinds, matter_->seats);
+  if (matter_->cells_below > 0 && !matter_->seats) {
+    constexpr float far = 12.0F;  // in radii
+    const std::vector<Grain>& grains = matter_->grains.grains;
+    const auto open = [&](std::uint32_t grain) { return space.is_open(grain, far * grains[grain].radius); };
+    // A cell more tells what is seen still closer, where there is memory for it.
+    constexpr std::size_t most_own = 250'000;
+    auto seats = std::make_shared<const Seats>(grains, matter_->cells_below + 1, open);
+    if (seats->own() > most_own) seats = std::make_shared<const Seats>(grains, matter_->cells_below, open);
+    matter_->seats = std::move(seats);
+    matter_->seated = std::make_shared<const std::vector<Grain>>(grains);
+    space.seat(matter_->seats);
+  }
+  return matter_->space.emplace(std::move(space));
 }
 
 Deep Solver::find_deep(const transport::Effort& effort) {
@@ -123,7 +193,9 @@ void Solver::find_ways(const Quality& quality, const transport::Effort& effort) 
       return;
     }
   Traced traced{matter_, {quality.rays, quality.wall_rays}, {quality.seen_rays, 0}, {}};
-  if (quality.rays > quality.deep_rays) {
+  traced.rays.own = space().seats()->own();
+  traced.rays.of_sharing = quality.sharing_rays;
+  if (!space().seats()->shared() && quality.rays > quality.deep_rays) {
     traced.rays.deep = traced.rays_through.deep = find_deep(transport::part_of(effort, 0.0, 0.1));
     traced.rays.of_deep = traced.rays_through.of_deep = quality.deep_rays;
   }
@@ -140,7 +212,7 @@ std::optional<Moves> Solver::moves_from(const Matter& other) {
                  [](const Kind& one, const Kind& of_other) {
                    return one.from_light == of_other.from_light && one.from_viewer == of_other.from_viewer;
                  });
-  if (!same_tables) return std::nullopt;
+  if (!same_tables || other.seats != matter_->seats) return std::nullopt;
   std::optional<Moves> moves = Moves::between(other.grains, matter_->grains);
   // Where there are walls, what is known of them must be told by the same numbers.
   if (moves && !(other.space->patches() == space().patches())) return std::nullopt;
@@ -152,6 +224,8 @@ const Solver::Source& Solver::find_source(Heap light, const Quality& quality, co
       std::find_if(sources_.begin(), sources_.end(), [&](const Source& source) { return source.light == light; });
   if (same != sources_.end() && serves(same->matter, same->rays.of_grain, quality.light_rays, quality)) return *same;
   Source source{std::move(light), matter_, {quality.light_rays, quality.light_rays}, {}};
+  source.rays.own = traced_->rays.own;
+  source.rays.of_sharing = quality.sharing_rays;
   if (traced_->rays.deep && quality.light_rays > quality.deep_rays) {
     source.rays.deep = traced_->rays.deep;
     source.rays.of_deep = quality.deep_rays;
@@ -179,14 +253,18 @@ Lit Solver::find_direct(const Heap& heap, const Quality& quality, const transpor
   });
   const std::size_t count = traced_->ways.world.direct.size();
   Lit sum{Field(count), Field(count)};
-  const auto add_lit = [&](Lit lit, const Matter& with, const glm::vec3& by) {
-    if (with.grains != matter_->grains) {
-      const std::optional<Change> change = change_from(with);
-      scale(lit.direct, change->answered);
-      scale(lit.crossed, change->answered);
+  const auto add_lit = [&](const Lit& lit, const Matter& with, const glm::vec3& by) {
+    if (with.grains == matter_->grains) {
+      add(sum.direct, lit.direct, by);
+      add(sum.crossed, lit.crossed, by);
+      return;
     }
-    add(sum.direct, lit.direct, by);
-    add(sum.crossed, lit.crossed, by);
+    const std::optional<Change> change = change_from(with);
+    Lit scaled = lit;
+    scale(scaled.direct, *with.space->seats(), change->answered);
+    scale(scaled.crossed, *with.space->seats(), change->answered);
+    add(sum.direct, scaled.direct, by);
+    add(sum.crossed, scaled.crossed, by);
   };
   for (std::size_t i = 0; i < lights.size(); ++i) {
     const auto all = static_cast<double>(lights.size());
@@ -195,15 +273,35 @@ Lit Solver::find_direct(const Heap& heap, const Quality& quality, const transpor
     const Source& source = find_source(lights[i], quality, part);
     add_lit(source.lit, *source.matter, glm::vec3(1.0F));
   }
-  lights_crossed_ = sum.crossed;
+  const Seats& seats = *traced_->ways.links.seats;
+  lights_crossed_ = seats.told(sum.crossed);
   if (!heap.world.image) add_lit(traced_->ways.world, *traced_->matter, glm::vec3(heap.world.radiance));
-  return sum;
+  return {seats.told(std::move(sum.direct)), seats.told(std::move(sum.crossed))};
 }
 
-HeapLight Solver::solve(const Heap& heap, const Quality& quality, const transport::Effort& effort) {
+Quality Solver::within_memory(const Quality& quality) {
+  const std::size_t grains = matter_->grains.grains.size();
+  if (matter_->cells_below == 0) return affordable(quality, grains);
+  if (quality.quick && traced_ && serves(traced_->matter, traced_->rays.of_grain, quality.rays, quality))
+    return quality;
+  const Seats& seats = *space().seats();
+  if (!seats.shared()) return affordable(quality, grains);
+  return affordable(quality, seats.own(),
+                    (seats.answering() - seats.own()) * static_cast<std::size_t>(quality.sharing_rays));
+}
+
+Field Solver::guess() const {
+  const Space& space = *traced_->matter->space;
+  if (!sent_seats_ || sent_seats_ == space.seats() || (!sent_seats_->shared() && !space.seats()->shared()))
+    return resized(sent_, space.size() - space.seats()->answering() + space.seats()->told());
+  return carried(sent_, *sent_seats_, space);
+}
+
+HeapLight Solver::solve(const Heap& heap, const Quality& given, const transport::Effort& effort) {
   const auto started = std::chrono::steady_clock::now();
   const std::size_t renewed_before = parts_.renewed;
-  find_matter(heap.grains, quality, transport::part_of(effort, 0.0, 0.1));
+  find_matter(heap.grains, given, transport::part_of(effort, 0.0, 0.1));
+  const Quality quality = within_memory(given);
   find_ways(quality, transport::part_of(effort, 0.1, 0.5));
   const Lit lit = find_direct(heap, quality, transport::part_of(effort, 0.5, 0.7));
   std::optional<Change> change;
@@ -215,7 +313,7 @@ HeapLight Solver::solve(const Heap& heap, const Quality& quality, const transpor
   constexpr float left_of_moves = 0.02F;
   if (few_moved) add(first, left_, glm::vec3(-1.0F));
   Solved solved =
-      heap::solve(traced_->ways.links, change ? &*change : nullptr, first, resized(sent_, first.size()),
+      heap::solve(traced_->ways.links, change ? &*change : nullptr, first, guess(),
                   {quality.tolerance, few_moved ? left_of_moves : 1.0F}, transport::part_of(effort, 0.7, 1.0));
   if (few_moved) add(solved.left, left_, glm::vec3(1.0F));
   left_ = std::move(solved.left);
@@ -223,16 +321,19 @@ HeapLight Solver::solve(const Heap& heap, const Quality& quality, const transpor
   HeapLight light;
   light.kinds = matter_->kinds;
   light.crossed = lights_crossed_;
+  light.seats = traced_->ways.links.seats;
   light.patches = traced_->matter->space->patches();
   light.answer.resize(first.size());
   for (std::size_t i = 0; i < first.size(); ++i) light.answer[i] = solved.sent[i] - lit.direct[i];
   if (change) change->answered.clear();  // no grain answers what is seen behind it
   light.open = traced_->ways.links.open;
+  light.open.resize(light.seats->own());
   for (std::size_t i = 0; i < light.open.size(); ++i)
-    if (matter_->kinds[heap.grains.grains[i].kind].from_viewer->crossing(0.0F) != glm::vec3(0.0F))
+    if (matter_->kinds[heap.grains.grains[light.seats->number(i)].kind].from_viewer->crossing(0.0F) != glm::vec3(0.0F))
       light.open[i] = traced_->ways.behind.open[i];
   traced_->ways.behind.gather(solved.sent, light.behind, effort, change ? &*change : nullptr);
   sent_ = solved.sent;
+  sent_seats_ = light.seats;
   light.sent = std::move(solved.sent);
   light.links = traced_->ways.links.count();
   light.steps = solved.steps;

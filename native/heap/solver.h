@@ -28,7 +28,10 @@ class Solver {
     Grains grains;
     int walks = 0;  ///< of each interval of their tables
     std::vector<Kind> kinds;
-    std::optional<Space> space;  ///< of this; made when rays are traced
+    int cells_below = 0;                 ///< the surface, from where on grains share seats; 0: none do
+    std::shared_ptr<const Seats> seats;  ///< where they do; those of a matter before, or found when rays are traced
+    std::shared_ptr<const std::vector<Grain>> seated;  ///< where grains were when they were found
+    std::optional<Space> space;                        ///< of this; made when rays are traced
   };
 
   /// What was found of grains by rays.
@@ -47,9 +50,16 @@ class Solver {
     Lit lit;
   };
 
+  void take_seats(const Matter& of, Matter& by) const;
   void find_matter(const Grains& grains, const Quality& quality, const transport::Effort& effort);
   const Space& space();
   Deep find_deep(const transport::Effort& effort);
+
+  /// As fine as memory allows.
+  Quality within_memory(const Quality& quality);
+
+  /// What was sent before, in the seats that there are now.
+  Field guess() const;
   void find_ways(const Quality& quality, const transport::Effort& effort);
   Lit find_direct(const Heap& heap, const Quality& quality, const transport::Effort& effort);
   const Source& find_source(Heap light, const Quality& quality, const transport::Effort& effort);
@@ -65,6 +75,7 @@ class Solver {
   std::optional<Traced> traced_;
   std::vector<Source> sources_;
   Field sent_;
+  std::shared_ptr<const Seats> sent_seats_;
   Field left_;            ///< that this leaves of its equations
   Field lights_crossed_;  ///< of the last solution
   Parts parts_;

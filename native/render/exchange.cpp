@@ -248,8 +248,8 @@ void Exchange::send() {
   for (const Role& role : roles_) {
     // A grain that has just come is dark for a moment.
     const bool lit = role.grain && *role.grain < known_grains;
-    append(numbers, lit ? known_->light->answer[*role.grain] : heap::Coefficients{});
-    append(numbers, lit ? known_->light->behind[*role.grain] : heap::Coefficients{});
+    append(numbers, lit ? known_->light->seats->of(known_->light->answer, *role.grain) : heap::Coefficients{});
+    append(numbers, lit ? known_->light->seats->of(known_->light->behind, *role.grain) : heap::Coefficients{});
     glm::vec4 which(-1.0F);
     if (lit) {
       const heap::Grain& grain = known_->grains().grains[*role.grain];
@@ -258,7 +258,8 @@ void Exchange::send() {
     if (role.wall && *role.wall < known_walls)
       which = {place_of_kind(known_->grains().walls[*role.wall].kind), *role.wall, 0.0F, 0.0F};
     numbers.push_back(which);
-    numbers.push_back(lit ? known_->light->open[*role.grain].first : glm::vec4(0.0F));
+    const bool open = lit && !known_->light->seats->shares(*role.grain);
+    numbers.push_back(open ? known_->light->open[known_->light->seats->seat(*role.grain)].first : glm::vec4(0.0F));
   }
   for (std::size_t kind = 0; known_ && kind < known_->light->kinds.size(); ++kind) {
     const heap::Optics& optics = known_->grains().kinds[kind];
@@ -277,16 +278,17 @@ void Exchange::send() {
   const heap::Patches& patches = known_ ? known_->light->patches : none;
   device_walls_.emplace(patches.packed(static_cast<std::uint32_t>(numbers.size())));
   for (std::size_t node = 0; node < patches.nodes().size(); ++node) {
-    const auto& channels = known_->light->answer[known_grains + node].channels;
+    const auto& channels = known_->light->answer[known_->light->seats->told() + node].channels;
     numbers.emplace_back(channels[0].w, channels[1].w, channels[2].w, 0.0F);
   }
   for (std::size_t object = 0; object < roles_.size(); ++object) {
     const Role& role = roles_[object];
-    if (!role.grain || *role.grain >= known_grains) continue;
-    const heap::Coefficients& answer = known_->light->answer[*role.grain];
+    if (!role.grain || *role.grain >= known_grains || known_->light->seats->shares(*role.grain)) continue;
+    const std::uint32_t seat = known_->light->seats->seat(*role.grain);
+    const heap::Coefficients& answer = known_->light->answer[seat];
     if (!has_second_order(answer)) continue;
     numbers[object_numbers * object + number_of_second_order].w = static_cast<float>(numbers.size());
-    append_second_order(numbers, answer.second, known_->light->open[*role.grain].second);
+    append_second_order(numbers, answer.second, known_->light->open[seat].second);
   }
   device_.emplace(numbers);
 }

@@ -52,26 +52,34 @@ def slid(of, number):
 
 
 def scenes(native, of, count, number):
-    """{change: native.Scene}, of the same heap: as it is, and after each kind of change. number: of the round."""
+    """{change: what makes its native.Scene}, of the same heap: as it is, and after each kind of change. number: of the
+    round."""
     transforms, width = places(count)
-    transforms = transforms.astype(numpy.float64)
     scale = 1.0 / numpy.linalg.norm(transforms[:, :3, 0], axis=1)
     transforms[:, :3, :3] *= scale[:, None, None]  # of one size: one kind
     mesh = shapes(native)["sphere"]
     sun, turned = (1.0, 0.4, 1.2), (1.0, 0.4 + 0.05 * number, 1.2)
-    moved = transforms.copy()
-    moved[-count // 20, :3, 3] += (0.0, 0.0, 0.3 * number)  # one of those on top
-    fallen = transforms.copy()
-    fallen[:, 2, 3] -= 0.02 * number * (fallen[:, 2, 3] - fallen[:, 2, 3].min())
+    heap = native.InstanceArray(mesh, native.Material(**of), transforms.astype(numpy.float64))
 
-    def scene(material=of, to_light=sun, where=transforms, sky=0.3):
-        heap = native.InstanceArray(mesh, native.Material(**material), where)
-        return native.Scene(arrays=[heap], lights=[native.DirectionalLight(to_light, (3.0,) * 3)],
+    def scene(array=heap, to_light=sun, sky=0.3):
+        return native.Scene(arrays=[array], lights=[native.DirectionalLight(to_light, (3.0,) * 3)],
                             world=native.World((sky,) * 3), exchange="order_1")
 
-    return width, {"nothing before": scene(), "slider": scene(material=slid(of, number)),
-                   "light": scene(to_light=turned), "sky": scene(sky=0.3 + 0.05 * number),
-                   "grain": scene(where=moved), "grains": scene(where=fallen)}
+    def elsewhere(move):
+        where = transforms.astype(numpy.float64)
+        move(where)
+        return scene(native.InstanceArray(mesh, native.Material(**of), where))
+
+    def move_one(where):
+        where[-count // 20, :3, 3] += (0.0, 0.0, 0.3 * number)  # one of those on top
+
+    def let_fall(where):
+        where[:, 2, 3] -= 0.02 * number * (where[:, 2, 3] - where[:, 2, 3].min())
+
+    return width, {"nothing before": scene,
+                   "slider": lambda: scene(heap.with_material(native.Material(**slid(of, number)))),
+                   "light": lambda: scene(to_light=turned), "sky": lambda: scene(sky=0.3 + 0.05 * number),
+                   "grain": lambda: elsewhere(move_one), "grains": lambda: elsewhere(let_fall)}
 
 
 def follow(view, scene):
@@ -162,12 +170,14 @@ def measure(native, of, count, rounds, wanted, seconds):
         camera = native.Camera.look_at(eye, (0.0, 0.0, -0.15 * width), (0.0, 0.0, 1.0), 18.0, SIZE[0] / SIZE[1])
         view = native.View(*SIZE, patient=False)
         view.set_camera(camera)
-        base = changes["nothing before"]
-        for name, scene in changes.items():
-            if name not in wanted and scene is not base:
+        base = changes["nothing before"]()
+        for name, make in changes.items():
+            first = name == "nothing before"
+            if name not in wanted and not first:
                 continue
+            scene = base if first else make()
             found.setdefault(name, []).append(follow(view, scene))
-            if scene is not base:
+            if not first:
                 follow(view, base)
             elif frames is None:
                 frames = over_direct(native, view, scene, camera)

@@ -149,7 +149,9 @@ TEST(Solver, HasFewerRaysWhereGrainsAreMany) {
     EXPECT_LE(grains * quality_for(grains).rays, 10'000 * Quality().rays);
     EXPECT_LE(grains * quality_for(grains).seen_rays, 10'000 * Quality().seen_rays);
   }
-  EXPECT_LE(quality_for(1'000'000).rays * sizeof(Link), 600U);
+  for (const std::size_t links_of_others : {std::size_t{0}, std::size_t{8'000'000}, std::size_t{80'000'000}})
+    EXPECT_LE(affordable(quality_for(1'000'000), 1'000'000, links_of_others).rays * sizeof(Link), 600U);
+  EXPECT_EQ(affordable(quality_for(1'000'000), 100'000).rays, Quality().rays);
 }
 
 // A scene at rest has no noise at all: its rays are the same in each frame. With others the light of the whole is the
@@ -185,6 +187,70 @@ TEST(Solver, HasTheLightThatIsSeenFromFewRaysOfDeepGrains) {
     apart += static_cast<double>(light.sent[i].channels[1].w - right.sent[i].channels[1].w);
   }
   EXPECT_NEAR(apart / seen, 0.0, 0.005);
+}
+
+Quality sharing(Quality quality = {}) {
+  quality.shared_from = 0;
+  return quality;
+}
+
+// Of grains at the surface, which are all that is seen of a heap; the noise of the others' rays is in it.
+TEST(Solver, HasTheLightThatIsSeenWhereDeepGrainsShareTheirNumbers) {
+  constexpr int side = 20;
+  for (const Optics& optics : {medium(3.0, 0.999), lambert(0.8)}) {
+    const Heap heap = lit(optics, side);
+    Quality all_alike;
+    all_alike.deep_rays = all_alike.rays;
+    const HeapLight right = solve_exchange(heap, all_alike, {}, {});
+    const HeapLight light = solve_exchange(heap, sharing(), {}, {});
+    EXPECT_LT(light.sent.size(), right.sent.size() * 7 / 8) << "none share";
+    EXPECT_LT(light.links, right.links * 4 / 5);
+    double seen = 0.0;
+    double apart = 0.0;
+    double off = 0.0;
+    for (std::uint32_t i = 0; i < heap.grains.grains.size(); ++i) {
+      const glm::vec3 at = heap.grains.grains[i].middle / 2.05F;
+      if (std::min({at.x, at.y, at.z}) > 0.5F && std::max({at.x, at.y, at.z}) < side - 1.5F) continue;
+      const auto of_right = static_cast<double>(right.sent[i].channels[1].w);
+      const double of_light = static_cast<double>(light.seats->of(light.sent, i).channels[1].w);
+      seen += of_right;
+      apart += of_light - of_right;
+      off += std::abs(of_light - of_right);
+    }
+    EXPECT_NEAR(apart / seen, 0.0, 0.005);
+    EXPECT_LT(off / seen, 0.025);
+  }
+}
+
+TEST(Solver, FollowsChangesOfAHeapWhoseDeepGrainsShareTheirNumbers) {
+  constexpr int side = 14;
+  Solver solver;
+  Heap heap = lit(medium(3.0, 0.99), side);
+  const HeapLight first = solver.solve(heap, sharing(), {});
+  ASSERT_TRUE(first.seats->shared());
+
+  Heap moved = heap;
+  moved.grains.grains.back().middle.z += 1.0F;
+  const HeapLight renewed = solver.solve(moved, sharing(), {});
+  EXPECT_EQ(renewed.parts.links, first.parts.links);
+  EXPECT_GT(renewed.parts.renewed, 0U);
+  EXPECT_LT(renewed.parts.renewed, first.seats->answering() / 2);
+  EXPECT_LT(difference(renewed.sent, Solver().solve(moved, sharing(), {}).sent), 0.02);
+
+  const Heap slid = lit(medium(3.0, 0.98), side);
+  Quality quick = sharing(coarse);
+  const HeapLight at_once = solver.solve(slid, quick, {});
+  const HeapLight light = solver.solve(slid, sharing(), {});
+  const HeapLight right = Solver().solve(slid, sharing(), {});
+  EXPECT_LT(mean_difference(at_once.sent, right.sent), 0.15);
+  EXPECT_LT(difference(light.sent, right.sent), 2e-3);
+
+  Heap fallen = slid;
+  for (Grain& grain : fallen.grains.grains) grain.middle.z *= 0.97F;
+  const HeapLight carried = solver.solve(fallen, sharing(), {});
+  const HeapLight from_nothing = Solver().solve(fallen, sharing(), {});
+  EXPECT_LT(carried.steps, from_nothing.steps);
+  EXPECT_LT(difference(carried.sent, from_nothing.sent), 2e-3);
 }
 
 // A moved grain changes the light of those around it, and that of no other by more than .5 %, whatever their noise.

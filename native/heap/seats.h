@@ -1,0 +1,94 @@
+// Which numbers tell what a grain sends out: its own, or, deep in a heap of many, those of a cell of a lattice, in
+// which light is linear. A few of the cell's grains answer for all; their answers' best fit are the cell's numbers.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "heap/coefficients.h"
+#include "heap/grains.h"
+
+namespace mesograin::heap {
+
+/// Who answers: first the grains that have a seat of their own, then those that answer for the cells. What is told: of
+/// each such seat its numbers, then of each cell those of its middle and how they grow along three axes. After either
+/// may come more, which Seats leave as they are.
+class Seats {
+ public:
+  /// Each grain has its own, in their order.
+  explicit Seats(std::size_t grains) : grains_(grains), own_(grains) {}
+
+  /// Grains share that lie as many cells or more below those `open` ones from which light leaves the heap.
+  Seats(const std::vector<Grain>& grains, int cells_below, const std::function<bool(std::uint32_t grain)>& open);
+
+  bool shared() const { return !cells_.empty(); }
+
+  std::size_t grains() const { return grains_; }
+
+  /// How many have their own.
+  std::size_t own() const { return own_; }
+
+  std::size_t answering() const { return own_ + samples_each * cells_.size(); }
+  std::size_t told() const { return own_ + terms * cells_.size(); }
+
+  /// Of those that answer; of what comes after them as if it came after all grains.
+  std::uint32_t number(std::size_t answering_one) const {
+    if (!shared()) return static_cast<std::uint32_t>(answering_one);
+    return answering_one < answering_.size() ? answering_[answering_one]
+                                             : static_cast<std::uint32_t>(grains_ + answering_one - answering_.size());
+  }
+
+  bool shares(std::uint32_t grain) const { return shared() && (seats_[grain].seat & in_cell) != 0; }
+
+  /// Of a grain that has its own, or of what comes after all grains.
+  std::uint32_t seat(std::uint32_t number) const {
+    if (!shared()) return number;
+    return number < grains_ ? seats_[number].seat : static_cast<std::uint32_t>(told() + number - grains_);
+  }
+
+  /// What those that answer make known, as it is told.
+  Field told(Field answers) const;
+
+  /// What is told of a grain, or of what comes after all.
+  Coefficients of(const Field& told, std::uint32_t number) const;
+
+  /// The same at a normal, to order 1 where it is shared.
+  glm::vec3 light_at(const Field& told, std::uint32_t number, const glm::vec3& normal, bool fine) const {
+    if (number < grains_ && shares(number)) return shared_light_at(told, number, normal);
+    const Coefficients& own = told[seat(number)];
+    return fine ? own.at(normal) : own.first_at(normal);
+  }
+
+ private:
+  static constexpr std::size_t samples_each = 12;
+  static constexpr std::size_t terms = 4;
+  static constexpr std::uint32_t in_cell = 1U << 31U;  // the rest is the cell's number
+
+  using Terms = std::array<float, terms>;
+
+  struct Seat {
+    std::uint32_t seat = 0;
+    std::array<std::int8_t, 3> within{};  // its cell, from the middle
+  };
+
+  /// How much of what each of those that answer for it makes known is in its numbers.
+  using Cell = std::array<Terms, samples_each>;
+
+  class Builder;
+
+  static Terms terms_of(const Seat& seat);
+  std::size_t first_of_cell(const Seat& seat) const { return own_ + terms * (seat.seat & ~in_cell); }
+  glm::vec3 shared_light_at(const Field& told, std::uint32_t grain, const glm::vec3& normal) const;
+
+  std::size_t grains_;
+  std::size_t own_;
+  std::vector<Seat> seats_;
+  std::vector<std::uint32_t> answering_;
+  std::vector<Cell> cells_;
+};
+
+}  // namespace mesograin::heap
