@@ -103,6 +103,7 @@ using Field = std::vector<Coefficients>;
 struct Lit {
   Field direct;
   Field crossed;
+  Field scattered;  ///< of both, what clear grains have scattered; empty where none is clear
 };
 
 }  // namespace mesograin::heap

@@ -69,11 +69,15 @@ void look_from_node(const Space& space, const Patches::Node& node, const glm::dv
   }
 }
 
-void add_grain(const GrainTable& table, const Look& look, const glm::vec3& left, bool fine, Coefficients& sum) {
+/// `scattered`: what of it a clear grain has scattered; or null.
+void add_grain(const GrainTable& table, const Look& look, const glm::vec3& left, bool fine, Coefficients& sum,
+               Coefficients* scattered) {
   const Outcome outcome = table.draw(look.mu, look.choice);
   const TurnedFrame frame(look.normal, -look.ray.direction);
-  sum.add(left * look.brings * outcome.weight, table.seen_place(frame * outcome.normal, frame * outcome.direction),
-          fine);
+  const glm::vec3 light = left * look.brings * outcome.weight;
+  const glm::vec3 place = table.seen_place(frame * outcome.normal, frame * outcome.direction);
+  sum.add(light, place, fine);
+  if (scattered != nullptr && outcome.scattered && table.is_clear()) scattered->add(light, place, fine);
 }
 
 /// Whether any of these meets a place where a grain was or is that has moved.
@@ -107,12 +111,14 @@ void find_direct_light(const Space& space, const Heap& heap, const Rays& rays, c
       if (moves != nullptr && !(of_grain && moves->moved(number)) && !touched(*moves, looks)) continue;
       lit.direct[i] = {};
       lit.crossed[i] = {};
+      Coefficients* scattered = lit.scattered.empty() ? nullptr : &lit.scattered[i];
+      if (scattered != nullptr) *scattered = {};
       for (Look& look : looks) {
         const glm::vec3 left = space.passed(look.ray, look.reach);
         if (left == glm::vec3(0.0F)) continue;
         Coefficients& sum = look.ray.crossed ? lit.crossed[i] : lit.direct[i];
         if (of_grain)
-          add_grain(*space.kind(number).from_light, look, left, rays.fine(space, i), sum);
+          add_grain(*space.kind(number).from_light, look, left, rays.fine(space, i), sum, scattered);
         else
           sum.add(left * look.brings, glm::vec3(0.0F), false);  // as much at every normal
       }

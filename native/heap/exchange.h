@@ -65,6 +65,10 @@ struct HeapLight {
   std::vector<Share> open;
   Field sent;  ///< exitance over pi because of all light, to begin the next solution from
   std::shared_ptr<const Seats> seats;
+  /// Of clear grains: what they have scattered of `sent`, over the share of light that they scatter, and what of that
+  /// answers to what others send; empty where none is clear.
+  Field scattered;
+  Field scattered_answer;
   Patches patches;
   std::vector<Kind> kinds;
   std::size_t links = 0;

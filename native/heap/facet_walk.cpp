@@ -59,22 +59,23 @@ bool enters(const glm::vec3& normal, float alpha, double eta, glm::vec3& travell
 }  // namespace
 
 std::optional<Passage> walk_facets(const Optics& optics, float radius, const SeenFacet& seen, const Facets& facets,
-                                   Random& random) {
+                                   Scatterings scatterings, Random& random) {
   glm::vec3 place = seen.place;
   glm::vec3 direction = -seen.towards;
   const float alpha = facets.roughness(seen.grain);
   if (!enters(seen.normal, alpha, optics.eta, direction, random))
-    return Passage{place, direction, glm::vec3(1.0F), false};
+    return Passage{place, direction, glm::vec3(1.0F), false, false};
   Flights flights(glm::vec3(optics.sigma_t) / radius, glm::vec3(optics.albedo), random);
   bool scattered = false;
   for (int met = 0; met < most_facets; ++met) {
     const std::optional<Meeting> facet = facets.inside(seen.grain, place, direction);
-    if (!facet) return Passage{place, direction, flights.weight(), !scattered};
+    if (!facet) return Passage{place, direction, flights.weight(), true, scattered};
     const float chord = glm::distance(place, facet->place);
     const float flight = flights.fly(chord);
     if (flight < chord) {
       scattered = true;
       place += flight * direction;
+      if (scatterings == Scatterings::end) return Passage{place, direction, flights.weight(), true, true};
       direction = transport::scattered(direction, static_cast<float>(optics.g), random.uniform(), random.uniform());
       if (!flights.survives()) return std::nullopt;
       continue;
@@ -85,7 +86,7 @@ std::optional<Passage> walk_facets(const Optics& optics, float radius, const See
     const float cosine = glm::dot(facet->normal, direction);
     const glm::vec3 inwards = -glm::normalize(facet->normal + std::max(least_cosine - cosine, 0.0F) * direction);
     if (enters(inwards, alpha, 1.0 / optics.eta, direction, random))
-      return Passage{place, direction, flights.weight(), !scattered};
+      return Passage{place, direction, flights.weight(), true, scattered};
     if (!flights.survives()) return std::nullopt;
   }
   return std::nullopt;

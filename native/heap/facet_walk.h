@@ -1,5 +1,5 @@
-// One walk of light through a grain's own facets, from the place where it is seen to where it leaves: what a clear
-// crystal shows no sphere of its area does.
+// One walk of light through a grain's own facets, from the place where it is seen to where it leaves, or is scattered:
+// what a clear crystal shows no sphere of its area does.
 #pragma once
 
 #include <cstdint>
@@ -40,17 +40,24 @@ struct SeenFacet {
   glm::vec3 towards;  ///< the viewer, unit length
 };
 
-/// Light as it leaves, against the way that light goes to the viewer.
+/// Light as it leaves, or where it ends, against the way that light goes to the viewer.
 struct Passage {
   glm::vec3 place;
   glm::vec3 direction;
   glm::vec3 weight;  ///< linear RGB, of what the viewer sees of that radiance
-  bool crossed;      ///< it went in and came out unscattered
+  bool entered;      ///< else the surface that is seen has reflected it
+  bool scattered;
+};
+
+/// What becomes of a view ray that is scattered.
+enum class Scatterings {
+  followed,
+  end,  ///< the walk: its weight has the albedo in it
 };
 
 /// Follows a view ray; lengths in `optics` are in `radius`. Where no facet is met, light goes straight on. Nothing,
 /// where all was absorbed or it does not come out.
 std::optional<Passage> walk_facets(const Optics& optics, float radius, const SeenFacet& seen, const Facets& facets,
-                                   transport::Random& random);
+                                   Scatterings scatterings, transport::Random& random);
 
 }  // namespace mesograin::heap

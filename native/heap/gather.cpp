@@ -15,16 +15,13 @@
 namespace mesograin::heap {
 namespace {
 
-// Of a sun's disc, edge to edge: looks that go where the grain sends them find a smaller one too seldom.
-constexpr double least_disc = std::numbers::pi / 36.0;
-
 // Clear grains, one behind the other; the last of them is as its neighbours see it.
 constexpr int most_looked_into = 12;
 
-bool found_by_looks(const scene::Light& light) {
-  const auto* sun = std::get_if<scene::DirectionalLight>(&light);
-  return sun != nullptr && sun->angle >= least_disc;
-}
+// Light that comes from a lamp or a sun through several grains is found by no look along one line, or seldom: it is
+// told as if each of them spread it over a cone of this half angle (Kaplanyan and Dachsbacher, "Path space
+// regularization for holistic and robust light transport", 2013, section 4).
+const float least_spread = 15.0F * std::numbers::pi_v<float> / 180.0F;
 
 /// What one direction of a light makes a walk send back: of all places that ask for it one is looked at, the likelier
 /// the more it found.
@@ -83,8 +80,7 @@ Gather::Gather(Heap heap, std::shared_ptr<const HeapLight> light)
     : heap_(std::move(heap)),
       light_(std::move(light)),
       space_(heap_.grains, light_->kinds, light_->seats),
-      draws_(draws_of(heap_)),
-      looks_find_all_(std::all_of(heap_.lights.begin(), heap_.lights.end(), found_by_looks)) {}
+      draws_(draws_of(heap_)) {}
 
 glm::vec3 Gather::sent_to(Ray ray, transport::Random& random, bool open) const {
   if (const std::optional<Source> source = space_.follow(ray, random))
@@ -150,53 +146,85 @@ glm::vec3 Gather::look_at_all(std::uint32_t grain, const glm::vec3& place, const
   return glm::max(sum / static_cast<float>(rays) + behind, 0.0F);
 }
 
-bool Gather::sees_into(std::uint32_t grain) const { return heap_.grains.kinds[space_.grains()[grain].kind].clear(); }
-
-glm::vec3 Gather::look_into(const SeenFacet& seen, const Facets& facets, int rays, transport::Random& random) const {
-  glm::vec3 sum(0.0F);
-  for (int i = 0; i < rays; ++i) sum += found_through(seen, facets, random);
-  sum /= static_cast<float>(rays);
-  const float mu = std::clamp(glm::dot(seen.normal, seen.towards), 0.0F, 1.0F);
-  const GrainTable& table = *space_.kind(seen.grain).from_light;
-  sum += table.lobe_at(mu) *
-         light_->seats->of(light_->crossed, seen.grain).at(table.seen_place(seen.normal, seen.towards));
-  return glm::max(sum, 0.0F);
+bool Gather::sees_into(std::uint32_t grain) const {
+  return !light_->scattered.empty() && space_.kind(grain).from_light->is_clear();
 }
 
-glm::vec3 Gather::found_through(SeenFacet seen, const Facets& facets, transport::Random& random) const {
+Gather::Through Gather::look_into(const SeenFacet& seen, const Facets& facets, Scatterings scatterings,
+                                  transport::Random& random) const {
+  Through sum;
+  follow_look(seen, facets, scatterings, random, sum);
+  const float mu = std::clamp(glm::dot(seen.normal, seen.towards), 0.0F, 1.0F);
+  const GrainTable& table = *space_.kind(seen.grain).from_light;
+  sum.others += table.lobe_at(mu) *
+                light_->seats->of(light_->crossed, seen.grain).at(table.seen_place(seen.normal, seen.towards));
+  sum.others = glm::max(sum.others, 0.0F);
+  return sum;
+}
+
+void Gather::follow_look(SeenFacet seen, const Facets& facets, Scatterings scatterings, transport::Random& random,
+                         Through& sum) const {
   glm::vec3 weight(1.0F);
   for (int through = 0; through < most_looked_into; ++through) {
+    const bool first = through == 0;
     const Grain& grain = space_.grains()[seen.grain];
-    const std::optional<Passage> passage =
-        walk_facets(heap_.grains.kinds[grain.kind], grain.radius, seen, facets, random);
-    if (!passage) return glm::vec3(0.0F);
+    const std::optional<Passage> passage = walk_facets(heap_.grains.kinds[grain.kind], grain.radius, seen, facets,
+                                                       first ? scatterings : Scatterings::end, random);
+    if (!passage) return;
     weight *= passage->weight;
-    const std::optional<Meeting> meeting = facets.beyond(seen.grain, passage->place, passage->direction);
+    if (passage->scattered && (!first || scatterings == Scatterings::end)) {
+      const Field& scattered = first ? light_->scattered_answer : light_->scattered;
+      const glm::vec3 place = space_.kind(seen.grain).from_light->seen_place(seen.normal, seen.towards);
+      sum.others += weight * glm::max(light_->seats->light_at(scattered, seen.grain, place, true), 0.0F);
+      return;
+    }
     // What else the grain that is seen makes of the lights is its model's.
-    if (!meeting) return passage->crossed || through > 0 ? weight * far_away(passage->direction) : glm::vec3(0.0F);
-    const bool on = looks_find_all_ && !meeting->wall && sees_into(meeting->number) && through + 1 < most_looked_into;
-    if (!on) {
+    if (!first) sum.lights += weight * lights_along(seen.grain, *passage, facets, random);
+    const std::optional<Meeting> meeting = facets.beyond(seen.grain, passage->place, passage->direction);
+    if (!meeting) {
+      if (!first || (passage->entered && !passage->scattered))
+        sum.lights += weight * glm::vec3(lights::radiance(heap_.world, glm::dvec3(passage->direction)));
+      return;
+    }
+    if (meeting->wall || !sees_into(meeting->number) || through + 1 == most_looked_into) {
       Ray ray{passage->place, passage->direction, weight};
-      const std::optional<Source> source = space_.source(*meeting, ray, random);
-      if (!source) return glm::vec3(0.0F);
-      return ray.weight / source->met * light_->seats->light_at(light_->sent, source->number, source->normal, true);
+      if (const std::optional<Source> source = space_.source(*meeting, ray, random))
+        sum.others += ray.weight / source->met *
+                      glm::max(light_->seats->light_at(light_->sent, source->number, source->normal, true), 0.0F);
+      return;
     }
     seen = {meeting->number, meeting->place, meeting->normal, -passage->direction};
   }
-  return glm::vec3(0.0F);
 }
 
-glm::vec3 Gather::far_away(const glm::vec3& direction) const {
-  glm::dvec3 seen = lights::radiance(heap_.world, glm::dvec3(direction));
-  for (const scene::Light& light : heap_.lights) {
-    if (!found_by_looks(light)) continue;
-    const auto* sun = std::get_if<scene::DirectionalLight>(&light);
-    const glm::dvec3 to_sun = glm::normalize(sun->direction_to_light);
-    const double edge = std::cos(0.5 * sun->angle);
-    if (glm::dot(to_sun, glm::dvec3(direction)) < edge) continue;
-    seen += sun->irradiance / (2.0 * std::numbers::pi * (1.0 - edge));
+glm::vec3 Gather::lights_along(std::uint32_t grain, const Passage& passage, const Facets& facets,
+                               transport::Random& random) const {
+  glm::vec3 sum(0.0F);
+  for (std::size_t i = 0; i < heap_.lights.size(); ++i) {
+    const lights::LightDraw light =
+        draws_[i](heap_.anchor + glm::dvec3(passage.place), {random.uniform(), random.uniform()});
+    glm::vec3 to_light(light.to_light);
+    float cosine = glm::dot(to_light, passage.direction);
+    float edge = std::cos(least_spread);
+    if (const auto* sun = std::get_if<scene::DirectionalLight>(&heap_.lights[i])) {
+      // Its disc is found as it is, the cone is around its middle.
+      const auto of_disc = static_cast<float>(std::cos(0.5 * sun->angle));
+      cosine = glm::dot(glm::vec3(glm::normalize(sun->direction_to_light)), passage.direction);
+      edge = std::min(edge, of_disc);
+      if (cosine >= of_disc) to_light = passage.direction;
+    }
+    if (cosine < edge) continue;
+    const auto reach = static_cast<float>(std::min(light.reach, 1e30));
+    const std::optional<Meeting> meeting = facets.beyond(grain, passage.place, to_light);
+    glm::vec3 passed(1.0F);
+    if (meeting && glm::distance(meeting->place, passage.place) < reach) {
+      if (meeting->wall || !heap_.grains.kinds[space_.grains()[meeting->number].kind].transparent()) continue;
+      Ray ray{passage.place, to_light, glm::vec3(1.0F)};
+      passed = space_.passed(ray, reach);
+    }
+    sum += glm::vec3(light.irradiance) * passed / (2.0F * std::numbers::pi_v<float> * (1.0F - edge));
   }
-  return seen;
+  return sum;
 }
 
 Ray Gather::ray_through(std::uint32_t grain, const glm::vec3& normal, const glm::vec3& towards) const {

@@ -39,13 +39,28 @@ class Gather {
   /// Whether so much crosses this grain, whose surface refracts, that look_into() shows more of it.
   bool sees_into(std::uint32_t grain) const;
 
-  /// What look() shows, through the grain's own facets, and of the world, and of suns wide enough to be found, what
-  /// crosses it unscattered. Where no other light is, the look goes on through other clear grains that it meets.
-  glm::vec3 look_into(const SeenFacet& seen, const Facets& facets, int rays, transport::Random& random) const;
+  /// What is seen through a clear grain.
+  struct Through {
+    glm::vec3 others{0.0F};  ///< of what grains and walls send
+    glm::vec3 lights{0.0F};  ///< of the world and the lights, unscattered
+
+    void add(const Through& other) {
+      others += other.others;
+      lights += other.lights;
+    }
+  };
+
+  /// What look() shows, through the grain's own facets and other clear grains that stand behind it; the world that is
+  /// seen so, but for what the grain's own surface reflects of it; and the lights, as far as those behind send them on.
+  /// `scatterings`: of others' light in this grain; where they end, its numbers tell it.
+  Through look_into(const SeenFacet& seen, const Facets& facets, Scatterings scatterings,
+                    transport::Random& random) const;
 
  private:
-  glm::vec3 found_through(SeenFacet seen, const Facets& facets, transport::Random& random) const;
-  glm::vec3 far_away(const glm::vec3& direction) const;
+  void follow_look(SeenFacet seen, const Facets& facets, Scatterings scatterings, transport::Random& random,
+                   Through& sum) const;
+  glm::vec3 lights_along(std::uint32_t grain, const Passage& passage, const Facets& facets,
+                         transport::Random& random) const;
   glm::vec3 sent_to(Ray ray, transport::Random& random, bool open) const;
   Ray ray_through(std::uint32_t grain, const glm::vec3& normal, const glm::vec3& towards) const;
 
@@ -53,7 +68,6 @@ class Gather {
   std::shared_ptr<const HeapLight> light_;
   Space space_;
   std::vector<Draw> draws_;
-  bool looks_find_all_;  // of the light that comes from far away
 };
 
 }  // namespace mesograin::heap

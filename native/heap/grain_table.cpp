@@ -10,6 +10,8 @@
 #include <list>
 #include <mutex>
 
+#include "physics/physics.h"
+
 namespace mesograin::heap {
 namespace {
 
@@ -29,6 +31,22 @@ double met_from_everywhere(double sigma_t) {
   const double depth = 2.0 * sigma_t;
   if (depth < 0.02) return depth * (2.0 / 3.0 - depth / 4.0 + depth * depth / 15.0);
   return 1.0 + 2.0 * (std::exp(-depth) * (depth + 1.0) - 1.0) / (depth * depth);
+}
+
+/// Of light from everywhere, what enters a sphere whose surface refracts and meets something before it leaves, times
+/// the albedo: inside it comes to the surface at the same angle ever again, and is reflected as often as outside.
+glm::dvec3 scattered_once(const Optics& optics) {
+  constexpr int steps = 256;
+  glm::dvec3 sum(0.0);
+  for (int step = 0; step < steps; ++step) {
+    const double mu = std::sqrt((step + 0.5) / steps);
+    const double reflected = physics::fresnel_reflectance(mu, optics.eta);
+    if (!(reflected < 1.0)) continue;
+    const double inside = std::sqrt(std::max(1.0 - (1.0 - mu * mu) / (optics.eta * optics.eta), 0.0));
+    const glm::dvec3 met = met_at(glm::vec3(optics.sigma_t), inside);
+    sum += (1.0 - reflected) * met / (1.0 - reflected * (1.0 - met));
+  }
+  return optics.albedo * sum / static_cast<double>(steps);
 }
 
 /// How far along a view ray the light was scattered last that is seen, mean of what is sent out evenly inside.
@@ -56,8 +74,8 @@ void resample(const std::vector<Outcome>& walks, int tried, transport::Random& r
   for (const Outcome& outcome : walks) {
     until += mean(outcome.weight);
     for (; next < until && drawn < GrainTable::outcomes; next += step, ++drawn)
-      kept.push_back(
-          {outcome.normal, outcome.direction, outcome.weight * (each / mean(outcome.weight)), outcome.refracted});
+      kept.push_back({outcome.normal, outcome.direction, outcome.weight * (each / mean(outcome.weight)),
+                      outcome.refracted, outcome.scattered});
   }
   while (drawn++ < GrainTable::outcomes) kept.push_back(kept.back());
 }
@@ -94,15 +112,19 @@ GrainTable::GrainTable(const Optics& optics, Sense sense, const transport::Effor
     : walks_(walks),
       fine_(optics.opaque() || (optics.clear() && optics.lens)),
       transparent_(optics.transparent()),
+      clear_(optics.clear()),
       sigma_t_(optics.sigma_t) {
+  if (clear_) scattered_ = glm::vec3(scattered_once(optics));
   if (transparent_)
     for (int channel = 0; channel < 3; ++channel)
       met_[channel] = static_cast<float>(met_from_everywhere(optics.sigma_t[channel]));
   trace(optics, sense, effort);
-  if (is_grey(optics)) return;
   // Walks that are shared by channels are noisier in each than its own.
-  for (int channel = 0; channel < 3; ++channel)
+  for (int channel = 0; channel < 3 && !is_grey(optics); ++channel)
     take_albedo(GrainTable(grey(optics, channel), sense, effort, walks), channel);
+  if (!clear_) return;
+  for (const Outcome& outcome : outcomes_)
+    if (outcome.scattered) scattered_out_ += outcome.weight / static_cast<float>(outcomes_.size());
 }
 
 void GrainTable::take_albedo(const GrainTable& grey, int channel) {

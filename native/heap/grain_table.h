@@ -56,6 +56,16 @@ class GrainTable {
   /// came in, and where it goes on as through a lens.
   bool is_fine() const { return fine_; }
 
+  /// As Optics::clear().
+  bool is_clear() const { return clear_; }
+
+  /// Of a clear grain, the share of light from everywhere that is scattered in it, times the albedo of the first of its
+  /// scatterings; 0 of others.
+  const glm::vec3& scattered() const { return scattered_; }
+
+  /// What leaves of it.
+  const glm::vec3& scattered_out() const { return scattered_out_; }
+
   /// Where light comes in; of what is not opaque.
   const Entries& came_in() const { return came_in_; }
 
@@ -70,8 +80,11 @@ class GrainTable {
   int walks_;
   bool fine_;
   bool transparent_;
+  bool clear_;
   glm::vec3 sigma_t_;
   glm::vec3 met_{1.0F};
+  glm::vec3 scattered_{0.0F};
+  glm::vec3 scattered_out_{0.0F};
   glm::vec3 albedo_{0.0F};
   std::array<glm::vec3, entries> albedos_{};  // of what light of each interval meets
   std::vector<Outcome> outcomes_;

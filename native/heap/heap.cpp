@@ -57,6 +57,10 @@ bool Space::is_open(std::uint32_t grain, float far) const {
   return false;
 }
 
+bool Space::any_clear() const {
+  return std::any_of(kinds_.begin(), kinds_.end(), [](const Kind& kind) { return kind.from_light->is_clear(); });
+}
+
 WallPlace Space::place(const Patches::Node& node, float u, float v) const {
   // As the node's share of the light falls off.
   const auto tent = [](float at) {

@@ -70,6 +70,9 @@ class Space {
   const Kind& kind(const Patches::Node& node) const { return kinds_[walls_[node.wall].kind]; }
   const Patches& patches() const { return patches_; }
 
+  /// Whether any kind of grain is clear.
+  bool any_clear() const;
+
   /// Of all that answers: grains in their seats, then nodes.
   std::size_t size() const { return seats_->answering() + patches_.nodes().size(); }
 

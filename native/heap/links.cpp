@@ -104,8 +104,10 @@ class Opening {
 
 struct Found {
   std::vector<Link> links;
+  Scattering scattering;
   Coefficients direct;
   Coefficients crossed;
+  Coefficients scattered;
   Share open;
 };
 
@@ -163,6 +165,7 @@ struct Look {
   glm::vec3 normal;
   glm::vec3 towards;
   bool refracted = false;  ///< and not scattered
+  bool scattered = false;  ///< in a clear grain
 };
 
 /// One of many places of a ball, seen from one of many sides, all alike.
@@ -203,8 +206,11 @@ std::vector<Look> looks_from(const Space& space, std::size_t answering, const Ra
       const Seen seen(point);
       const Outcome outcome = table.draw(seen.mu, point[3]);
       const glm::vec3 leaves = space.place(grain, seen.frame * outcome.normal);
-      looks.push_back(
-          {{leaves, seen.frame * outcome.direction, outcome.weight}, seen.normal, seen.towards, outcome.refracted});
+      looks.push_back({{leaves, seen.frame * outcome.direction, outcome.weight},
+                       seen.normal,
+                       seen.towards,
+                       outcome.refracted,
+                       outcome.scattered && table.is_clear()});
     }
     return looks;
   }
@@ -293,11 +299,15 @@ Found found_by(const Space& space, std::size_t answering, const std::vector<Look
   for (std::size_t i = 0; i < departing.size(); ++i) {
     const Departing& from = departing[i];
     const glm::vec3 weight = from.weight * endings[i].left;
+    if (looks[i].scattered) found.scattering.share += from.weight;
     if (looks[i].refracted) opening.add(mean(from.weight), endings[i].source ? 0.0F : mean(weight), from.normal);
-    if (endings[i].source)
+    if (endings[i].source) {
       found.links.push_back(link_to(*endings[i].source, weight, from.normal));
-    else
+      if (looks[i].scattered) std::swap(found.links[found.scattering.links++], found.links.back());
+    } else {
       (endings[i].crossed ? found.crossed : found.direct).add(weight * radiance, from.normal, fine);
+      if (looks[i].scattered) found.scattered.add(weight * radiance, from.normal, fine);
+    }
   }
   found.open = opening.share(fine);
   return found;
@@ -326,6 +336,16 @@ Behind seen_behind(const Space& space, std::size_t answering, const std::vector<
   return behind;
 }
 
+void take(Found found, std::size_t number, Links& links, Lit& lit) {
+  links.of[number] = std::move(found.links);
+  lit.direct[number] = found.direct;
+  lit.crossed[number] = found.crossed;
+  if (number < links.open.size()) links.open[number] = found.open;
+  if (links.scattered.empty()) return;
+  links.scattered[number] = found.scattering;
+  lit.scattered[number] = found.scattered;
+}
+
 constexpr std::uint64_t behind_seed = 2;  // more than an effort's
 
 /// each(i) for i below `count`, many a piece.
@@ -344,24 +364,45 @@ std::size_t Links::count() const {
   return all;
 }
 
-void Links::gather(const Field& sent, Field& answer, const transport::Effort& effort, const Change* change) const {
-  answer.resize(of.size());
+namespace {
+
+/// What light sent out by others makes each send out by the first `first(i)` of its links.
+template <typename First>
+void gather_first(const Links& links, const First& first, const Field& sent, Field& answer,
+                  const transport::Effort& effort, const Change* change) {
+  const std::size_t count = links.of.size();
+  answer.resize(count);
   constexpr std::size_t at_once = 512;
-  transport::run_pieces(effort, (of.size() + at_once - 1) / at_once, [&](std::size_t piece) {
-    for (std::size_t i = piece * at_once; i < std::min(of.size(), (piece + 1) * at_once); ++i) {
+  transport::run_pieces(effort, (count + at_once - 1) / at_once, [&](std::size_t piece) {
+    for (std::size_t i = piece * at_once; i < std::min(count, (piece + 1) * at_once); ++i) {
       Coefficients sum;
-      const bool of_fine = !fine.empty() && fine[i];
-      for (const Link& link : of[i]) {
+      const bool of_fine = !links.fine.empty() && links.fine[i];
+      const std::vector<Link>& of = links.of[i];
+      for (std::size_t j = 0; j < first(i); ++j) {
+        const Link& link = of[j];
         glm::vec3 weight(link.weight[0], link.weight[1], link.weight[2]);
         if (change != nullptr) weight *= change->received[link.from];
-        const glm::vec3 light = seats->light_at(sent, link.from, unpacked(link.sent_at), !fine.empty());
+        const glm::vec3 light = links.seats->light_at(sent, link.from, unpacked(link.sent_at), !links.fine.empty());
         sum.add(weight * light, unpacked(link.leaves_at), of_fine);
       }
-      if (change != nullptr && !change->answered.empty()) sum = sum * change->answered[seats->number(i)];
+      if (change != nullptr && !change->answered.empty()) sum = sum * change->answered[links.seats->number(i)];
       answer[i] = sum;
     }
   });
+}
+
+}  // namespace
+
+void Links::gather(const Field& sent, Field& answer, const transport::Effort& effort, const Change* change) const {
+  gather_first(
+      *this, [this](std::size_t i) { return of[i].size(); }, sent, answer, effort, change);
   answer = seats->told(std::move(answer));
+}
+
+void Links::gather_scattered(const Field& sent, Field& answer, const transport::Effort& effort,
+                             const Change* change) const {
+  gather_first(
+      *this, [this](std::size_t i) { return std::size_t{scattered[i].links}; }, sent, answer, effort, change);
 }
 
 bool Rays::fine(const Space& space, std::size_t answering) const {
@@ -399,8 +440,9 @@ Deep find_deep(const Space& space, int ways, const transport::Effort& effort) {
 Links find_links(const Space& space, const Rays& rays, const glm::vec3& radiance, Lit& lit,
                  const transport::Effort& effort) {
   const std::size_t count = space.size();
-  Links links{std::vector<std::vector<Link>>(count), {}, Openness(space.seats()->answering()), space.seats()};
+  Links links{std::vector<std::vector<Link>>(count), {}, Openness(space.seats()->answering()), space.seats(), {}};
   bool any_fine = false;
+  if (space.any_clear()) links.scattered.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
     links.fine.push_back(rays.fine(space, i));
     any_fine = any_fine || links.fine.back();
@@ -408,13 +450,11 @@ Links find_links(const Space& space, const Rays& rays, const glm::vec3& radiance
   if (!any_fine) links.fine.clear();
   lit.direct.assign(count, {});
   lit.crossed.assign(count, {});
+  lit.scattered.assign(links.scattered.size(), {});
   for_each(count, effort, [&](std::size_t i) {
     Found found =
         found_by(space, i, looks_from(space, i, rays, effort.seed), rays.fine(space, i), radiance, effort.seed);
-    links.of[i] = std::move(found.links);
-    lit.direct[i] = found.direct;
-    lit.crossed[i] = found.crossed;
-    if (i < links.open.size()) links.open[i] = found.open;
+    take(std::move(found), i, links, lit);
   });
   return links;
 }
@@ -425,7 +465,7 @@ glm::vec3 look_through(const glm::vec3& normal, const glm::vec3& towards) {
 }
 
 Links find_behind(const Space& space, const Rays& rays, const transport::Effort& effort) {
-  Links behind{std::vector<std::vector<Link>>(space.size()), {}, Openness(space.seats()->own()), space.seats()};
+  Links behind{std::vector<std::vector<Link>>(space.size()), {}, Openness(space.seats()->own()), space.seats(), {}};
   const std::uint64_t seed = effort.seed + behind_seed;
   // What stands behind those that share is seen by nobody.
   for_each(space.seats()->own(), effort, [&](std::size_t i) {
@@ -457,12 +497,7 @@ std::size_t renew(const Space& space, const Moves& moves, const Rays& rays, cons
     const std::lock_guard lock(mutex);
     behind.emplace_back(i, std::move(anew));
   });
-  for (auto& [i, anew] : found) {
-    ways.links.of[i] = std::move(anew.links);
-    ways.world.direct[i] = anew.direct;
-    ways.world.crossed[i] = anew.crossed;
-    if (i < ways.links.open.size()) ways.links.open[i] = anew.open;
-  }
+  for (auto& [i, anew] : found) take(std::move(anew), i, ways.links, ways.world);
   for (auto& [i, anew] : behind) {
     ways.behind.of[i] = std::move(anew.links);
     ways.behind.open[i] = anew.open;

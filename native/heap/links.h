@@ -33,17 +33,30 @@ struct Change {
 /// look_through(), or refracted, by GrainTable::seen_place(), as what it sends out is told.
 using Openness = std::vector<Share>;
 
+/// Of a clear grain: how many of its links, the first, are of light that it has scattered, and how much of light from
+/// everywhere would leave it by all looks that were scattered.
+struct Scattering {
+  std::uint32_t links = 0;
+  glm::vec3 share{0.0F};
+};
+
 struct Links {
   std::vector<std::vector<Link>> of;  ///< each that answers: grains in their seats, then nodes of walls
   std::vector<bool> fine;             ///< of each, whether it is told to order 2; empty: none is
   Openness open;                      ///< of what the looks that were followed let through
   std::shared_ptr<const Seats> seats;
+  /// Of each; empty: none is clear.
+  std::vector<Scattering> scattered;
 
   std::size_t count() const;
 
   /// What light sent out by others makes the grains send out, as Seats tell it. `change`: since the links were found;
   /// or null.
   void gather(const Field& sent, Field& answer, const transport::Effort& effort, const Change* change = nullptr) const;
+
+  /// Of that, what clear grains have scattered, of each that answers.
+  void gather_scattered(const Field& sent, Field& answer, const transport::Effort& effort,
+                        const Change* change = nullptr) const;
 };
 
 /// Of each grain, whether it lies deep; empty: none does.

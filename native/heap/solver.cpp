@@ -44,6 +44,29 @@ void scale(Field& field, const Seats& seats, const std::vector<glm::vec3>& by) {
   for (std::size_t i = 0; i < field.size(); ++i) field[i] = field[i] * by[seats.number(i)];
 }
 
+glm::vec3 quotient(const glm::vec3& of, const glm::vec3& by) {
+  glm::vec3 result(0.0F);
+  for (int channel = 0; channel < 3; ++channel)
+    if (by[channel] > 0.0F) result[channel] = of[channel] / by[channel];
+  return result;
+}
+
+/// What was scattered over the share of light that is: of what lights send, that of the grains' tables.
+void scale_scattered(Field& field, const Seats& seats, const Grains& grains, const std::vector<Kind>& kinds) {
+  for (std::size_t i = 0; i < seats.answering(); ++i) {
+    const Kind& kind = kinds[grains.grains[seats.number(i)].kind];
+    field[i] = field[i] * quotient(glm::vec3(1.0F), kind.from_light->scattered());
+  }
+}
+
+/// The same of what others send, and the world: how many of a grain's rays were scattered is none of the light's doing.
+void scale_scattered(Field& field, const Links& links, const Grains& grains, const std::vector<Kind>& kinds) {
+  for (std::size_t i = 0; i < links.seats->answering(); ++i) {
+    const GrainTable& table = *kinds[grains.grains[links.seats->number(i)].kind].from_viewer;
+    field[i] = field[i] * quotient(table.scattered_out(), table.scattered() * links.scattered[i].share);
+  }
+}
+
 void add(Field& sum, const Field& of, const glm::vec3& by) {
   for (std::size_t i = 0; i < sum.size(); ++i) sum[i] = sum[i] + of[i] * by;
 }
@@ -236,7 +259,7 @@ const Solver::Source& Solver::find_source(Heap light, const Quality& quality, co
     source.rays = same->rays;
     source.lit = same->lit;
   } else {
-    source.lit = {Field(space().size()), Field(space().size())};
+    source.lit = {Field(space().size()), Field(space().size()), Field(space().any_clear() ? space().size() : 0)};
     ++parts_.sources;
   }
   find_direct_light(space(), source.light, source.rays, moves ? &*moves : nullptr, source.lit, effort);
@@ -252,31 +275,39 @@ Lit Solver::find_direct(const Heap& heap, const Quality& quality, const transpor
     return std::find(lights.begin(), lights.end(), source.light) == lights.end();
   });
   const std::size_t count = traced_->ways.world.direct.size();
-  Lit sum{Field(count), Field(count)};
-  const auto add_lit = [&](const Lit& lit, const Matter& with, const glm::vec3& by) {
-    if (with.grains == matter_->grains) {
-      add(sum.direct, lit.direct, by);
-      add(sum.crossed, lit.crossed, by);
-      return;
+  Lit sum{Field(count), Field(count), Field(traced_->ways.world.scattered.size())};
+  const auto add_lit = [&](Lit lit, const Matter& with, const glm::vec3& by) {
+    if (with.grains != matter_->grains) {
+      const std::optional<Change> change = change_from(with);
+      scale(lit.direct, *with.space->seats(), change->answered);
+      scale(lit.crossed, *with.space->seats(), change->answered);
     }
-    const std::optional<Change> change = change_from(with);
-    Lit scaled = lit;
-    scale(scaled.direct, *with.space->seats(), change->answered);
-    scale(scaled.crossed, *with.space->seats(), change->answered);
-    add(sum.direct, scaled.direct, by);
-    add(sum.crossed, scaled.crossed, by);
+    add(sum.direct, lit.direct, by);
+    add(sum.crossed, lit.crossed, by);
+    if (!lit.scattered.empty()) add(sum.scattered, lit.scattered, by);
   };
   for (std::size_t i = 0; i < lights.size(); ++i) {
     const auto all = static_cast<double>(lights.size());
     const transport::Effort part =
         transport::part_of(effort, static_cast<double>(i) / all, static_cast<double>(i + 1) / all);
     const Source& source = find_source(lights[i], quality, part);
-    add_lit(source.lit, *source.matter, glm::vec3(1.0F));
+    Lit lit = source.lit;
+    if (!lit.scattered.empty()) {
+      const Matter& matter = *source.matter;
+      scale_scattered(lit.scattered, *matter.space->seats(), matter.grains, matter.kinds);
+    }
+    add_lit(std::move(lit), *source.matter, glm::vec3(1.0F));
   }
   const Seats& seats = *traced_->ways.links.seats;
   lights_crossed_ = seats.told(sum.crossed);
-  if (!heap.world.image) add_lit(traced_->ways.world, *traced_->matter, glm::vec3(heap.world.radiance));
-  return {seats.told(std::move(sum.direct)), seats.told(std::move(sum.crossed))};
+  if (!heap.world.image) {
+    Lit lit = traced_->ways.world;
+    if (!lit.scattered.empty())
+      scale_scattered(lit.scattered, traced_->ways.links, traced_->matter->grains, traced_->matter->kinds);
+    add_lit(std::move(lit), *traced_->matter, glm::vec3(heap.world.radiance));
+  }
+  Field scattered = sum.scattered.empty() ? Field() : seats.told(std::move(sum.scattered));
+  return {seats.told(std::move(sum.direct)), seats.told(std::move(sum.crossed)), std::move(scattered)};
 }
 
 Quality Solver::within_memory(const Quality& quality) {
@@ -325,7 +356,16 @@ HeapLight Solver::solve(const Heap& heap, const Quality& given, const transport:
   light.patches = traced_->matter->space->patches();
   light.answer.resize(first.size());
   for (std::size_t i = 0; i < first.size(); ++i) light.answer[i] = solved.sent[i] - lit.direct[i];
-  if (change) change->answered.clear();  // no grain answers what is seen behind it
+  if (change)
+    change->answered.clear();  // no grain answers what is seen behind it, nor is a share of light more or less
+  if (!lit.scattered.empty()) {
+    Field answer;
+    traced_->ways.links.gather_scattered(solved.sent, answer, effort, change ? &*change : nullptr);
+    scale_scattered(answer, traced_->ways.links, traced_->matter->grains, traced_->matter->kinds);
+    light.scattered_answer = light.seats->told(std::move(answer));
+    light.scattered = lit.scattered;
+    add(light.scattered, light.scattered_answer, glm::vec3(1.0F));
+  }
   light.open = traced_->ways.links.open;
   light.open.resize(light.seats->own());
   for (std::size_t i = 0; i < light.open.size(); ++i)

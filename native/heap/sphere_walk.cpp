@@ -97,7 +97,7 @@ class Inside {
           return std::nullopt;
         }
         return Outcome{normal, transport::refracted(direction, -normal, static_cast<float>(1.0 / optics_.eta)),
-                       flights_.weight(), !met_};
+                       flights_.weight(), !met_, met_};
       }
       default:
         return Outcome{normal, direction, flights_.weight()};

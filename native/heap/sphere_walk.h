@@ -16,6 +16,7 @@ struct Outcome {
   glm::vec3 direction;     ///< whereto
   glm::vec3 weight;        ///< linear RGB, of what came in
   bool refracted = false;  ///< through a surface that refracts, and scattered nowhere
+  bool scattered = false;  ///< below a surface that refracts
 };
 
 /// Which way light is followed: the same but where what enters and what leaves meet different surfaces.

@@ -13,6 +13,9 @@ namespace {
 // Of the ball around a grain: how far from its own surface a ray begins that may meet it again.
 constexpr float clear_of_itself = 1e-4F;
 
+// A ray that starts from no object.
+constexpr auto nothing = static_cast<std::size_t>(-1);
+
 // What stands in the way and is not meant is passed, so many times.
 constexpr int most_passed = 16;
 
@@ -41,13 +44,23 @@ std::optional<ClearLooks::Hit> ClearLooks::first_hit(const glm::vec3& origin, co
   casting::Packet packet;
   casting::Hits hits;
   packet.set(0, origin, direction);
-  packet.from[0] = static_cast<std::uint32_t>(from < instances() ? from : content_.object_number(from - instances()));
+  if (from < instances())
+    packet.from[0] = static_cast<std::uint32_t>(from);
+  else if (from != nothing)
+    packet.from[0] = static_cast<std::uint32_t>(content_.object_number(from - instances()));
   packet.own[0] = clearance;
   cast_.first_hits(packet, hits);
   if (!hits.met[0]) return std::nullopt;
   const glm::vec4 facing = hit_surface(cast_, content_, packet, hits, 0).normal;
   return Hit{static_cast<std::size_t>(std::abs(facing.w)) - 1, origin + hits.distance[0] * direction, glm::vec3(facing),
              facing.w > 0.0F};
+}
+
+std::optional<heap::SeenFacet> ClearLooks::seen_along(std::uint32_t grain, const glm::vec3& origin,
+                                                      const glm::vec3& direction) const {
+  const std::optional<Hit> hit = first_hit(origin, direction, nothing, 0.0F);
+  if (!hit || hit->object != objects_[grain] || !hit->front) return std::nullopt;
+  return heap::SeenFacet{grain, hit->place, hit->normal, -direction};
 }
 
 std::optional<heap::Meeting> ClearLooks::inside(std::uint32_t grain, const glm::vec3& origin,

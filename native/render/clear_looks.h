@@ -19,6 +19,10 @@ class ClearLooks : public heap::Facets {
  public:
   ClearLooks(const CastContent& cast, const Content& content, const Exchange& exchange);
 
+  /// A grain where it is seen along a ray (direction of unit length); nothing where something else is.
+  std::optional<heap::SeenFacet> seen_along(std::uint32_t grain, const glm::vec3& origin,
+                                            const glm::vec3& direction) const;
+
   std::optional<heap::Meeting> inside(std::uint32_t grain, const glm::vec3& origin,
                                       const glm::vec3& direction) const override;
   std::optional<heap::Meeting> beyond(std::uint32_t grain, const glm::vec3& origin,

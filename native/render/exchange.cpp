@@ -154,6 +154,7 @@ void Exchange::set(const Content& content, const scene::Scene& scene) {
     return;
   }
   gathers_ = scene.exchange == scene::Exchange::gathered;
+  clear_ = std::any_of(grains.kinds.begin(), grains.kinds.end(), [](const heap::Optics& kind) { return kind.clear(); });
   heap::Heap heap{std::move(gathered.grains), content.anchor(), scene.lights, scene.world};
   const bool regrouped = !solving_ || roles_ != gathered.roles;
   if (!regrouped && solving_->heap() == heap) {
@@ -163,8 +164,10 @@ void Exchange::set(const Content& content, const scene::Scene& scene) {
   solving_ = heap::Solvers::instance().ask(std::move(heap), solving_);
   roles_ = std::move(gathered.roles);
   balls_ = gathered.balls;
+  // Of the same grains what was known before is looked at until more is.
+  if (!regrouped) return;
   gather_.reset();
-  if (regrouped) send();
+  send();
 }
 
 bool Exchange::take_news() {
@@ -179,9 +182,10 @@ bool Exchange::take_news() {
 }
 
 void Exchange::find_gather() {
-  if (!gathers_ || !known_) gather_.reset();
-  if (gathers_ && known_ && !gather_ && solving_->heap().grains == known_->grains())
-    gather_ = std::make_unique<const heap::Gather>(solving_->heap(), known_->light);
+  const bool wanted =
+      (gathers_ || clear_) && known_ && known_->grains().grains.size() == solving_->heap().grains.grains.size();
+  if (!wanted) gather_.reset();
+  if (wanted && !gather_) gather_ = std::make_unique<const heap::Gather>(*known_->heap, known_->light);
 }
 
 namespace {

@@ -68,8 +68,9 @@ class Exchange {
     device_walls_->bind_storage(layout::WALL_LIGHT_BINDING);
   }
 
-  /// What gathers light for each pixel; null where it is not to be.
+  /// What gathers light for each pixel, or for those that show clear grains; null where it is not to be.
   const heap::Gather* gather() const { return gather_.get(); }
+  bool gathers_all() const { return gathers_; }
 
   /// What an object is to the light between grains.
   struct Role {
@@ -98,6 +99,7 @@ class Exchange {
   bool balls_ = true;
   std::vector<Role> roles_;
   bool gathers_ = false;
+  bool clear_ = false;  // some grain is
   std::unique_ptr<const heap::Gather> gather_;
   std::shared_ptr<const heap::Solving> solving_;
   std::optional<Known> known_;

@@ -15,8 +15,8 @@ PixelRays::PixelRays(const glm::dmat4& anchor_to_clip, const glm::dvec2& size, c
       middle_(bounds.empty() ? glm::dvec3(0.0) : 0.5 * (bounds.lower + bounds.upper)),
       radius_(bounds.empty() ? 0.0 : 0.5 * glm::distance(bounds.lower, bounds.upper)) {}
 
-PixelRay PixelRays::at(int x, int y) const {
-  const glm::dvec2 place = glm::dvec2(x, y) * scale_ + offset_;
+PixelRay PixelRays::at(const glm::dvec2& pixel) const {
+  const glm::dvec2 place = pixel * scale_ + offset_;
   const glm::dvec4 amid = place.x * clip_to_anchor_[0] + place.y * clip_to_anchor_[1] + clip_to_anchor_[3];
   const glm::dvec4 near_plane = amid - clip_to_anchor_[2];
   const glm::dvec4 far_plane = amid + clip_to_anchor_[2];

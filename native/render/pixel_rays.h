@@ -22,7 +22,10 @@ class PixelRays {
   PixelRays(const glm::dmat4& anchor_to_clip, const glm::dvec2& size, const glm::dvec2& jitter, const Bounds& bounds);
 
   /// Through the middle of a pixel.
-  PixelRay at(int x, int y) const;
+  PixelRay at(int x, int y) const { return at(glm::dvec2(x, y)); }
+
+  /// Half a pixel around its middle is the pixel.
+  PixelRay at(const glm::dvec2& pixel) const;
 
  private:
   glm::dmat4 clip_to_anchor_;

@@ -3,7 +3,7 @@
 //
 // What is chosen at compile time:
 //   EXCHANGE             light goes from grain to grain
-//   GATHERED             and was gathered for each pixel
+//   GATHERED             and was gathered for some pixels
 #include "render/bindings.glsl"
 
 #ifdef EXCHANGE
@@ -35,7 +35,8 @@ vec3 second_order_at(int first, vec3 p) {
 }
 
 #ifdef GATHERED
-uniform sampler2D gathered;  // w: 1 where a grain was looked at, 2 if what lights do is in it
+uniform sampler2D gathered;         // w: 1 where a grain was looked at, 2 if what lights do is in it
+uniform sampler2D gathered_lights;  // and the world, seen through clear grains
 #endif
 
 // The mean place of what is seen, as heap::GrainTable::seen_place has it; w of a kind its scale.

@@ -187,6 +187,9 @@ vec3 lit_point(SurfacePoint point) {
 #if defined(EXCHANGE) && !(defined(FACETS_ALONE) && defined(MIRRORS_WORLD))
   vec3 place = settled_place() + grain_unit * point.on_triangle;
   vec3 sum = portion(EXCHANGE_PORTION, light_from_grains(grain_instance, place, point.normal, point.to_viewer));
+#ifdef GATHERED
+  sum += portion(TRANSMISSION_PORTION, texelFetch(gathered_lights, ivec2(gl_FragCoord.xy), 0).rgb);
+#endif
 #else
   vec3 sum = vec3(0.0);
 #endif

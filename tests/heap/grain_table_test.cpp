@@ -138,6 +138,26 @@ TEST(GrainTable, CrystalsAreNoLenses) {
   EXPECT_FALSE(table.is_fine());
 }
 
+TEST(GrainTable, ClearGrainsScatterAsMuchAsTheirWalksDo) {
+  for (const double radius : {0.02, 0.2, 1.5}) {
+    const Optics optics = medium(Surface::dielectric, glm::dvec3(radius), glm::dvec3(1.0));
+    const GrainTable table(optics, Sense::from_light, {});
+    ASSERT_TRUE(table.is_clear());
+    transport::Random random(1, 0);
+    constexpr int walks = 1 << 17;
+    int scattered = 0;
+    for (int i = 0; i < walks; ++i) {
+      const std::optional<Outcome> outcome = walk(optics, Sense::from_light, std::sqrt(random.uniform()), random);
+      if (outcome && outcome->scattered) ++scattered;
+    }
+    const double share = static_cast<double>(scattered) / walks;
+    EXPECT_NEAR(table.scattered().g, share, 4.0 * std::sqrt(share / walks)) << radius;
+  }
+  const GrainTable thick(medium(Surface::dielectric, glm::dvec3(3.0), glm::dvec3(1.0)), Sense::from_light, {});
+  EXPECT_FALSE(thick.is_clear());
+  EXPECT_EQ(thick.scattered(), glm::vec3(0.0F));
+}
+
 TEST(GrainTable, IsFiniteAtExtremes) {
   for (const Surface surface : {Surface::lambert, Surface::mirror, Surface::index_matched, Surface::dielectric,
                                 Surface::lambert_lambert, Surface::lambert_refracted})

@@ -276,6 +276,44 @@ TEST(Solver, KeepsTheLightFarFromAMovedGrainAsItWas) {
   }
 }
 
+Optics glass(double sigma_t) {
+  Optics optics = medium(sigma_t, 1.0);
+  optics.surface = Surface::dielectric;
+  optics.eta = 1.5;
+  return optics;
+}
+
+// In an even white world what is scattered is as bright as all else.
+TEST(Solver, TellsWhatClearGrainsScatterOverTheShareThatTheyDo) {
+  Heap heap = lattice(5, glass(0.2));
+  heap.world.radiance = glm::dvec3(1.0);
+  Solver solver;
+  const HeapLight light = solver.solve(heap, {}, {});
+  ASSERT_EQ(light.scattered.size(), light.sent.size());
+  for (const Coefficients& one : light.scattered) EXPECT_NEAR(one.channels[1].w, 1.0F, 0.02F);
+  EXPECT_GT(mean(light.scattered_answer), 0.4);
+  EXPECT_LT(mean(light.scattered_answer), 0.9) << "the world's own light is answered by the grains' models";
+  // Where half is absorbed at each scattering, so is it of what is scattered again.
+  heap.grains.kinds[0].albedo = glm::dvec3(0.5);
+  const double grey = mean(solver.solve(heap, {}, {}).scattered);
+  EXPECT_LT(grey, 0.62);
+  EXPECT_GT(grey, 0.5);
+  heap.grains.kinds = {medium(0.2, 1.0)};
+  EXPECT_TRUE(solver.solve(heap, {}, {}).scattered.empty());
+}
+
+TEST(Solver, TellsWhatClearGrainsScatterAfterOneHasMoved) {
+  Heap heap = lit(glass(0.4));
+  Solver solver;
+  solver.solve(heap, {}, {});
+  heap.grains.grains.back().middle.z += 1.0F;
+  const HeapLight moved = solver.solve(heap, {}, {});
+  EXPECT_GT(moved.parts.renewed, 0U);
+  const HeapLight right = solve_exchange(heap, {}, {}, {});
+  EXPECT_LT(difference(moved.scattered, right.scattered), 2e-3);
+  EXPECT_LT(difference(moved.scattered_answer, right.scattered_answer), 2e-3);
+}
+
 TEST(Solver, FollowsAFallingHeap) {
   Solver solver;
   Heap heap = lit(medium(3.0, 0.99));

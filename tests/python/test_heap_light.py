@@ -101,10 +101,10 @@ def test_light_that_meets_one_grain_alone(model, total, error):
 
 
 # Balls that refract, eta 1.5 at .2 mean free paths to the radius and 1.3 at 3, albedo .999, under a sun of 20 degrees
-# as mesograin-referee heap has it (1024 and 512 paths; its noise in blocks 4.1 and 6.2 %); measured: .979, 8.6 %; .978,
-# 6.5.
+# as mesograin-referee heap has it (1024 and 512 paths; its noise in blocks 4.1 and 6.2 %); measured: 1.009, 6.3 %;
+# .978, 6.5.
 @pytest.mark.parametrize("file, eta, radius, to_light, total, error", [
-    ("clear_s45.csv", 1.5, 0.2, (1.0, 0.0, 1.0), 0.03, 0.1),
+    ("clear_s45.csv", 1.5, 0.2, (1.0, 0.0, 1.0), 0.03, 0.08),
     ("D13_3_low.csv", 1.3, 3.0, (0.0, numpy.cos(numpy.pi / 12.0), numpy.sin(numpy.pi / 12.0)), 0.03, 0.075)])
 def test_what_refracts_sends_light_on_as_much_forward_as_it_does(file, eta, radius, to_light, total, error):
     truth = numpy.loadtxt(DATA / file, delimiter=",")

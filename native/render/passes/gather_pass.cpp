@@ -7,6 +7,8 @@
 
 #include "render/cast_work.h"
 #include "render/clear_looks.h"
+#include "render/pixel_rays.h"
+#include "render/surfaces.h"
 
 namespace mesograin::render {
 namespace {
@@ -14,11 +16,41 @@ namespace {
 // A pixel's noise of so many is a fifth; it falls with every sample.
 constexpr int rays_a_sample = 4;
 
+// Into clear grains, where nothing else is gathered.
+constexpr int rays_into_clear = 2;
+
+void upload(std::optional<gl::Texture>& texture, const glm::ivec2& size, const std::vector<glm::vec4>& pixels) {
+  if (!texture || texture->width() != size.x || texture->height() != size.y)
+    texture.emplace(GL_RGBA32F, size.x, size.y);
+  texture->upload(GL_RGBA, GL_FLOAT, pixels.data());
+}
+
+/// Each look goes through another place of the pixel, as far as the grain is seen there.
+heap::Gather::Through into_clear(const heap::SeenFacet& seen, const PixelRays& rays, const glm::dvec2& pixel,
+                                 const heap::Gather& gather, const ClearLooks& clear, bool all,
+                                 transport::Random& random) {
+  const auto scatterings = all ? heap::Scatterings::followed : heap::Scatterings::end;
+  const int looks = all ? rays_a_sample : rays_into_clear;
+  heap::Gather::Through sum;
+  for (int look = 0; look < looks; ++look) {
+    std::optional<heap::SeenFacet> beside;
+    if (look > 0) {
+      const PixelRay ray = rays.at(pixel + glm::dvec2(random.uniform(), random.uniform()) - 0.5);
+      beside = clear.seen_along(seen.grain, ray.origin, ray.direction);
+    }
+    sum.add(gather.look_into(beside.value_or(seen), clear, scatterings, random));
+  }
+  sum.others /= static_cast<float>(looks);
+  sum.lights /= static_cast<float>(looks);
+  return sum;
+}
+
 }  // namespace
 
 bool GatherPass::run(const Sample& sample, const ArrayVisibility& arrays, SurfacePass& surfaces) {
   const heap::Gather* gather = sample.exchange.gather();
-  ran_ = gather != nullptr && sample.unwrapping == nullptr;
+  const bool all = sample.exchange.gathers_all();
+  ran_ = gather != nullptr && sample.unwrapping == nullptr && (all || sample.cast);
   if (!ran_) return true;
   const auto start = std::chrono::steady_clock::now();
   std::optional<ClearLooks> clear;
@@ -26,7 +58,11 @@ bool GatherPass::run(const Sample& sample, const ArrayVisibility& arrays, Surfac
   const SeenSurfaces seen = surfaces.seen(sample);
   const std::vector<Exchange::Role>& roles = sample.exchange.roles();
   pixels_.assign(seen.normals.size(), glm::vec4(0.0F));
+  lights_.assign(seen.normals.size(), glm::vec4(0.0F));
   const auto width = static_cast<std::size_t>(sample.size.x);
+  const PixelRays pixel_rays(anchor_to_clip(sample.content, sample.camera), sample.size, glm::dvec2(0.0),
+                             sample.content.instances() != nullptr ? sample.content.instances()->bounds() : Bounds{});
+  const auto pixel_at = [&](std::size_t i) { return glm::dvec2(i % width, i / width); };
   const std::uint64_t seed = (static_cast<std::uint64_t>(sample.seed) << 32U) + sample.index;
   const bool whole = cast_rows(sample.size.y, sample.go_on, [&](int first, int end) {
     for (std::size_t i = width * static_cast<std::size_t>(first); i < width * static_cast<std::size_t>(end); ++i) {
@@ -39,27 +75,30 @@ bool GatherPass::run(const Sample& sample, const ArrayVisibility& arrays, Surfac
       const glm::vec3 towards = glm::normalize(glm::vec3(seen.viewer) - seen.viewer.w * place);
       transport::Random random(seed, i);
       const glm::vec3 normal(facing);
-      if (gather->sees_all(*grain)) {
+      if (clear && gather->sees_into(*grain)) {
+        const heap::Gather::Through into =
+            into_clear({*grain, place, normal, towards}, pixel_rays, pixel_at(i), *gather, *clear, all, random);
+        pixels_[i] = glm::vec4(into.others, 1.0F);
+        lights_[i] = glm::vec4(into.lights, 0.0F);
+      } else if (all && gather->sees_all(*grain)) {
         const glm::vec3 from_middle(seen.positions[i]);
         pixels_[i] = glm::vec4(gather->look_at_all(*grain, from_middle, normal, towards, rays_a_sample, random), 2.0F);
-      } else if (clear && gather->sees_into(*grain)) {
-        const glm::vec3 into = gather->look_into({*grain, place, normal, towards}, *clear, rays_a_sample, random);
-        pixels_[i] = glm::vec4(into, 1.0F);
-      } else {
+      } else if (all) {
         pixels_[i] = glm::vec4(gather->look(*grain, normal, towards, rays_a_sample, random), 1.0F);
       }
     }
   });
   if (!whole) return false;
-  if (!device_ || device_->width() != sample.size.x || device_->height() != sample.size.y)
-    device_.emplace(GL_RGBA32F, sample.size.x, sample.size.y);
-  device_->upload(GL_RGBA, GL_FLOAT, pixels_.data());
+  upload(device_, sample.size, pixels_);
+  upload(device_lights_, sample.size, lights_);
   milliseconds_ = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   return true;
 }
 
 void GatherPass::bind(const gl::Program& program) const {
-  if (ran_) program.offer("gathered", *device_);
+  if (!ran_) return;
+  program.offer("gathered", *device_);
+  program.offer("gathered_lights", *device_lights_);
 }
 
 }  // namespace mesograin::render

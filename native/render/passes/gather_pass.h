@@ -1,4 +1,5 @@
-// Gathers what grains send to each grain that a pixel shows, by rays on all cores, where the scene asks for it.
+// Gathers what grains send to each grain that a pixel shows, by rays on all cores: where the scene asks for it to all,
+// else to clear ones, which are seen through.
 #pragma once
 
 #include <glm/vec4.hpp>
@@ -28,8 +29,10 @@ class GatherPass {
   void bind(const gl::Program& program) const;
 
  private:
-  std::vector<glm::vec4> pixels_;  // w: 1 where a grain is seen
+  std::vector<glm::vec4> pixels_;  // w: 1 where it was looked, 2 if what lights do is in it
+  std::vector<glm::vec4> lights_;  // seen through clear grains
   std::optional<gl::Texture> device_;
+  std::optional<gl::Texture> device_lights_;
   bool ran_ = false;
   double milliseconds_ = 0.0;
 };
