@@ -76,17 +76,38 @@ class Asking {
 
 }  // namespace
 
-Gather::Gather(Heap heap, std::shared_ptr<const HeapLight> light)
+/// What takes time to find.
+struct Gather::Found {
+  Found(Heap of, std::shared_ptr<const HeapLight> its_light)
+      : heap(std::move(of)), light(std::move(its_light)), space(heap.grains, light->kinds, light->seats) {}
+
+  Heap heap;
+  std::shared_ptr<const HeapLight> light;
+  Space space;
+};
+
+Gather::Gather(Heap heap, std::shared_ptr<const Found> found)
     : heap_(std::move(heap)),
-      light_(std::move(light)),
-      space_(heap_.grains, light_->kinds, light_->seats),
+      found_(std::move(found)),
+      light_(found_->light),
+      space_(found_->space),
       draws_(draws_of(heap_)) {}
 
-glm::vec3 Gather::sent_to(Ray ray, transport::Random& random, bool open) const {
-  if (const std::optional<Source> source = space_.follow(ray, random))
-    return ray.weight / source->met * light_->seats->light_at(light_->sent, source->number, source->normal, true);
-  if (heap_.world.image || !(open || ray.crossed)) return glm::vec3(0.0F);
-  return ray.weight * glm::vec3(heap_.world.radiance);
+Gather::Gather(Heap heap, std::shared_ptr<const HeapLight> light)
+    : Gather(heap, std::make_shared<const Found>(heap, std::move(light))) {}
+
+std::unique_ptr<const Gather> Gather::among(Heap heap) const {
+  return std::unique_ptr<const Gather>(new Gather(std::move(heap), found_));
+}
+
+std::optional<glm::vec3> Gather::sent_along(Ray& ray, transport::Random& random) const {
+  const std::optional<Source> source = space_.follow(ray, random);
+  if (!source) return std::nullopt;
+  return ray.weight / source->met * light_->seats->light_at(light_->sent, source->number, source->normal, true);
+}
+
+glm::vec3 Gather::even_world(const Ray& ray) const {
+  return heap_.world.image ? glm::vec3(0.0F) : ray.weight * glm::vec3(heap_.world.radiance);
 }
 
 glm::vec3 Gather::look(std::uint32_t grain, const glm::vec3& normal, const glm::vec3& towards, int rays,
@@ -97,9 +118,11 @@ glm::vec3 Gather::look(std::uint32_t grain, const glm::vec3& normal, const glm::
   glm::vec3 sum(0.0F);
   for (int i = 0; i < rays; ++i) {
     const Outcome outcome = kind.from_viewer->draw(mu, random.uniform());
-    sum += sent_to(
-        {space_.place(space_.grains()[grain], frame * outcome.normal), frame * outcome.direction, outcome.weight},
-        random, false);
+    Ray ray{space_.place(space_.grains()[grain], frame * outcome.normal), frame * outcome.direction, outcome.weight};
+    if (const std::optional<glm::vec3> sent = sent_along(ray, random))
+      sum += *sent;
+    else if (ray.crossed)
+      sum += even_world(ray);
   }
   sum /= static_cast<float>(rays);
   sum += kind.from_light->lobe_at(mu) *
@@ -114,14 +137,14 @@ bool Gather::sees_all(std::uint32_t grain) const {
   return surface == Surface::index_matched || surface == Surface::lambert_lambert;
 }
 
-glm::vec3 Gather::look_at_all(std::uint32_t grain, const glm::vec3& place, const glm::vec3& normal,
-                              const glm::vec3& towards, int rays, transport::Random& random) const {
+Gather::All Gather::look_at_all(std::uint32_t grain, const glm::vec3& place, const glm::vec3& normal,
+                                const glm::vec3& towards, int rays, transport::Random& random) const {
   // What leaves a facet goes on from where it is, not from the one point of the sphere that faces as it does.
   const glm::vec3 aside = place - space_.grains()[grain].radius * normal;
   const Optics& optics = heap_.grains.kinds[space_.grains()[grain].kind];
   const float mu = std::clamp(glm::dot(normal, towards), 0.0F, 1.0F);
   const TurnedFrame frame(normal, -towards);
-  glm::vec3 sum(0.0F);
+  All all;
   for (int i = 0; i < rays; ++i) {
     std::vector<Asking> asking;
     asking.reserve(draws_.size());
@@ -134,16 +157,22 @@ glm::vec3 Gather::look_at_all(std::uint32_t grain, const glm::vec3& place, const
         walk(optics, Sense::from_viewer, mu, random, optics.transparent() ? Scattered(ask) : Scattered());
     for (Asking& of : asking) {
       if (outcome && !optics.transparent()) of.ask_surface(frame * outcome->normal, outcome->weight);
-      sum += of.found(space_, grain, aside);
+      all.scattered += of.found(space_, grain, aside);
     }
     if (!outcome) continue;
     const glm::vec3 leaves_at = space_.place(space_.grains()[grain], frame * outcome->normal) + aside;
-    sum += sent_to({leaves_at, frame * outcome->direction, outcome->weight}, random, true);
+    Ray ray{leaves_at, frame * outcome->direction, outcome->weight};
+    if (const std::optional<glm::vec3> sent = sent_along(ray, random))
+      all.others += *sent;
+    else
+      all.scattered += even_world(ray);
   }
+  all.others /= static_cast<float>(rays);
+  all.scattered /= static_cast<float>(rays);
   Ray through = ray_through(grain, normal, towards);
-  glm::vec3 behind = space_.seen_along(through, light_->sent, random);
-  behind += through.weight * glm::vec3(lights::radiance(heap_.world, glm::dvec3(through.direction)));
-  return glm::max(sum / static_cast<float>(rays) + behind, 0.0F);
+  all.others = glm::max(all.others + space_.seen_along(through, light_->sent, random), 0.0F);
+  all.world = through.weight * glm::vec3(lights::radiance(heap_.world, glm::dvec3(through.direction)));
+  return all;
 }
 
 bool Gather::sees_into(std::uint32_t grain) const {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "heap/draws.h"
@@ -22,6 +23,12 @@ class Gather {
   Gather(const Gather&) = delete;
   Gather& operator=(const Gather&) = delete;
 
+  const Heap& heap() const { return heap_; }
+
+  /// The same light in a heap whose grains and walls are where these are, of other materials or under other lights:
+  /// what is seen of a grain answers to them at once.
+  std::unique_ptr<const Gather> among(Heap heap) const;
+
   /// Radiance that leaves a grain at a normal `towards` a viewer, but for what comes straight from lights: the mean
   /// over `rays` through the grain's table, and what is seen straight through it.
   glm::vec3 look(std::uint32_t grain, const glm::vec3& normal, const glm::vec3& towards, int rays,
@@ -31,10 +38,17 @@ class Gather {
   /// surface that refracts allows. The whole grain or none of it: a part by each would show an edge between them.
   bool sees_all(std::uint32_t grain) const;
 
+  /// What is seen of a grain, by where it comes from.
+  struct All {
+    glm::vec3 others{0.0F};     ///< grains and walls, scattered or straight through it
+    glm::vec3 scattered{0.0F};  ///< lights and the world, scattered in it
+    glm::vec3 world{0.0F};      ///< straight through it
+  };
+
   /// The same with what comes straight from lights, and the world behind it. `place`: of the surface that is seen, from
   /// the grain's middle.
-  glm::vec3 look_at_all(std::uint32_t grain, const glm::vec3& place, const glm::vec3& normal, const glm::vec3& towards,
-                        int rays, transport::Random& random) const;
+  All look_at_all(std::uint32_t grain, const glm::vec3& place, const glm::vec3& normal, const glm::vec3& towards,
+                  int rays, transport::Random& random) const;
 
   /// Whether so much crosses this grain, whose surface refracts, that look_into() shows more of it.
   bool sees_into(std::uint32_t grain) const;
@@ -61,12 +75,19 @@ class Gather {
                    Through& sum) const;
   glm::vec3 lights_along(std::uint32_t grain, const Passage& passage, const Facets& facets,
                          transport::Random& random) const;
-  glm::vec3 sent_to(Ray ray, transport::Random& random, bool open) const;
+  /// What is sent along a ray, if it meets anything.
+  std::optional<glm::vec3> sent_along(Ray& ray, transport::Random& random) const;
+  /// What a world without a picture sends to the end of it.
+  glm::vec3 even_world(const Ray& ray) const;
   Ray ray_through(std::uint32_t grain, const glm::vec3& normal, const glm::vec3& towards) const;
 
+  struct Found;
+  Gather(Heap heap, std::shared_ptr<const Found> found);
+
   Heap heap_;
-  std::shared_ptr<const HeapLight> light_;
-  Space space_;
+  std::shared_ptr<const Found> found_;
+  const std::shared_ptr<const HeapLight>& light_;  // of found_
+  const Space& space_;                             // of found_
   std::vector<Draw> draws_;
 };
 

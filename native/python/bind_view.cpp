@@ -189,6 +189,7 @@ py::dict of_exchange(const render::ExchangeStatistics& exchange) {
   found["renewed"] = exchange.parts.renewed;
   result["found"] = found;
   result["balls"] = exchange.balls;
+  result["gathered"] = exchange.gathered;
   py::list stuff;
   for (const render::Stuff& one : exchange.stuff) {
     py::dict entry;
@@ -379,8 +380,8 @@ void bind_view(py::module_& module) {
            "'others': objects that do not, 'kinds': of grains, 'links': ways of light between them, 'steps' and "
            "'residual' of the solution, 'milliseconds' that it took, 'final': no better one is under way, 'found': how "
            "often its 'tables', 'links', 'sources' and 'solutions' were found so far, 'balls': whether all grains are "
-           "about "
-           "that, 'stuff': [{'surface', 'thickness', 'albedo'}] of what they are made of, the last two from least to "
+           "that round, 'gathered': whether rays of the last sample found more of some grains that are seen, 'stuff': "
+           "[{'surface', 'thickness', 'albedo'}] of what they are made of, the last two from least to "
            "most, in mean free paths to the radius and of one scattering}}.")
       .def("read_told", &read_told, py::arg("out"),
            "As read(), and what is told of the same samples: {'timings', 'statistics'}. One after the other each would "

@@ -2,6 +2,7 @@
 #include "render/cast_shadows.h"
 
 #include <algorithm>
+#include <cmath>
 #include <glm/geometric.hpp>
 
 #include "render/cast_work.h"
@@ -17,7 +18,8 @@ static_assert(across * high == static_cast<int>(casting::rays_in_packet));
 }  // namespace
 
 bool CastShadows::cast(const CastContent& cast, const Content& content, const SeenSurfaces& seen,
-                       const std::vector<ShadowEye>& eyes, const GoOn& go_on) {
+                       const std::function<bool(std::size_t)>& asks, const std::vector<ShadowEye>& eyes,
+                       const GoOn& go_on) {
   const glm::ivec2 size = seen.size;
   reached_.assign(static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y), 0);
   const auto cast_packet = [&](const glm::ivec2& corner, int end_row) {
@@ -31,7 +33,7 @@ bool CastShadows::cast(const CastContent& cast, const Content& content, const Se
       places[ray] =
           static_cast<std::size_t>(pixel.y) * static_cast<std::size_t>(size.x) + static_cast<std::size_t>(pixel.x);
       const glm::vec4& facing = seen.normals[places[ray]];
-      if (facing.w == 0.0F) continue;
+      if (facing.w == 0.0F || !asks(static_cast<std::size_t>(std::abs(facing.w)) - 1)) continue;
       lit[ray] = lit_place(content, seen.positions[places[ray]], facing, seen.viewer_of(places[ray]));
       seen_there[ray] = any = true;
     }

@@ -40,9 +40,10 @@ struct SeenSurfaces {
 
 class CastShadows {
  public:
-  /// Casts a ray from each pixel to each light. False if ended.
+  /// Casts a ray from each pixel to each light, where it shows an object by whose number `asks` says so. False if
+  /// ended.
   bool cast(const CastContent& cast, const Content& content, const SeenSurfaces& seen,
-            const std::vector<ShadowEye>& eyes, const GoOn& go_on);
+            const std::function<bool(std::size_t)>& asks, const std::vector<ShadowEye>& eyes, const GoOn& go_on);
 
   /// Makes them what shaders/scene/shadows.glsl reads.
   void bind(const gl::Program& program) const;

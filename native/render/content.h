@@ -66,6 +66,12 @@ class Content {
     return single != nullptr ? *single->material : *instances_->groups()[unit].material;
   }
 
+  /// The number of its first object.
+  std::size_t first_number(std::size_t unit) const {
+    const std::size_t groups = units() - draws_.size();
+    return unit < groups ? instances_->groups()[unit].first : number(unit - groups);
+  }
+
   /// Of which this draw is all.
   std::size_t unit(std::size_t draw) const { return units() - draws_.size() + draw; }
 

@@ -16,6 +16,8 @@
 namespace mesograin::render {
 namespace {
 
+std::string portion_define(Portion portion) { return fmt::format("PORTION {}", static_cast<int>(portion)); }
+
 // But for what rounding makes of turned instances.
 bool is_same(const glm::dmat3& a, const glm::dmat3& b) {
   double difference = 0.0, size = 0.0;
@@ -264,6 +266,13 @@ const gl::Program& DeviceCache::unscattered_program(const DeviceMaterial& materi
                         {{GL_COMPUTE_SHADER, gl::ShaderSource({"passes/unscattered_light.comp"}, defines)}});
 }
 
+const gl::Program& DeviceCache::gathered_program(std::optional<Portion> portion) {
+  std::vector<std::string> defines;
+  if (portion) defines.push_back(portion_define(*portion));
+  return program(fmt::format("gathered {}", fmt::join(defines, " ")), gl::ShaderSource({"passes/full_screen.vert"}, {}),
+                 gl::ShaderSource({"passes/gathered.frag"}, defines));
+}
+
 const gl::Program& DeviceCache::count_program() {
   return program("count", gl::ShaderSource({"passes/bake.vert"}, {}), gl::ShaderSource({"passes/count.frag"}, {}));
 }
@@ -289,7 +298,7 @@ const gl::Program& DeviceCache::shading(const DeviceMaterial& material, const Sh
   if (shading.lights_about) defines.emplace_back("LIGHTS_ABOUT");
   if (shading.summed) defines.emplace_back("SUMMED");
   if (shading.together) defines.emplace_back("TOGETHER");
-  if (shading.portion) defines.push_back(fmt::format("PORTION {}", static_cast<int>(*shading.portion)));
+  if (shading.portion) defines.push_back(portion_define(*shading.portion));
   return program(fmt::format("{} {} {}", pass, model, fmt::join(defines, " ")), gl::ShaderSource({vertex}, {}),
                  gl::ShaderSource({"passes/" + pass + ".frag", "models/" + model + ".glsl"}, defines));
 }

@@ -158,6 +158,9 @@ class DeviceCache {
   /// The program that counts how many triangles cover each texel of an unwrapped mesh.
   const gl::Program& count_program();
 
+  /// Shows what was gathered of grains, or one portion of it.
+  const gl::Program& gathered_program(std::optional<Portion> portion);
+
   /// Frees what no view holds any more.
   void prune();
 

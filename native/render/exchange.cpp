@@ -60,6 +60,15 @@ double rounded(double radius) {
 // thick, a spoon.
 constexpr float wall_over_grain = 6.0F;
 
+// Mean free paths to the radius of a grain. Light is followed to each scattering in what is seen: in thicker ones that
+// costs more than the maps and shadows of a model. Between cosine lobes the model is as near.
+constexpr double most_followed = 20.0;
+
+bool is_followed(const heap::Optics& optics) {
+  const glm::dvec3& sigma_t = optics.sigma_t;
+  return optics.transparent() && std::max({sigma_t.r, sigma_t.g, sigma_t.b}) <= most_followed;
+}
+
 bool is_plain(const scene::Material& material) {
   return material.model == scene::Model::lambert || material.model == scene::Model::conductor;
 }
@@ -154,7 +163,9 @@ void Exchange::set(const Content& content, const scene::Scene& scene) {
     return;
   }
   gathers_ = scene.exchange == scene::Exchange::gathered;
-  clear_ = std::any_of(grains.kinds.begin(), grains.kinds.end(), [](const heap::Optics& kind) { return kind.clear(); });
+  follows_ = scene.exchange == scene::Exchange::heaps;
+  shows_more_ = std::any_of(grains.kinds.begin(), grains.kinds.end(),
+                            [&](const heap::Optics& kind) { return kind.clear() || (follows_ && is_followed(kind)); });
   heap::Heap heap{std::move(gathered.grains), content.anchor(), scene.lights, scene.world};
   const bool regrouped = !solving_ || roles_ != gathered.roles;
   if (!regrouped && solving_->heap() == heap) {
@@ -164,10 +175,18 @@ void Exchange::set(const Content& content, const scene::Scene& scene) {
   solving_ = heap::Solvers::instance().ask(std::move(heap), solving_);
   roles_ = std::move(gathered.roles);
   balls_ = gathered.balls;
-  // Of the same grains what was known before is looked at until more is.
-  if (!regrouped) return;
-  gather_.reset();
-  send();
+  if (regrouped) {
+    gather_.reset();
+    send();
+  }
+  find_gather();
+}
+
+bool Exchange::gathers_all_of(std::size_t number) const {
+  const std::optional<std::uint32_t>& grain = roles_[number].grain;
+  if (!gather_ || !grain || !gather_->sees_all(*grain)) return false;
+  const heap::Grains& grains = solving_->heap().grains;
+  return gathers_ || (follows_ && is_followed(grains.kinds[grains.grains[*grain].kind]));
 }
 
 bool Exchange::take_news() {
@@ -181,11 +200,24 @@ bool Exchange::take_news() {
   return true;
 }
 
+namespace {
+
+/// But for what they are made of.
+bool alike(const heap::Grains& a, const heap::Grains& b) {
+  return a.grains == b.grains && a.kinds.size() == b.kinds.size() && a.walls == b.walls;
+}
+
+}  // namespace
+
+// Of the same grains what was known before is looked at until more is.
 void Exchange::find_gather() {
   const bool wanted =
-      (gathers_ || clear_) && known_ && known_->grains().grains.size() == solving_->heap().grains.grains.size();
+      (gathers_ || shows_more_) && known_ && known_->grains().grains.size() == solving_->heap().grains.grains.size();
   if (!wanted) gather_.reset();
   if (wanted && !gather_) gather_ = std::make_unique<const heap::Gather>(*known_->heap, known_->light);
+  // What grains are made of, and lights, are seen to change at once, in the light that others sent before.
+  if (wanted && gather_->heap() != solving_->heap() && alike(gather_->heap().grains, solving_->heap().grains))
+    gather_ = gather_->among(solving_->heap());
 }
 
 namespace {

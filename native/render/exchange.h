@@ -38,6 +38,7 @@ struct ExchangeStatistics {
   bool final = true;          ///< no better one is under way
   heap::Parts parts;          ///< found anew so far
   bool balls = true;          ///< all grains are about as round as a sphere
+  bool gathered = false;      ///< rays of the last sample found more of what is seen of some grains than is solved
   std::vector<Stuff> stuff;
 };
 
@@ -72,6 +73,9 @@ class Exchange {
   const heap::Gather* gather() const { return gather_.get(); }
   bool gathers_all() const { return gathers_; }
 
+  /// Whether all light of the object of this number is gathered, and no model is asked.
+  bool gathers_all_of(std::size_t number) const;
+
   /// What an object is to the light between grains.
   struct Role {
     std::optional<std::uint32_t> grain;  ///< which of its grains
@@ -99,7 +103,8 @@ class Exchange {
   bool balls_ = true;
   std::vector<Role> roles_;
   bool gathers_ = false;
-  bool clear_ = false;  // some grain is
+  bool follows_ = false;     // light through what is seen of grains, where that is cheap
+  bool shows_more_ = false;  // gathering, of some grains
   std::unique_ptr<const heap::Gather> gather_;
   std::shared_ptr<const heap::Solving> solving_;
   std::optional<Known> known_;

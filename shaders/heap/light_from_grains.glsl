@@ -35,7 +35,7 @@ vec3 second_order_at(int first, vec3 p) {
 }
 
 #ifdef GATHERED
-uniform sampler2D gathered;         // w: 1 where a grain was looked at, 2 if what lights do is in it
+uniform sampler2D gathered;         // w: 1 where a grain was looked at
 uniform sampler2D gathered_lights;  // and the world, seen through clear grains
 #endif
 

@@ -179,10 +179,6 @@ Mirrored mirrored;
 #endif
 
 vec3 lit_point(SurfacePoint point) {
-#ifdef GATHERED
-  vec4 all = texelFetch(gathered, ivec2(gl_FragCoord.xy), 0);
-  if (all.w > 1.5) return portion(EXCHANGE_PORTION, all.rgb);
-#endif
   Outwards outwards = look_outwards(point);
 #if defined(EXCHANGE) && !(defined(FACETS_ALONE) && defined(MIRRORS_WORLD))
   vec3 place = settled_place() + grain_unit * point.on_triangle;

@@ -112,6 +112,8 @@ TEST(Gather, IsToldByTheLookWhatIsBehindAGrain) {
   EXPECT_LT(behind.at(look_through(-up, -up)).r, 0.1F * seen_at(up));
 }
 
+glm::vec3 picture(const Gather::All& all) { return all.others + all.scattered + all.world; }
+
 // White grains in even light look like the light, by the mean of each grain's looks to one percent.
 TEST(Gather, OfAllLightLosesNone) {
   for (const double sigma_t : {0.1, 20.0}) {
@@ -128,7 +130,7 @@ TEST(Gather, OfAllLightLosesNone) {
         const Look look(spread.point(i));
         const glm::vec3 place = heap.grains.grains[grain].radius * look.normal;
         ASSERT_TRUE(gather.sees_all(grain));
-        sum += gather.look_at_all(grain, place, look.normal, look.towards, 1, random).g / looks;
+        sum += picture(gather.look_at_all(grain, place, look.normal, look.towards, 1, random)).g / looks;
       }
       EXPECT_NEAR(sum, 1.0, 0.01) << sigma_t << " " << grain;
     }
@@ -144,7 +146,9 @@ TEST(Gather, ShadowsAPlaceWhereItIs) {
   const Gather gather(heap, solved(heap));
   transport::Random random(3, 0);
   const glm::vec3 up(0.0F, 0.0F, 1.0F);
-  const auto seen_at = [&](const glm::vec3& place) { return gather.look_at_all(0, place, up, up, 256, random).r; };
+  const auto seen_at = [&](const glm::vec3& place) {
+    return picture(gather.look_at_all(0, place, up, up, 256, random)).r;
+  };
   EXPECT_LT(seen_at({0.8F, 0.0F, 0.9F}), 0.1F * seen_at({-0.5F, 0.0F, 0.9F}));
 }
 

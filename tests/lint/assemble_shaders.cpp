@@ -216,7 +216,7 @@ void write_finishes(Writer& writer) {
 }
 
 void write_passes(Writer& writer) {
-  for (const std::string pass : {"accumulate", "background", "resolve"})
+  for (const std::string pass : {"accumulate", "background", "gathered", "resolve"})
     writer.write(pass, ShaderSource({"passes/full_screen.vert"}, {}), ShaderSource({"passes/" + pass + ".frag"}, {}));
   writer.write("mirror", ShaderSource({"passes/full_screen.vert"}, {}), ShaderSource({"passes/mirror.frag"}, {}));
   writer.write("count", ShaderSource({"passes/bake.vert"}, {}), ShaderSource({"passes/count.frag"}, {}));

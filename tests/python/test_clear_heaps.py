@@ -108,4 +108,4 @@ def test_only_clear_grains_are_looked_into():
         return {each["pass"] for each in view.timings()}
 
     assert "gather" in passes(GLASS)
-    assert "gather" not in passes(milk(0.2))
+    assert "gather" not in passes(native.Material(model="model_2", sigma_s=(9.0,) * 3, eta=1.5))

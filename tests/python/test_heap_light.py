@@ -83,7 +83,10 @@ def blocks(image):
     ("M999_3_sky.exr", "model_3", "order_1", 0.03, 0.04),
     ("M999_3_sky.exr", "model_2", "gathered", 0.01, 0.028),
     ("M9_1_low.exr", "model_2", "order_1", 0.02, 0.06),
-    ("M9_1_low.exr", "model_3", "gathered", 0.01, 0.02)])
+    ("M9_1_low.exr", "model_3", "gathered", 0.01, 0.02),
+    ("M9_3_s45.exr", "model_2", "heaps", 0.01, 0.015),
+    ("M999_3_sky.exr", "model_2", "heaps", 0.01, 0.028),
+    ("M9_1_low.exr", "model_1", "heaps", 0.01, 0.02)])
 def test_a_heap_is_as_bright_as_it_is(file, model, exchange, total, error):
     truth = native.read_exr(DATA / file)[0][..., 1]
     found = picture(IMAGES[file], model, exchange)

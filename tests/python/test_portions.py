@@ -109,6 +109,17 @@ def test_of_gathered_light_they_are_the_picture():
     expect_sum(portions, picture)
 
 
+def test_of_light_that_is_followed_they_are_the_picture():
+    """Without a surface that refracts a grain of a heap asks no model."""
+    material = native.Material(model="model_2", boundary="index_matched", **MEDIUM)
+    portions, picture = told(material, count=12, visibility="cast")
+    expect_sum(portions, picture)
+    found = {name for name in LIGHT if portions[name].max() > 1e-2}
+    assert found == {"subsurface", "transmission", "exchange", "environment"}
+    lengths = numpy.linalg.norm(portions["normal"], axis=-1)
+    assert 0.95 < lengths.max() < 1.0 + 1e-5
+
+
 def test_what_was_not_asked_for_is_not_told():
     view = native.View(8, 8)
     with pytest.raises(native.Error, match="'specular' is not told"):

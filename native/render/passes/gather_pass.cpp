@@ -50,15 +50,16 @@ heap::Gather::Through into_clear(const heap::SeenFacet& seen, const PixelRays& r
 bool GatherPass::run(const Sample& sample, const ArrayVisibility& arrays, SurfacePass& surfaces) {
   const heap::Gather* gather = sample.exchange.gather();
   const bool all = sample.exchange.gathers_all();
-  ran_ = gather != nullptr && sample.unwrapping == nullptr && (all || sample.cast);
+  ran_ = sample.gathers;
   if (!ran_) return true;
   const auto start = std::chrono::steady_clock::now();
   std::optional<ClearLooks> clear;
   if (sample.cast) clear.emplace(arrays.tree(), sample.content, sample.exchange);
   const SeenSurfaces seen = surfaces.seen(sample);
   const std::vector<Exchange::Role>& roles = sample.exchange.roles();
-  pixels_.assign(seen.normals.size(), glm::vec4(0.0F));
+  others_.assign(seen.normals.size(), glm::vec4(0.0F));
   lights_.assign(seen.normals.size(), glm::vec4(0.0F));
+  scattered_.assign(seen.normals.size(), glm::vec4(0.0F));
   const auto width = static_cast<std::size_t>(sample.size.x);
   const PixelRays pixel_rays(anchor_to_clip(sample.content, sample.camera), sample.size, glm::dvec2(0.0),
                              sample.content.instances() != nullptr ? sample.content.instances()->bounds() : Bounds{});
@@ -78,27 +79,32 @@ bool GatherPass::run(const Sample& sample, const ArrayVisibility& arrays, Surfac
       if (clear && gather->sees_into(*grain)) {
         const heap::Gather::Through into =
             into_clear({*grain, place, normal, towards}, pixel_rays, pixel_at(i), *gather, *clear, all, random);
-        pixels_[i] = glm::vec4(into.others, 1.0F);
+        others_[i] = glm::vec4(into.others, 1.0F);
         lights_[i] = glm::vec4(into.lights, 0.0F);
-      } else if (all && gather->sees_all(*grain)) {
-        const glm::vec3 from_middle(seen.positions[i]);
-        pixels_[i] = glm::vec4(gather->look_at_all(*grain, from_middle, normal, towards, rays_a_sample, random), 2.0F);
+      } else if (sample.gathers_all_of(number)) {
+        const heap::Gather::All found =
+            gather->look_at_all(*grain, glm::vec3(seen.positions[i]), normal, towards, rays_a_sample, random);
+        others_[i] = glm::vec4(found.others, 1.0F);
+        lights_[i] = glm::vec4(found.world, 0.0F);
+        scattered_[i] = glm::vec4(found.scattered, 0.0F);
       } else if (all) {
-        pixels_[i] = glm::vec4(gather->look(*grain, normal, towards, rays_a_sample, random), 1.0F);
+        others_[i] = glm::vec4(gather->look(*grain, normal, towards, rays_a_sample, random), 1.0F);
       }
     }
   });
   if (!whole) return false;
-  upload(device_, sample.size, pixels_);
+  upload(device_others_, sample.size, others_);
   upload(device_lights_, sample.size, lights_);
+  upload(device_scattered_, sample.size, scattered_);
   milliseconds_ = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   return true;
 }
 
 void GatherPass::bind(const gl::Program& program) const {
   if (!ran_) return;
-  program.offer("gathered", *device_);
+  program.offer("gathered", *device_others_);
   program.offer("gathered_lights", *device_lights_);
+  program.offer("gathered_scattered", *device_scattered_);
 }
 
 }  // namespace mesograin::render

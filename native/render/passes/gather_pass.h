@@ -29,10 +29,12 @@ class GatherPass {
   void bind(const gl::Program& program) const;
 
  private:
-  std::vector<glm::vec4> pixels_;  // w: 1 where it was looked, 2 if what lights do is in it
-  std::vector<glm::vec4> lights_;  // seen through clear grains
-  std::optional<gl::Texture> device_;
+  std::vector<glm::vec4> others_;     // of what grains send; w: 1 where it was looked
+  std::vector<glm::vec4> lights_;     // and the world, seen through grains
+  std::vector<glm::vec4> scattered_;  // lights, in grains that no model is asked of
+  std::optional<gl::Texture> device_others_;
   std::optional<gl::Texture> device_lights_;
+  std::optional<gl::Texture> device_scattered_;
   bool ran_ = false;
   double milliseconds_ = 0.0;
 };

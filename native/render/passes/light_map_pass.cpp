@@ -2,6 +2,7 @@
 #include "render/passes/light_map_pass.h"
 
 #include <algorithm>
+#include <ranges>
 
 namespace mesograin::render {
 namespace {
@@ -31,17 +32,16 @@ bool LightMapPass::run(const Sample& sample, const ArrayVisibility& arrays) {
     if (maps > 0) glFinish();
     return sample.go_on();
   };
-  const auto update = [&](Draw& draw) {
-    if (!draw.light_maps) return true;
+  const auto update = [&](std::size_t number) {
+    Draw& draw = sample.content.draws()[number];
+    if (!draw.light_maps || !sample.asks_model(sample.content.unit(number))) return true;
     const int resolution = light_map_resolution(pixels_across(sample, draw), draw.mean_free_paths_across);
     return drawn(draw.light_maps->update(*draw.mesh, program,
                                          directions_of(sample.lighting.at(sample.lights, draw.centre)), resolution));
   };
-  std::vector<Draw>& draws = sample.content.draws();
   if (sample.unwrapping != nullptr)
-    return std::all_of(sample.unwrapping->draws.begin(), sample.unwrapping->draws.end(),
-                       [&](std::size_t baked) { return update(draws[baked]); });
-  if (!std::all_of(draws.begin(), draws.end(), update)) return false;
+    return std::all_of(sample.unwrapping->draws.begin(), sample.unwrapping->draws.end(), update);
+  if (!std::ranges::all_of(std::views::iota(std::size_t{0}, sample.content.draws().size()), update)) return false;
 
   Instances* instances = sample.content.instances();
   if (instances == nullptr) return true;
@@ -50,8 +50,14 @@ bool LightMapPass::run(const Sample& sample, const ArrayVisibility& arrays) {
     Prototype& prototype = instances->prototypes()[i];
     if (!prototype.light_maps) continue;
     double mean_free_paths = 0.0;
-    for (const InstanceGroup& group : instances->groups())
-      if (group.prototype == i) mean_free_paths = std::max(mean_free_paths, group.mean_free_paths_across);
+    bool asked = false;
+    for (std::size_t unit = 0; unit < instances->groups().size(); ++unit) {
+      const InstanceGroup& group = instances->groups()[unit];
+      if (group.prototype != i || !sample.asks_model(unit)) continue;
+      asked = true;
+      mean_free_paths = std::max(mean_free_paths, group.mean_free_paths_across);
+    }
+    if (!asked) continue;
     const int resolution = light_map_resolution(arrays.selection()->selection.largest_pixels_across, mean_free_paths);
     LightMapDirections directions = instances->light_directions(i, to_light);
     // A light amid the heap meets its grains from everywhere.

@@ -47,7 +47,8 @@ struct Sample {
   std::uint32_t seed;
   glm::vec2 jitter;  ///< of the picture, in clip space
   SampledLights lights;
-  bool cast;  ///< rays find what is seen of arrays
+  bool cast;     ///< rays find what is seen of arrays
+  bool gathers;  ///< light between grains is gathered for pixels that show them
   Mirrors mirrors;
   const GoOn& go_on;
   std::optional<Portion> portion{};  ///< of its light, that is shaded alone
@@ -62,6 +63,14 @@ struct Sample {
 
   /// Whether it matters to a unit of the content where the light of a lamp comes in.
   bool lights_about(std::size_t unit) const;
+
+  /// Whether all light of an object that is seen is gathered; its unit's others are then, too.
+  bool gathers_all_of(std::size_t number) const;
+
+  /// Whether any pixel asks a unit's model, and so for the light maps and the shadows that it knows.
+  bool asks_model(std::size_t unit) const {
+    return mirrors == Mirrors::hindered || !gathers_all_of(content.first_number(unit));
+  }
 };
 
 }  // namespace mesograin::render

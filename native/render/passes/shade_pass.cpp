@@ -20,8 +20,12 @@ void set_world(const gl::Program& program, const Lighting& lighting) {
   if (lighting.world_image() != nullptr) program.set("world_image", *lighting.world_image());
 }
 
-// Draws on no pixel that the instance's bounds do not cover; everywhere if they reach behind the camera.
-void confine_to(const Sample& sample, const Draw& draw) {
+// Draws on no pixel that a single draw's bounds do not cover; everywhere if they reach behind the camera, and for a
+// group of instances.
+void confine_to(const Sample& sample, std::size_t unit) {
+  glScissor(0, 0, sample.size.x, sample.size.y);
+  if (sample.content.draw(unit) == nullptr) return;
+  const Draw& draw = *sample.content.draw(unit);
   const glm::dmat4 to_clip = sample.camera.camera_to_clip * (sample.camera.world_to_camera * draw.object_to_world);
   const glm::dvec2 size(sample.size);
   glm::dvec2 lower = size;
@@ -30,10 +34,7 @@ void confine_to(const Sample& sample, const Draw& draw) {
     const glm::bvec3 high((corner & 1U) != 0, (corner & 2U) != 0, (corner & 4U) != 0);
     const glm::dvec4 clip =
         to_clip * glm::dvec4(glm::mix(glm::dvec3(draw.source->lower()), glm::dvec3(draw.source->upper()), high), 1.0);
-    if (!(clip.w > 0.0)) {
-      glScissor(0, 0, sample.size.x, sample.size.y);
-      return;
-    }
+    if (!(clip.w > 0.0)) return;
     const glm::dvec2 pixel = (0.5 * glm::dvec2(clip) / clip.w + 0.5) * size;
     lower = glm::min(lower, pixel);
     upper = glm::max(upper, pixel);
@@ -98,11 +99,15 @@ void ShadePass::shade_seen(const Sample& sample, const ShadowPass& shadows, cons
   begin_shading();
   glDisable(GL_BLEND);
   for (std::size_t unit = first; unit < std::min(first + most_in_stencil, sample.content.units()); ++unit) {
+    if (sample.gathers_all_of(sample.content.first_number(unit)) && sample.portion != Portion::normal) {
+      show_gathered(sample, gathered, unit, stencil_mark(unit, first));
+      continue;
+    }
     const DeviceMaterial& material = sample.content.material(unit);
     const gl::Program& program =
         prepare(sample, unit,
                 {.instanced = sample.content.draw(unit) == nullptr,
-                 .shadows = shadows.kind(sample.content),
+                 .shadows = sample.portion == Portion::normal ? Shadows::none : shadows.kind(sample.content),
                  .gathered = gathered.ran(),
                  .mirrors_world = sample.mirrors != Mirrors::none && sample.portion != Portion::normal,
                  .portion = sample.portion});
@@ -110,13 +115,20 @@ void ShadePass::shade_seen(const Sample& sample, const ShadowPass& shadows, cons
     gathered.bind(program);
     const bool mirrors = sample.mirrors == Mirrors::hindered && material.facets() && sample.portion != Portion::normal;
     (mirrors ? sample.targets.mirror->shade : sample.targets.shade).bind();
-    if (const Draw* draw = sample.content.draw(unit))
-      confine_to(sample, *draw);
-    else
-      glScissor(0, 0, sample.size.x, sample.size.y);
+    confine_to(sample, unit);
     shade_unit(sample, program, unit, stencil_mark(unit, first));
   }
   end_shading();
+}
+
+void ShadePass::show_gathered(const Sample& sample, const GatherPass& gathered, std::size_t unit, int mark) {
+  const gl::Program& program = sample.cache.gathered_program(sample.portion);
+  program.use();
+  gathered.bind(program);
+  sample.targets.shade.bind();
+  confine_to(sample, unit);
+  glStencilFunc(GL_EQUAL, mark, most_in_stencil);
+  full_screen_.draw();
 }
 
 void ShadePass::shade_mirrored(const Sample& sample, const ShadowPass& shadows, const std::vector<PixelBox>& boxes,

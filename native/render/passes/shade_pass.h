@@ -40,6 +40,9 @@ class ShadePass {
  private:
   void draw_background(const Sample& sample);
 
+  /// One unit's pixels, all of whose light was gathered.
+  void show_gathered(const Sample& sample, const GatherPass& gathered, std::size_t unit, int mark);
+
   /// The material's program, with everything that depends on neither shadows nor what is shaded.
   const gl::Program& prepare(const Sample& sample, std::size_t unit, Shading shading);
 

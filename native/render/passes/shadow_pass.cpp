@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <chrono>
+#include <ranges>
 
 #include "render/sequence.h"
 
@@ -21,11 +22,9 @@ bool is_opaque(const DeviceMaterial& material) {
 // Whether it is enough to know for each pixel which lights of this sample reach it.
 bool known_by_pixel(const Sample& sample) {
   if (sample.unwrapping != nullptr || !sample.cast) return false;
-  const std::vector<Draw>& draws = sample.content.draws();
-  const std::vector<InstanceGroup>& groups = sample.content.instances()->groups();
-  return std::all_of(draws.begin(), draws.end(), [](const Draw& draw) { return is_opaque(*draw.material); }) &&
-         std::all_of(groups.begin(), groups.end(),
-                     [](const InstanceGroup& group) { return is_opaque(*group.material); });
+  return std::ranges::all_of(std::views::iota(std::size_t{0}, sample.content.units()), [&](std::size_t unit) {
+    return is_opaque(sample.content.material(unit)) || !sample.asks_model(unit);
+  });
 }
 
 Receivers receivers_of(const Sample& sample) {
@@ -48,8 +47,10 @@ bool ShadowPass::run(const Sample& sample, const ArrayVisibility& arrays, Surfac
   ran_ = sample.content.shadows() && !eyes.empty();
   if (!ran_) return true;
   const auto start = std::chrono::steady_clock::now();
-  const bool whole = by_pixel_ ? cast_.cast(arrays.tree(), sample.content, surfaces.seen(sample), eyes, sample.go_on)
-                               : update_maps(sample, arrays, eyes);
+  const auto asks = [&](std::size_t number) { return !sample.gathers_all_of(number); };
+  const bool whole = by_pixel_
+                         ? cast_.cast(arrays.tree(), sample.content, surfaces.seen(sample), asks, eyes, sample.go_on)
+                         : update_maps(sample, arrays, eyes);
   milliseconds_ = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   return whole;
 }
@@ -102,7 +103,8 @@ void ShadowPass::bind(const gl::Program& program) const {
 
 bool ShadowPass::run_mirrored(const Sample& sample, const ArrayVisibility& arrays, const SeenSurfaces& seen) {
   const std::vector<ShadowEye> eyes = sample.lighting.eyes(sample.lights, sample.content.anchor());
-  return !ran_ || !few_ || mirrored_.cast(arrays.tree(), sample.content, seen, eyes, sample.go_on);
+  const auto asks = [](std::size_t) { return true; };
+  return !ran_ || !few_ || mirrored_.cast(arrays.tree(), sample.content, seen, asks, eyes, sample.go_on);
 }
 
 Shadows ShadowPass::kind_mirrored(const Content& content, const DeviceMaterial& material) const {

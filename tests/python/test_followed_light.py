@@ -1,0 +1,92 @@
+"""Grains of a heap without a surface that refracts: light is followed through what is seen of them, and no model is
+asked; with what is known already, while more is being found."""
+
+import mesograin_native as native
+import numpy
+import pytest
+from test_heap_light import ROUND, apart, camera, each_news, green, heap, lit, patiently, white
+
+GROUND = native.Mesh(numpy.float32([(-40, -40, 0), (40, -40, 0), (40, 40, 0), (-40, 40, 0)]),
+                     None, numpy.uint32([(0, 1, 2), (0, 2, 3)]))
+
+
+def passes(view):
+    return {timing["pass"] for timing in view.timings()}
+
+
+def rendered(scene, exchange, samples=1):
+    view = native.View(96, 96)
+    view.set_visibility("cast")
+    view.set_scene(native.Scene(instances=scene.instances, arrays=scene.arrays, lights=scene.lights, world=scene.world,
+                                exchange=exchange))
+    view.set_camera(camera())
+    view.render(samples)
+    return view
+
+
+def test_neither_light_maps_nor_shadow_maps_are_made_for_them():
+    scene = lit(heap(white()))
+    assert {"light_maps", "gather"} & passes(rendered(scene, "order_1")) == {"light_maps"}
+    assert {"light_maps", "gather"} & passes(rendered(scene, "heaps")) == {"gather"}
+
+
+def test_they_are_seen_as_where_all_is_gathered():
+    scene = lit(heap(white()))
+    numpy.testing.assert_array_equal(rendered(scene, "heaps", 2).read(), rendered(scene, "gathered", 2).read())
+
+
+@pytest.mark.parametrize("thickness, followed", [(19.0, True), (21.0, False)])
+def test_thick_ones_ask_their_model(thickness, followed):
+    array = heap(white(thickness / white().sigma_s[0]))
+    assert ("gather" in passes(rendered(lit(array), "heaps"))) == followed
+
+
+def test_the_ground_beside_them_has_the_shadows_that_it_had():
+    scene = lit(heap(white()))
+    ground = native.Instance(GROUND, native.Material(model="lambert", reflectance=(0.5,) * 3), numpy.eye(4))
+    scene = native.Scene(instances=[ground], arrays=scene.arrays, lights=scene.lights, world=scene.world)
+    pictures = []
+    for exchange in ("order_1", "heaps"):
+        view = rendered(scene, exchange)
+        view.set_portions(["diffuse"])
+        view.render(16)
+        pictures.append(view.read_portion("diffuse")[..., 1])
+    assert pictures[0].max() > 0.1
+    assert apart(pictures[1], pictures[0]) < 0.02
+
+
+def test_a_slider_shows_it_in_the_light_of_a_moment_ago():
+    view = native.View(96, 96, patient=False)
+    view.set_visibility("cast")
+    array = heap(white())
+    view.set_scene(heaped(lit(array)))
+    view.set_camera(camera())
+    assert list(each_news(view))
+    scene = heaped(lit(array.with_material(white(1.1))))
+    view.set_scene(scene)
+    at_once = green(view)
+    assert "gather" in passes(view) and view.preparing is not None
+    assert apart(at_once, patiently(scene)) < 0.1
+
+
+def test_grains_that_moved_are_seen_in_the_light_of_a_moment_ago():
+    view = native.View(96, 96, patient=False)
+    view.set_visibility("cast")
+    array = heap(white())
+    view.set_scene(heaped(lit(array)))
+    view.set_camera(camera())
+    assert list(each_news(view))
+    moved = numpy.array(array.transforms)
+    moved[::7, :3, 3] *= 1.01
+    scene = heaped(lit(native.InstanceArray(ROUND, array.material, moved)))
+    view.set_scene(scene)
+    at_once = green(view)
+    assert "gather" in passes(view) and view.preparing is not None
+    right = patiently(scene)
+    assert apart(at_once, right) < 0.1
+    *_, last = each_news(view)
+    assert apart(last, right) < 1e-3
+
+
+def heaped(scene):
+    return native.Scene(arrays=scene.arrays, lights=scene.lights, world=scene.world, exchange="heaps")
