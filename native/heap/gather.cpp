@@ -160,7 +160,9 @@ Gather::All Gather::look_at_all(std::uint32_t grain, const glm::vec3& place, con
       all.scattered += of.found(space_, grain, aside);
     }
     if (!outcome) continue;
-    const glm::vec3 leaves_at = space_.place(space_.grains()[grain], frame * outcome->normal) + aside;
+    const Grain& seen = space_.grains()[grain];
+    const glm::vec3 leaves_at =
+        space_.this_side(seen.middle + place, space_.place(seen, frame * outcome->normal) + aside);
     Ray ray{leaves_at, frame * outcome->direction, outcome->weight};
     if (const std::optional<glm::vec3> sent = sent_along(ray, random))
       all.others += *sent;

@@ -100,6 +100,13 @@ std::optional<Meeting> Neighbourhood::first(const glm::vec3& origin, const glm::
   return std::nullopt;
 }
 
+std::optional<Meeting> Neighbourhood::first_wall(const glm::vec3& origin, const glm::vec3& direction,
+                                                 float reach) const {
+  const RTCRayHit ray = embree::first_hit(device_->only_walls, origin, direction, 0.0F, reach);
+  if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+  return Device::on_wall(ray.hit.geomID, origin, direction, ray);
+}
+
 std::optional<Meeting> Neighbourhood::first_on(std::uint32_t wall, const glm::vec3& origin, const glm::vec3& direction,
                                                float reach) const {
   float near = 0.0F;

@@ -48,6 +48,9 @@ class Neighbourhood {
   /// The first grain that a ray comes to from outside, or wall; grains that it starts in are not met.
   std::optional<Meeting> first(const glm::vec3& origin, const glm::vec3& direction) const;
 
+  /// Where a ray first meets any wall within `reach`.
+  std::optional<Meeting> first_wall(const glm::vec3& origin, const glm::vec3& direction, float reach) const;
+
   /// Where a ray meets this wall within `reach`.
   std::optional<Meeting> first_on(std::uint32_t wall, const glm::vec3& origin, const glm::vec3& direction,
                                   float reach) const;

@@ -83,6 +83,14 @@ WallPlace Space::place(const Patches::Node& node, float u, float v) const {
   return {patches_.middle() + node.home + 1e-4F * length * facing, facing};
 }
 
+glm::vec3 Space::this_side(const glm::vec3& from, const glm::vec3& to) const {
+  const float way = glm::distance(from, to);
+  if (walls_.empty() || !(way > 0.0F)) return to;
+  const glm::vec3 direction = (to - from) / way;
+  const std::optional<Meeting> wall = neighbourhood_.first_wall(from, direction, way);
+  return wall ? wall->place - 1e-4F * way * direction : to;
+}
+
 void Space::cross(Ray& ray, const Meeting& meeting, float cosine) const {
   const Grain& grain = grains_[meeting.number];
   ray.origin = place(grain, meeting.normal + 2.0F * cosine * ray.direction);

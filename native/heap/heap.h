@@ -85,10 +85,13 @@ class Space {
   /// A place for which a node stands, `u` and `v` in [0, 1): the likelier the nearer.
   WallPlace place(const Patches::Node& node, float u, float v) const;
 
-  /// Just outside a grain's surface.
+  /// Just outside a grain's surface, on this side of walls that the ball dips into.
   glm::vec3 place(const Grain& grain, const glm::vec3& normal) const {
-    return grain.middle + grain.radius * (1.0F + 1e-4F) * normal;
+    return this_side(grain.middle, grain.middle + grain.radius * (1.0F + 1e-4F) * normal);
   }
+
+  /// `to`, or just before the wall that stands between it and `from`.
+  glm::vec3 this_side(const glm::vec3& from, const glm::vec3& to) const;
 
   /// On to the grain or wall that it meets; nothing if it leaves the heap. Where a grain lets a part straight through,
   /// one of the two ways is taken at random.

@@ -9,15 +9,11 @@
 #include <numbers>
 
 #include "heap/exchange.h"
+#include "heap/gather.h"
+#include "heaps.h"
 
 namespace mesograin::heap {
 namespace {
-
-Optics lambert(double reflectance) {
-  Optics optics;
-  optics.reflectance = glm::dvec3(reflectance);
-  return optics;
-}
 
 scene::MeshPointer square(float half) {
   return std::make_shared<const scene::Mesh>(
@@ -85,6 +81,30 @@ TEST(Walls, StopTheLightOfTheWorld) {
 
 // Light of a sun at the zenith comes back from a wide ground as from an even world below, but for the grain's shadow
 // and what the grain itself sends down.
+// The ball that stands for a grain dips into the ground that the grain lies on: light that would leave it below is the
+// ground's.
+TEST(Walls, HaveNoLightBehindThem) {
+  Heap heap;
+  heap.grains.kinds = {medium(1.0, 0.999), lambert(0.0)};
+  heap.grains.grains = {{glm::vec3(0.0F, 0.0F, 0.6F), 1.0F, 0}};
+  heap.grains.walls.push_back({square(100.0F), glm::dmat4(1.0), 1});
+  heap.world.radiance = glm::dvec3(1.0);
+  const auto light = std::make_shared<const HeapLight>(solve_exchange(heap, Quality{}, {}, {}));
+  const Space space(heap.grains, light->kinds);
+  const glm::vec3 down = glm::normalize(glm::vec3(0.2F, 0.1F, -1.0F));
+  EXPECT_GT(space.place(heap.grains.grains[0], down).z, 0.0F);
+  EXPECT_LT(space.place(heap.grains.grains[0], down).z, 1e-3F);
+  EXPECT_NEAR(space.place(heap.grains.grains[0], -down).z, 0.6F - down.z, 1e-3F);
+  // Straight through it from above there is the black ground.
+  transport::Random random(4, 0);
+  const glm::vec3 up(0.0F, 0.0F, 1.0F);
+  const Gather::All seen = Gather(heap, light).look_at_all(0, up, up, up, 4096, random);
+  EXPECT_EQ(seen.world, glm::vec3(0.0F));
+  // Of what is scattered half goes down.
+  EXPECT_LT(seen.scattered.r + seen.others.r, 0.6F);
+  EXPECT_GT(seen.scattered.r, 0.1F);
+}
+
 TEST(Walls, LightAGrainHighAboveFromBelow) {
   Heap heap = on_ground(lambert(0.5), lambert(0.6));
   heap.grains.grains = {{glm::vec3(0.0F, 0.0F, 40.0F), 1.0F, 0}};
