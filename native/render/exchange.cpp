@@ -175,11 +175,12 @@ void Exchange::set(const Content& content, const scene::Scene& scene) {
   solving_ = heap::Solvers::instance().ask(std::move(heap), solving_);
   roles_ = std::move(gathered.roles);
   balls_ = gathered.balls;
-  if (regrouped) {
-    gather_.reset();
-    send();
+  if (!regrouped) {
+    find_gather();
+    return;
   }
-  find_gather();
+  gather_.reset();
+  send();
 }
 
 bool Exchange::gathers_all_of(std::size_t number) const {
