@@ -93,7 +93,7 @@ Gather::Gather(Heap heap, std::shared_ptr<const Found> found)
       space_(found_->space),
       draws_(draws_of(heap_)) {}
 
-Gather::Gather(Heap heap, std::shared_ptr<const HeapLight> light)
+Gather::Gather(const Heap& heap, std::shared_ptr<const HeapLight> light)
     : Gather(heap, std::make_shared<const Found>(heap, std::move(light))) {}
 
 std::unique_ptr<const Gather> Gather::among(Heap heap) const {

@@ -19,7 +19,7 @@ namespace mesograin::heap {
 class Gather {
  public:
   /// `light`: the heap's.
-  Gather(Heap heap, std::shared_ptr<const HeapLight> light);
+  Gather(const Heap& heap, std::shared_ptr<const HeapLight> light);
   Gather(const Gather&) = delete;
   Gather& operator=(const Gather&) = delete;
 

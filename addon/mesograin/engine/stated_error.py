@@ -7,9 +7,10 @@ import dataclasses
 @dataclasses.dataclass(frozen=True)
 class Measured:
     """Heaps that were held against path tracing. surface: as native.View.statistics names it. thickness: mean free
-    paths to the radius, albedo: of one scattering or of the surface, both from least to most. balls: whether grains are
-    such. gathered: whether what is seen was found by rays, or told by numbers a grain. total, blocks: the largest error of the light in all, and relative L1 in blocks of 8 x 8 pixels. low_sun: the
-    same in blocks under a sun 15 degrees above the horizon, or None."""
+    paths to the radius, albedo: of one scattering or of the surface, both from least to most. balls: whether grains
+    are such. gathered: whether what is seen was found by rays, or told by numbers a grain. total, blocks: the
+    largest error of the light in all, and relative L1 in blocks of 8 x 8 pixels. low_sun: the same in blocks under
+    a sun 15 degrees above the horizon, or None."""
 
     surface: str
     thickness: tuple

@@ -2,7 +2,6 @@
 #include "render/passes/light_map_pass.h"
 
 #include <algorithm>
-#include <ranges>
 
 namespace mesograin::render {
 namespace {
@@ -41,7 +40,8 @@ bool LightMapPass::run(const Sample& sample, const ArrayVisibility& arrays) {
   };
   if (sample.unwrapping != nullptr)
     return std::all_of(sample.unwrapping->draws.begin(), sample.unwrapping->draws.end(), update);
-  if (!std::ranges::all_of(std::views::iota(std::size_t{0}, sample.content.draws().size()), update)) return false;
+  for (std::size_t number = 0; number < sample.content.draws().size(); ++number)
+    if (!update(number)) return false;
 
   Instances* instances = sample.content.instances();
   if (instances == nullptr) return true;

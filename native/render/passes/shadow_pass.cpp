@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <bit>
 #include <chrono>
-#include <ranges>
 
 #include "render/sequence.h"
 
@@ -22,9 +21,9 @@ bool is_opaque(const DeviceMaterial& material) {
 // Whether it is enough to know for each pixel which lights of this sample reach it.
 bool known_by_pixel(const Sample& sample) {
   if (sample.unwrapping != nullptr || !sample.cast) return false;
-  return std::ranges::all_of(std::views::iota(std::size_t{0}, sample.content.units()), [&](std::size_t unit) {
-    return is_opaque(sample.content.material(unit)) || !sample.asks_model(unit);
-  });
+  for (std::size_t unit = 0; unit < sample.content.units(); ++unit)
+    if (!is_opaque(sample.content.material(unit)) && sample.asks_model(unit)) return false;
+  return true;
 }
 
 Receivers receivers_of(const Sample& sample) {
