@@ -24,7 +24,7 @@ def rendered(scene, exchange, samples=1):
     return view
 
 
-def test_neither_light_maps_nor_shadow_maps_are_made_for_them():
+def test_no_light_maps_are_made_for_them():
     scene = lit(heap(white()))
     assert {"light_maps", "gather"} & passes(rendered(scene, "order_1")) == {"light_maps"}
     assert {"light_maps", "gather"} & passes(rendered(scene, "heaps")) == {"gather"}
@@ -55,13 +55,20 @@ def test_the_ground_beside_them_has_the_shadows_that_it_had():
     assert apart(pictures[1], pictures[0]) < 0.02
 
 
-def test_a_slider_shows_it_in_the_light_of_a_moment_ago():
+@pytest.fixture
+def viewport():
+    """(view, array): a viewport at rest that shows a white heap."""
     view = native.View(96, 96, patient=False)
     view.set_visibility("cast")
     array = heap(white())
     view.set_scene(heaped(lit(array)))
     view.set_camera(camera())
     assert list(each_news(view))
+    return view, array
+
+
+def test_a_slider_shows_it_in_the_light_of_a_moment_ago(viewport):
+    view, array = viewport
     scene = heaped(lit(array.with_material(white(1.1))))
     view.set_scene(scene)
     at_once = green(view)
@@ -69,13 +76,8 @@ def test_a_slider_shows_it_in_the_light_of_a_moment_ago():
     assert apart(at_once, patiently(scene)) < 0.1
 
 
-def test_grains_that_moved_are_seen_in_the_light_of_a_moment_ago():
-    view = native.View(96, 96, patient=False)
-    view.set_visibility("cast")
-    array = heap(white())
-    view.set_scene(heaped(lit(array)))
-    view.set_camera(camera())
-    assert list(each_news(view))
+def test_grains_that_moved_are_seen_in_the_light_of_a_moment_ago(viewport):
+    view, array = viewport
     moved = numpy.array(array.transforms)
     moved[::7, :3, 3] *= 1.01
     scene = heaped(lit(native.InstanceArray(ROUND, array.material, moved)))
