@@ -336,14 +336,14 @@ Behind seen_behind(const Space& space, std::size_t answering, const std::vector<
   return behind;
 }
 
-void take(Found found, std::size_t number, Links& links, Lit& lit) {
-  links.of[number] = std::move(found.links);
-  lit.direct[number] = found.direct;
-  lit.crossed[number] = found.crossed;
-  if (number < links.open.size()) links.open[number] = found.open;
+void take(Found found, std::size_t answering, Links& links, Lit& lit) {
+  links.of[answering] = std::move(found.links);
+  lit.direct[answering] = found.direct;
+  lit.crossed[answering] = found.crossed;
+  if (answering < links.open.size()) links.open[answering] = found.open;
   if (links.scattered.empty()) return;
-  links.scattered[number] = found.scattering;
-  lit.scattered[number] = found.scattered;
+  links.scattered[answering] = found.scattering;
+  lit.scattered[answering] = found.scattered;
 }
 
 constexpr std::uint64_t behind_seed = 2;  // more than an effort's
