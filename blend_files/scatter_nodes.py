@@ -88,8 +88,10 @@ def make(name, collection):
         return t.math("ADD", given["Seed"], float(number))
 
     apart = t.math("MULTIPLY", t.math("MULTIPLY", given["Size"], given["Spacing"]), 2.0)
+    # What was strewn on the surface before is left alone: else grains were strewn on each of those grains.
+    before = t.node("GeometryNodeSeparateComponents", {"Geometry": given["Surface"]}).outputs
     strewn = t.node("GeometryNodeDistributePointsOnFaces", {
-        "Mesh": given["Surface"], "Distance Min": apart, "Density Max": given["Density"], "Seed": given["Seed"]},
+        "Mesh": before["Mesh"], "Distance Min": apart, "Density Max": given["Density"], "Seed": given["Seed"]},
         distribute_method="POISSON")
     spread = given["Size Spread"]
     size = t.math("MULTIPLY", given["Size"], t.random(seed(1), t.math("SUBTRACT", 1.0, spread),
@@ -111,6 +113,11 @@ def make(name, collection):
     surface = t.node("GeometryNodeSwitch", input_type="GEOMETRY")
     t.tree.links.new(given["Show Surface"], next(each for each in surface.inputs if each.enabled))
     t.tree.links.new(given["Surface"], t.socket(surface.inputs, "True"))
+    faceless = t.out("GeometryNodeDeleteGeometry", {"Geometry": before["Mesh"]}, domain="FACE", mode="EDGE_FACE")
+    hidden = t.node("GeometryNodeJoinGeometry")
+    for part in (before["Instances"], faceless):
+        t.tree.links.new(part, hidden.inputs[0])
+    t.tree.links.new(hidden.outputs[0], t.socket(surface.inputs, "False"))
     joined = t.node("GeometryNodeJoinGeometry")
     end = t.node("NodeGroupOutput")
     # Scripts are told the attributes of vertices, not of instances.

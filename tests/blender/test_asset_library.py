@@ -9,7 +9,7 @@ from mesograin import compat
 from mesograin.grains import kinds
 from mesograin.schema import presets
 from mesograin.schema.parameters import PARAMETERS
-from mesograin.ui import asset_library
+from mesograin.ui import asset_library, look
 from mesograin.ui import presets as preset_menu
 
 SIZE = 96
@@ -69,8 +69,8 @@ def ground(**chosen):
     mesh.from_pydata([(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)], [], [(0, 1, 2, 3)])
     square = add_object("Ground", mesh)
     bpy.context.view_layer.objects.active = square
-    assert bpy.ops.mesograin.scatter(**{"kind": "sand", **chosen}) == {"FINISHED"}
     square.data.materials.append(bpy.data.materials.new("Ground"))
+    assert bpy.ops.mesograin.scatter(**{"kind": "sand", **chosen}) == {"FINISHED"}
     square.data.materials[0].mesograin.model = "lambert"
     square.data.materials[0].mesograin.reflectance = (0.0, 0.0, 0.0)
     return square.modifiers[0]
@@ -127,6 +127,56 @@ def test_another_scatter_takes_the_same_nodes_and_shapes():
     assert len(bpy.data.collections) == 1 and len(bpy.data.node_groups) == 1
     ground(kind="salt")
     assert len(bpy.data.collections) == 2 and len(bpy.data.node_groups) == 1
+
+
+def test_grains_are_strewn_on_the_surface_and_not_on_grains(native):
+    square = ground(kind="sand").id_data
+    [sand] = {dict(heap.material.values)["sigma_a"] for heap in read_scene().heaps}
+    alone = placings(sand)
+    assert bpy.ops.mesograin.scatter(kind="salt", seed=1) == {"FINISHED"}
+    assert placings(sand) == alone and 0.5 * len(alone) < len(placings()) - len(alone) < 2.0 * len(alone)
+    assert len(factors()) == len(placings())
+    choose(square.modifiers[1], Show_Surface=False)
+    assert placings(sand) == alone and [each.mesh for each in read_scene().instances] == []
+
+
+def placings(of=None):
+    """Where grains are, sorted; of: the sigma_a of their material."""
+    return sorted(tuple(each) for heap in read_scene().heaps for each in heap.each()
+                  if of in (None, dict(heap.material.values)["sigma_a"]))
+
+
+def test_the_grains_material_is_the_surfaces_active_one():
+    square = ground().id_data
+    assert square.active_material.name == "Strewn Sand" and square.active_material_index == 1
+    bpy.ops.mesograin.scatter(kind="sand", seed=1)
+    bpy.ops.mesograin.scatter(kind="salt")
+    assert [slot.name for slot in square.material_slots] == ["Ground", "Strewn Sand", "Strewn Salt"]
+    assert square.active_material.name == "Strewn Salt"
+    square.active_material.mesograin.sigma_a = (0.25, 0.5, 1.0)
+    assert [each for each in read_scene().heaps if dict(each.material.values)["sigma_a"] == (0.25, 0.5, 1.0)]
+
+
+def test_how_thick_the_surface_is_says_nothing_of_its_grains(native):
+    bpy.ops.mesh.primitive_uv_sphere_add()
+    dune = bpy.context.object
+    dune.data.materials.append(bpy.data.materials.new("Dune"))
+    dune.active_material.mesograin.model = "model_2"
+    assert look.hint(dune.active_material, dune, 1.0) and look.advise(dune.active_material, dune, 1.0)
+    assert bpy.ops.mesograin.scatter(kind="sand") == {"FINISHED"}
+    assert dune.active_material.name == "Strewn Sand"
+    assert look.hint(dune.active_material, dune, 1.0) == "" and look.advise(dune.active_material, dune, 1.0) is None
+    assert look.hint(bpy.data.materials["Dune"], dune, 1.0)
+
+
+def test_a_surface_without_a_material_stays_without():
+    mesh = bpy.data.meshes.new("Ground")
+    mesh.from_pydata([(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)], [], [(0, 1, 2, 3)])
+    bpy.context.view_layer.objects.active = square = add_object("Ground", mesh)
+    before = read_scene().instances[0].material
+    assert bpy.ops.mesograin.scatter(kind="sand") == {"FINISHED"}
+    assert [slot.name for slot in square.material_slots] == ["", "Strewn Sand"]
+    assert read_scene().instances[0].material == before
 
 
 def test_colours_are_those_of_cycles(render):

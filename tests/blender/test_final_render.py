@@ -3,7 +3,7 @@ import addon_utils
 import bpy
 import numpy as np
 import pytest
-from mesograin.engine import status
+from mesograin.engine import engine, status
 from mesograin.scene import export, meshes
 
 
@@ -97,6 +97,10 @@ def test_resolution_percentage(render, blend_files):
     scene.mesograin.samples = 1
     scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = 300, 200, 25
     assert render().shape == (50, 75, 4)
+
+
+def test_time_left_is_said_as_panels_say_it():
+    assert engine._under_way(2, 64, 6.0) == "Sample 2/64, about 3 min 06 s left"
 
 
 @pytest.mark.parametrize("crop", [False, True], ids=["in_place", "cropped"])

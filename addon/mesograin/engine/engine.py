@@ -8,6 +8,7 @@ import bpy
 import numpy as np
 
 from .. import compat, native_module
+from ..durations import duration
 from ..scene import export, lens
 from . import motion, passes, status, viewport, viewport_text
 
@@ -122,8 +123,7 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
                     if now - chunk_started < POLL_SECONDS:
                         chunk *= 2
                     if now - shown > SHOW_SECONDS and view.samples < target:
-                        left = (now - started) / max(view.samples, 1) * (target - view.samples)
-                        self.update_stats("", f"Sample {view.samples}/{target}, {left:.1f} s left")
+                        self.update_stats("", _under_way(view.samples, target, now - started))
                         yield view.samples
                         shown = time.perf_counter()
                 if self.test_break():
@@ -193,7 +193,7 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
             if pixels is not None:
                 self._take(pixels, region, scene)
             elif session.seconds_behind > BEHIND_SECONDS:
-                self.update_stats("", f"Drawing, {session.seconds_behind:.0f} s")
+                self.update_stats("", f"Drawing, {duration(session.seconds_behind)}")
             if pixels is not None or (session.busy and not session.waits):
                 self.tag_redraw()  # the text line of a redraw is what was said before it
             elif session.waits and not bpy.app.timers.is_registered(_look):
@@ -250,6 +250,12 @@ def _preparing(share):
 def _set_pass(result, name, pixels):
     # Blender's rows begin at the bottom.
     compat.set_pass_pixels(result.layers[0].passes[name], np.ascontiguousarray(pixels[::-1]))
+
+
+def _under_way(samples, target, seconds):
+    """The text over a final render that has taken so long."""
+    left = seconds / max(samples, 1) * (target - samples)
+    return f"Sample {samples}/{target}, about {duration(left)} left"
 
 
 def _line(samples, target, warnings):

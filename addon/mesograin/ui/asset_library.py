@@ -42,6 +42,21 @@ def take(kind, name):
     return made
 
 
+def show_materials(surface, shapes):
+    """Gives a mesh object slots of a collection's grains' materials, and shows the first: nobody would look for them
+    in the collection. Its faces keep what they have, if it is nothing."""
+    slots = surface.data.materials
+    if surface.data.library is not None:
+        return
+    if not slots:
+        slots.append(None)
+    grains = dict.fromkeys(material for shape in shapes.objects for material in shape.data.materials)
+    for material in grains:
+        if material.name not in slots:
+            slots.append(material)
+    surface.active_material_index = min(slots.find(material.name) for material in grains)
+
+
 class MESOGRAIN_OT_add_asset_library(bpy.types.Operator):
     bl_idname = "mesograin.add_asset_library"
     bl_label = "Add Asset Library"
@@ -80,11 +95,13 @@ class MESOGRAIN_OT_scatter(bpy.types.Operator):
         except (LookupError, OSError) as problem:
             self.report({"ERROR"}, str(problem))
             return {"CANCELLED"}
-        modifier = context.active_object.modifiers.new(SCATTER, "NODES")
+        surface = context.active_object
+        modifier = surface.modifiers.new(SCATTER, "NODES")
         modifier.node_group = nodes
         for name, value in (("Grains", shapes), ("Seed", self.seed)):
             compat.set_modifier_input(modifier, name, value)
-        context.active_object.update_tag()
+        show_materials(surface, shapes)
+        surface.update_tag()
         return {"FINISHED"}
 
 

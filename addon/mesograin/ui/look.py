@@ -100,9 +100,23 @@ class LookProperties(bpy.types.PropertyGroup):
         self.surroundings = "air"
 
 
+def _is_on(material, thing):
+    """Whether an object's own faces are of a material: those of a pile, and of what grains are scattered on, are not of
+    theirs."""
+    if thing.type != "MESH":
+        return True
+    polygons, slots = thing.data.polygons, thing.material_slots
+    if not polygons or len(slots) < 2:
+        return len(polygons) > 0
+    used = np.empty(len(polygons), dtype=np.int32)
+    polygons.foreach_get("material_index", used)
+    used = np.unique(np.minimum(used, len(slots) - 1))
+    return any(slots[int(number)].material == material for number in used)
+
+
 def hint(material, thing, millimetres_per_unit):
     """A sentence on how thick a bpy.types.Object of this material is for light; empty where there is nothing to say."""
-    if thing.type == "MESH" and not thing.data.polygons:  # a pile, whose grains are elsewhere
+    if not _is_on(material, thing):
         return ""
     paths = _paths(material.mesograin_look)
     sizes = [size * millimetres_per_unit for size in thing.dimensions]
@@ -148,8 +162,8 @@ def _shape_as_seen(thing):
 
 
 def advise(material, thing, millimetres_per_unit, shape_of=_shape):
-    """advice.Advice for a mesh object of this material; None for what has no volume."""
-    shape = shape_of(thing)
+    """advice.Advice for a mesh object of this material; None for what has no volume or none of it."""
+    shape = shape_of(thing) if thing is not None and _is_on(material, thing) else None
     if shape is None:
         return None
     try:
@@ -175,7 +189,10 @@ class MESOGRAIN_OT_choose_model(OnActiveMaterial, bpy.types.Operator):
         material = active_material(context)
         advised = advise(material, context.object, context.scene.mesograin.millimetres_per_unit)
         if advised is None:
-            self.report({"WARNING"}, f"'{context.object.name}' encloses nothing: a grain needs a mesh with a volume.")
+            name = context.object.name
+            self.report({"WARNING"}, f"'{name}' encloses nothing: a grain needs a mesh with a volume."
+                        if _is_on(material, context.object) else
+                        f"No face of '{name}' is of '{material.name}': its grains are elsewhere, and not measured.")
             material.mesograin.model = models.PREFERRED
             return {"FINISHED"}
         material.mesograin.model = advised.model

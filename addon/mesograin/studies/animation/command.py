@@ -10,8 +10,8 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[3]))
 
 from mesograin.command_line import batch  # noqa: E402
 from mesograin.command_line.batch import DONE, FAILED, USAGE  # noqa: E402
+from mesograin.durations import duration  # noqa: E402
 from mesograin.studies.animation import arguments, emit, watched  # noqa: E402
-from mesograin.studies.comparison.progress import duration  # noqa: E402
 
 NAME = "animate"
 complain = functools.partial(batch.complain, NAME)

@@ -9,7 +9,7 @@ import time
 from pathlib import Path
 
 from ...command_line import batch
-from ..comparison.progress import duration
+from ...durations import duration
 
 COMPARE = Path(__file__).resolve().parents[1] / "comparison" / "command.py"
 

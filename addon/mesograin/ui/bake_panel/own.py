@@ -5,8 +5,8 @@ import threading
 import time
 
 from ... import native_module
+from ...durations import duration
 from ...studies.baking import relightable, relightable_files, surface
-from ...studies.comparison.progress import duration
 
 
 def refusals():

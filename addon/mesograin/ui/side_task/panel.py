@@ -1,7 +1,7 @@
 # How a long task is shown: its settings, the button that starts it or how far it is, and why there is none.
 from ... import compat
+from ...durations import duration
 from ...studies.background import job as jobs
-from ...studies.comparison.progress import duration
 from .. import panels
 
 

@@ -1,6 +1,6 @@
 # How a comparison's result is shown in a panel: its numbers, the verdict, a button for each picture.
+from ...durations import duration
 from ...schema.models import CHOICES
-from ...studies.comparison.progress import duration
 from ...studies.comparison.significance import NO_DIFFERENCE
 from ...studies.comparison.verdict import verdict
 from .. import panels
