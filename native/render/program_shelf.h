@@ -14,9 +14,9 @@ namespace mesograin::render {
 /// Lives on the context's thread.
 class ProgramShelf {
  public:
-  /// A program takes 0.5 to 1.4 MB of a software device (tests/bench/programs.py), so that these take 90 MB at most;
-  /// five materials, told in all their portions, are fifty.
-  static constexpr std::size_t default_limit = 64;
+  /// A program takes 0.5 to 1.4 MB of a software device (tests/bench/programs.py), one of transport more: 4.3 MB in the
+  /// mean of a day's (tests/window/monkey.py), so that these take 100 MB. What is in use stays, however many.
+  static constexpr std::size_t default_limit = 24;
 
   /// The latest samples whose programs stay, however many these are: views take turns.
   static constexpr std::uint64_t in_use = 16;

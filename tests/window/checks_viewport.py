@@ -5,7 +5,7 @@ import math
 import bpy
 import numpy as np
 from mathutils import Quaternion
-from mesograin.engine import engine, status, viewport
+from mesograin.engine import engine, status, viewport, writing
 
 
 def check_viewport_shows_what_the_native_module_renders(window):
@@ -295,6 +295,7 @@ def check_final_render_runs_beside_the_viewport(window):
         bpy.ops.render.render("INVOKE_DEFAULT")
     yield from window.until(lambda: status.get(status.RENDER) is not None and not bpy.app.is_job_running("RENDER"))
     assert status.get(status.RENDER).samples == 8
+    yield from window.until(lambda: not writing.refused())  # Blender 4.3 refuses it until engine/writing.py has looked
     status.clear()
     bpy.context.scene.mesograin.viewport_samples = 4
     bpy.data.materials["Translucent"].mesograin.reflectance = (0.5, 0.5, 0.5)

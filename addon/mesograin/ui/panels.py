@@ -81,10 +81,11 @@ class MESOGRAIN_PT_material(MesograinPanel, bpy.types.Panel):
             self._draw_material_problem(context)
         row = layout.row()  # as wide as the panel: the models' names are long
         row.use_property_split = False
-        row.prop(grain, "model", text="")
         if plain_materials.is_plain(context.material):
+            row.prop_menu_enum(grain, "model", text="Choose a Model")  # by none of which it is drawn
             self._draw_plain(context)
             return
+        row.prop(grain, "model", text="")
         takes = models.CHOICES[grain.model].parameters
         if "sigma_s" in takes:
             self._draw_choice(context)

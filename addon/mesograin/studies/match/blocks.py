@@ -22,9 +22,8 @@ NOISE_GAIN = 36.0
 class Blocks:
     """mask: (h, w) bool, the pixels that count. target: (h, w, 3), linear radiance.
 
-    counts: pixels of each block; weights: (3, n), by which a difference of means is multiplied; noise: (3, n), what the
-    picture's noise makes of the square of that in the mean; tiles: of each block, the number of a larger part of the
-    picture.
+    counts: pixels of each block; weights: (3, n), by which a difference of means is multiplied; tiles: of each block, the
+    number of a larger part of the picture.
     """
 
     def __init__(self, mask, target):
@@ -33,14 +32,13 @@ class Blocks:
         across = -(-width // SIDE)
         names, self._of_pixel, counts = numpy.unique(rows // SIDE * across + columns // SIDE, return_inverse=True,
                                                      return_counts=True)
-        self._places = rows, columns
+        self._mask, self._places = mask, (rows, columns)
         self._kept = counts >= LEAST_SHARE * SIDE**2
         self._all_counts = counts
         self.counts = counts[self._kept]
         self.means = self.of(target)
-        variance = self._noise(mask, target)
-        self.weights = self._weights(variance)
-        self.noise = self.weights**2 * variance
+        self._variance = self._noise(target)
+        self.weights = self._weights(self._variance)
         self.tiles = _tiles(names[self._kept] // across, names[self._kept] % across)
 
     def of(self, picture):
@@ -50,6 +48,11 @@ class Blocks:
     def residuals(self, means):
         """(3, n): differences from the target's means, in units of what they may be off."""
         return (means - self.means) * self.weights
+
+    def noise(self, target, picture):
+        """(3, n): what noise alone makes of the square of a residual in the mean. Whatever of the target the picture
+        shows, too, is no noise: each of many small grains is as rough as that."""
+        return self.weights**2 * numpy.minimum(self._variance, self._noise(target[..., :3] - picture[..., :3]))
 
     def _mean(self, values):
         rows, columns = self._places
@@ -62,9 +65,9 @@ class Blocks:
         allowed = TOLERANCE**2 * (self.means**2 + (DARKEST * typical) ** 2 + 1e-30)
         return numpy.sqrt(self.counts / SIDE**2 / (allowed + variance))
 
-    def _noise(self, mask, target):
+    def _noise(self, target):
         """(3, n): the variance of each mean; that of a block without a whole neighbourhood is the others' mean."""
-        inside = mask.copy()
+        mask, inside = self._mask, self._mask.copy()
         inside[[0, -1]] = inside[:, [0, -1]] = False
         seen = numpy.zeros((*mask.shape, 3))
         for y, row in enumerate(NOISE_MASK):

@@ -269,14 +269,16 @@ class _Search:
     def _found(self, fit):
         medium, native = self._medium, self._native
         blocks = self._blocks
-        noise = blocks.noise * (2.0 if self._corrections else 1.0)  # Cycles' pictures of both have as much
+        coefficients, exposure = medium.coefficients(fit.state), medium.exposure(fit.state)
+        picture = self._subject.picture(self._model, coefficients)
+        picture[..., :3] *= exposure
+        noise = blocks.noise(self._target.pixels, picture)
+        if self._corrections:
+            noise *= 2.0  # Cycles' pictures of both have as much
         spread = certainty.covariance(fit, medium.pattern, blocks.tiles, blocks.means * blocks.weights, noise,
                                       self._smooth_jacobian(fit))
         intervals = {name: [certainty.interval(name, value, deviation) for value, deviation in channels]
                      for name, channels in medium.told(fit.state, spread).items()}
-        coefficients, exposure = medium.coefficients(fit.state), medium.exposure(fit.state)
-        picture = self._subject.picture(self._model, coefficients)
-        picture[..., :3] *= exposure
         return Found(
             model=self._model, coefficients=coefficients, exposure=exposure, intervals=intervals, picture=picture,
             target=self._target.pixels, mask=self._mask,
