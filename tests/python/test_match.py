@@ -266,6 +266,18 @@ def test_noise_is_told_from_shape():
     assert plain.weights == pytest.approx(1.0 / (0.02 * plain.means), rel=0.02)
 
 
+def test_small_grains_are_no_noise():
+    """A picture that is rough from pixel to pixel, and another one of the same with noise."""
+    random = numpy.random.default_rng(4)
+    rough = 2.0 + random.uniform(-1.5, 1.5, size=(64, 64, 1)) * numpy.ones(3)
+    noisy = rough + random.normal(scale=0.2, size=rough.shape)
+    told = blocks.Blocks(numpy.ones((64, 64), bool), noisy)
+    found = numpy.sqrt(told.noise(noisy, rough).mean(axis=1) / (told.weights**2).mean(axis=1))
+    assert found == pytest.approx(0.2 / 8.0, rel=0.1)
+    assert told.noise(noisy, 0.0 * rough) == pytest.approx(told.noise(noisy, 0.0 * rough + 7.0))
+    assert numpy.all(told.noise(noisy, 0.0 * rough) > 4.0 * told.noise(noisy, rough))
+
+
 def test_codes_become_light():
     codes = numpy.zeros((32, 32, 3), numpy.float32)
     codes[:, 16:], codes[16:, :16] = 0.5, 1.0

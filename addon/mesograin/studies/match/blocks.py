@@ -22,8 +22,8 @@ NOISE_GAIN = 36.0
 class Blocks:
     """mask: (h, w) bool, the pixels that count. target: (h, w, 3), linear radiance.
 
-    counts: pixels of each block; weights: (3, n), by which a difference of means is multiplied; tiles: of each block, the
-    number of a larger part of the picture.
+    counts: pixels of each block; weights: (3, n), by which a difference of means is multiplied; tiles: of each block,
+    the number of a larger part of the picture.
     """
 
     def __init__(self, mask, target):
