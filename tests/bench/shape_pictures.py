@@ -1,7 +1,7 @@
 """Makes a folder for shapes.py: the referee's pictures of grains, by shape, radius, index, light and albedo.
 
     shape_pictures.py REFEREE FOLDER [--shapes S ...] [--radii R ...] [--indices ETA ...] [--g G] [--paths N] [--size N]
-                      [--coloured]
+                      [--coloured RED GREEN BLUE]
 
 REFEREE is the program mesograin-referee. What FOLDER holds already is not traced again; manifest.json tells of all.
 A radius is that of the sphere of equal volume, in mean free paths.
@@ -20,7 +20,7 @@ RADIUS = 2.4  # of a sphere; others are as large in their longest direction, abo
 CAMERA = {"position": [0, 0, 6.5], "look_at": [0, 0, 0], "up": [0, 1, 0], "fov_degrees": 45}
 LIGHTS = {"front": [0.5, 0.5, 0.70710678], "side": [0.8, 0.6, 0], "back": [-0.3, 0.4, -0.8660254]}
 ALBEDOS = (0.9, 0.999, 0.5)  # each in a channel of its own
-COLOURED = {"radii": (0.5, 1, 2), "albedos": (0.999, 0.95, 0.6)}  # of the radius asked for
+COLOURED_ALBEDOS = (0.999, 0.95, 0.6)
 
 
 def grid_mesh(places):
@@ -108,8 +108,8 @@ def volume(path):
 def medium(options, radius, size):
     """sigma_s and sigma_a, a channel each."""
     if options.coloured:
-        sigma_t = numpy.array(COLOURED["radii"]) * radius / size
-        albedos = numpy.array(COLOURED["albedos"])
+        sigma_t = numpy.array(options.coloured) * radius / size
+        albedos = numpy.array(COLOURED_ALBEDOS)
     else:
         sigma_t, albedos = numpy.full(3, radius / size), numpy.array(ALBEDOS)
     return (sigma_t * albedos).tolist(), (sigma_t * (1 - albedos)).tolist()
@@ -125,7 +125,7 @@ def make(options, shape, radius, eta, light):
         geometry, size = {"shape": "mesh", "file": str(file)}, (0.75 * volume(file) / numpy.pi) ** (1 / 3)
     sigma_s, sigma_a = medium(options, radius, size)
     name = f"{shape}_e{eta:g}_R{radius:g}" + (f"_g{options.g:g}" if options.g else "") + \
-        ("_coloured" if options.coloured else "") + f"_{light}"
+        ("_coloured" + "_".join(f"{each:g}" for each in options.coloured) if options.coloured else "") + f"_{light}"
     picture = options.folder / f"{name}.exr"
     if not picture.exists():
         described = options.folder / f"{name}.json"
@@ -157,7 +157,8 @@ def main():
     parser.add_argument("--radii", nargs="+", type=float, default=[1, 3, 10])
     parser.add_argument("--indices", nargs="+", type=float, default=[1.3, 1.5], metavar="ETA")
     parser.add_argument("--g", type=float, default=0.0)
-    parser.add_argument("--coloured", action="store_true", help="red, green and blue of unlike extinction")
+    parser.add_argument("--coloured", nargs=3, type=float, metavar=("RED", "GREEN", "BLUE"),
+                        help="red, green and blue are so many times the radius asked for, of unlike albedo")
     parser.add_argument("--paths", type=int, default=256, help="for a pixel (default: 256)")
     parser.add_argument("--size", type=int, default=96, help="pixels on a side (default: 96)")
     parser.add_argument("--threads", type=int, default=0, help="(default: all cores)")
