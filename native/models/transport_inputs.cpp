@@ -20,6 +20,7 @@ namespace {
 using transport::StoredTransport;
 
 constexpr int terms_a_texel = 4;
+constexpr int fewest_terms = 16;
 
 // What is divided by is not 0.
 constexpr double least_albedo = 1e-9;
@@ -77,20 +78,31 @@ void add_forward(const scene::Material& material, const StoredTransport& stored,
   add_peak(g, inputs);
 }
 
-// A block of nodes for each texel's terms (a grey medium) or for each term, one behind the other along z.
+// Each block is four terms of a channel, a component each.
+struct Blocks {
+  explicit Blocks(const StoredTransport& stored)
+      : channels(stored.channels), a_channel(stored.terms / terms_a_texel), count(channels * a_channel) {}
+
+  // What `stored` holds of some place, of so many that each term has, or of some direction.
+  std::size_t index(int block, int component, std::size_t places, std::size_t place) const {
+    const auto term = static_cast<std::size_t>(block % a_channel * terms_a_texel + component);
+    return (term * places + place) * static_cast<std::size_t>(channels) + static_cast<std::size_t>(block / a_channel);
+  }
+
+  int channels;
+  int a_channel;
+  int count;
+};
+
+// Blocks of nodes, one behind the other along z.
 Volume sources_volume(const StoredTransport& stored) {
-  const bool grey = stored.channels == 1;
-  const int blocks = grey ? stored.terms / terms_a_texel : stored.terms;
-  const int components = grey ? terms_a_texel : 3;
-  Volume volume{stored.size.x, stored.size.y, stored.size.z * blocks, components, {}};
-  volume.texels.reserve(stored.nodes() * static_cast<std::size_t>(blocks * components));
-  for (int block = 0; block < blocks; ++block)
+  const Blocks blocks(stored);
+  Volume volume{stored.size.x, stored.size.y, stored.size.z * blocks.count, terms_a_texel, {}};
+  volume.texels.reserve(stored.nodes() * static_cast<std::size_t>(blocks.count * terms_a_texel));
+  for (int block = 0; block < blocks.count; ++block)
     for (std::size_t node = 0; node < stored.nodes(); ++node)
-      for (int component = 0; component < components; ++component) {
-        const auto term = static_cast<std::size_t>(grey ? block * terms_a_texel + component : block);
-        const std::size_t index = term * stored.nodes() + node;
-        volume.texels.push_back(stored.sources[grey ? index : 3 * index + static_cast<std::size_t>(component)]);
-      }
+      for (int component = 0; component < terms_a_texel; ++component)
+        volume.texels.push_back(stored.sources[blocks.index(block, component, stored.nodes(), node)]);
   return volume;
 }
 
@@ -117,16 +129,13 @@ Volume slopes_volume(const StoredTransport& stored) {
   return volume;
 }
 
-// Octahedral maps, one below the other, each with a frame of the texels across its edges: four terms a texel (a grey
-// medium) or the three channels of a term.
+// Octahedral maps, one below the other, each with a frame of the texels across its edges.
 Volume lobes_volume(const StoredTransport& stored) {
   constexpr int side = transport::octahedron_side;
   constexpr int framed = side + 2;
-  const bool grey = stored.channels == 1;
-  const int blocks = grey ? stored.terms / terms_a_texel : stored.terms;
-  const int components = grey ? terms_a_texel : 3;
-  Volume maps{framed, framed * blocks, 1, components, {}};
-  for (int block = 0; block < blocks; ++block)
+  const Blocks blocks(stored);
+  Volume maps{framed, framed * blocks.count, 1, terms_a_texel, {}};
+  for (int block = 0; block < blocks.count; ++block)
     for (int y = -1; y <= side; ++y)
       for (int x = -1; x <= side; ++x) {
         // Beyond an edge the map goes on mirrored about that edge's middle.
@@ -139,11 +148,9 @@ Volume lobes_volume(const StoredTransport& stored) {
           v = v < 0 ? 0 : side - 1;
           u = side - 1 - u;
         }
-        for (int component = 0; component < components; ++component) {
-          const int index = grey ? ((block * terms_a_texel + component) * side + v) * side + u
-                                 : ((block * side + v) * side + u) * 3 + component;
-          maps.texels.push_back(stored.lobes[static_cast<std::size_t>(index)]);
-        }
+        const auto texel = static_cast<std::size_t>(v * side + u);
+        for (int component = 0; component < terms_a_texel; ++component)
+          maps.texels.push_back(stored.lobes[blocks.index(block, component, transport::octahedron_texels, texel)]);
       }
   return maps;
 }
@@ -197,8 +204,7 @@ MaterialInputs prototype_inputs(const scene::Material& material, const StoredTra
   if (stored.mean_chord * std::min({unscattered.r, unscattered.g, unscattered.b}) <
       (stored.has_unscattered ? most_clear : most_clear_straight))
     inputs.defines.emplace_back("CLEAR");
-  const int fewest = stored.channels == 1 ? 16 : stored.has_unscattered ? 8 : 10;
-  if (stored.terms > fewest) inputs.defines.emplace_back("MANY_TERMS");
+  if (stored.terms > fewest_terms) inputs.defines.emplace_back("MANY_TERMS");
   inputs.uniforms["stored.x_axis"] = stored.axes[0];
   inputs.uniforms["stored.y_axis"] = stored.axes[1];
   inputs.uniforms["stored.z_axis"] = stored.axes[2];

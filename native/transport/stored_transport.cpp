@@ -22,12 +22,7 @@ constexpr int surplus = 8;
 // Terms that the light is solved for; fewer of them are stored.
 constexpr int solved_terms = 48;
 
-int stored_terms(const StoredMedium& medium, const Quality& quality) {
-  const int grey = quality.many_terms ? 24 : 16;
-  if (medium.grey()) return grey;
-  // Where nothing refracts there is less to tell, whose every channel shows.
-  return medium.eta != 1.0 ? grey / 2 : quality.many_terms ? 16 : 10;
-}
+int stored_terms(const Quality& quality) { return quality.many_terms ? 24 : 16; }
 
 /// A few functions of the direction, and how much of each is in every row.
 struct Terms {
@@ -134,7 +129,7 @@ StoredTransport compute_transport(Walks& walks, const StoredMedium& medium, cons
                          .unit = body.unit(),
                          .axes = glm::mat3(glm::transpose(body.axes())),
                          .mean_chord = 4.0 * body.volume() / body.area(),  // Cauchy
-                         .terms = stored_terms(medium, walks.quality()),
+                         .terms = stored_terms(walks.quality()),
                          .channels = medium.grey() ? 1 : 3,
                          .convex = body.convex(),
                          .has_unscattered = medium.eta != 1.0,

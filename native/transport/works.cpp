@@ -17,22 +17,16 @@ namespace {
 // A fifth of a second on two cores, a few per cent from the final answer.
 constexpr Quality coarse{.nodes = 1500, .light_across = 10, .way_across = 8};
 
-// Half a megabyte of the device's memory for each prototype.
-Quality of_thin(const StoredMedium& medium) { return {.nodes = medium.grey() ? 6600 : 3000}; }
+// A third of a megabyte of the device's memory for each prototype, and as much for each channel where they differ: one
+// beside others is as near as alone (docs/shapes.md).
+constexpr Quality thin{};
 
 // The terminator of a thick grain is sharp, and what is dark beside it shows the noise of few rays and the lack of
-// products (docs/shapes.md).
-Quality of_thick(const StoredMedium& medium) {
-  Quality quality = of_thin(medium);
-  quality.light_across = 96;
-  quality.spacing = Spacing::nearer_across;
-  return quality;
-}
+// products.
+constexpr Quality thick{.light_across = 96, .spacing = Spacing::nearer_across};
 
 // The light changes within ways that are short beside the grain, and nodes are worth more than products.
-Quality of_thickest(const StoredMedium& medium) {
-  return {.nodes = medium.grey() ? 10500 : 5500, .light_across = 96, .many_terms = false};
-}
+constexpr Quality thickest{.nodes = 10500, .light_across = 96, .many_terms = false};
 
 double densest(const StoredMedium& medium) { return std::max({medium.sigma_t.r, medium.sigma_t.g, medium.sigma_t.b}); }
 
@@ -42,9 +36,8 @@ constexpr double thickest_spacing = 1.25;
 
 /// `medium` is per unit of the body.
 Quality fine(const Body& body, const StoredMedium& medium) {
-  const Quality thin = of_thin(medium);
   const double spacing = densest(medium) * node_spacing(body, thin);
-  return spacing < thick_spacing ? thin : spacing < thickest_spacing ? of_thick(medium) : of_thickest(medium);
+  return spacing < thick_spacing ? thin : spacing < thickest_spacing ? thick : thickest;
 }
 
 // Mean free paths between nodes beyond which the light just below the surface is not resolved.
@@ -103,8 +96,7 @@ std::shared_ptr<const Computation> Works::ask(Order order) {
   Job job{std::move(order), {}, {}, {}, computation};
   job.about_body = describe_body(job.order);
   remember(job.about_body, computation);
-  job.about = job.about_body + describe(job.order.medium) + describe(of_thin(job.order.medium)) +
-              describe(of_thick(job.order.medium)) + describe(of_thickest(job.order.medium)) +
+  job.about = job.about_body + describe(job.order.medium) + describe(thin) + describe(thick) + describe(thickest) +
               fmt::format("thick: {} {}\n", thick_spacing, thickest_spacing);
   Digest digest;
   digest.add(job.about);

@@ -20,40 +20,30 @@ uniform Stored stored;
 uniform mat3 grain_to_prototype;  // a turn
 #endif
 
-#ifdef GREY
-#define Spectrum float
-#define SPECTRUM(value) (value).r
 #ifdef MANY_TERMS
 const int TERMS = 24;
 #else
 const int TERMS = 16;
 #endif
+#ifdef GREY
+#define Spectrum float
+#define SPECTRUM(value) (value).r
+const int CHANNELS = 1;
 #else
 #define Spectrum vec3
 #define SPECTRUM(value) (value).rgb
-#if defined(REFRACTION) && defined(MANY_TERMS)
-const int TERMS = 12;
-#elif defined(REFRACTION)
-const int TERMS = 8;
-#elif defined(MANY_TERMS)
-const int TERMS = 16;
-#else
-const int TERMS = 10;
-#endif
+const int CHANNELS = 3;
 #endif
 
-// Terms of the source function: of the place, blocks of nodes behind one another; of the light's direction, octahedral maps with frames below
-// one another, four terms a texel or three channels.
+// Terms of the source function, four a texel, channel by channel: of the place, blocks of nodes behind one another; of the light's direction,
+// octahedral maps with frames below one another.
 uniform sampler3D sources;
 uniform sampler3D lobes;  // one texel deep
 
-#ifdef GREY
-const int LOBE_TEXELS = TERMS / 4;
-#else
-const int LOBE_TEXELS = TERMS;
-#endif
+const int CHANNEL_TEXELS = TERMS / 4;
+const int LOBE_TEXELS = CHANNELS * CHANNEL_TEXELS;
 
-// Four terms of a grey medium, or three channels of one term, where light comes from there.
+// Four terms of a channel, where light comes from there.
 vec4 lobe_texel(vec3 to_light, int number) {
   vec2 square = to_light.xy / (abs(to_light.x) + abs(to_light.y) + abs(to_light.z));
   vec2 side = vec2(square.x < 0.0 ? -1.0 : 1.0, square.y < 0.0 ? -1.0 : 1.0);

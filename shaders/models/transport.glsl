@@ -8,7 +8,7 @@
 //   WALKED               light scatters forwards: what similarity does not tell is found by walks
 //   CONVEX               no line leaves the grain and enters it again
 //   MANY_TERMS           more of them: the grain is not of the thickest
-//   GREY                 red, green and blue are the same medium: a texel of `sources` holds four terms, else one in three colours
+//   GREY                 red, green and blue are the same medium, of which one is stored
 //   SUMMED               the products were summed for each light beforehand (passes/sum_products.comp), and where light is refracted and walked,
 //                        what is unscattered was found (passes/unscattered_light.comp)
 //   TOGETHER             and for all lights together, nothing standing in their way
@@ -51,6 +51,19 @@ void look_up(vec3 to_light, int light) {
 #endif
 }
 
+#ifndef SUMMED
+// Of one channel, at a texel's middle of `size`.
+float channel_at(vec3 node, vec3 size, int channel) {
+  vec3 scale = 1.0 / vec3(size.xy, size.z * float(LOBE_TEXELS));
+  float sum = 0.0;
+  for (int i = 0; i < CHANNEL_TEXELS; ++i) {
+    int block = channel * CHANNEL_TEXELS + i;
+    sum += dot(texture(sources, vec3(node.xy, node.z + float(block) * size.z) * scale), lobe[block]);
+  }
+  return sum;
+}
+#endif
+
 // Radiance that a mean free path of the medium adds, per irradiance of the light that was looked up; TOGETHER: of all.
 Radiance source_at(vec3 place) {
   vec3 size = stored.last_node + 1.0;
@@ -60,16 +73,11 @@ Radiance source_at(vec3 place) {
 #elif defined(SUMMED)
   Spectrum sum = SPECTRUM(texture(summed, vec3(node.xy, node.z + float(looked_up_light) * size.z) / vec3(textureSize(summed, 0))));
 #else
-  vec3 scale = 1.0 / vec3(size.xy, size.z * float(LOBE_TEXELS));
-  Spectrum sum = Spectrum(0.0);
-  for (int block = 0; block < LOBE_TEXELS; ++block) {
-    vec4 texel = texture(sources, vec3(node.xy, node.z + float(block) * size.z) * scale);
 #ifdef GREY
-    sum += dot(texel, lobe[block]);
+  Spectrum sum = channel_at(node, size, 0);
 #else
-    sum += texel.rgb * lobe[block].rgb;
+  Spectrum sum = vec3(channel_at(node, size, 0), channel_at(node, size, 1), channel_at(node, size, 2));
 #endif
-  }
 #endif
   sum = max(sum, Radiance(0.0));
 #ifndef REFRACTION
@@ -86,26 +94,70 @@ Radiance source_at(vec3 place) {
   return sum;
 }
 
+#ifdef GREY
+const int FIRST_TAPS = 6;
+const int FURTHER_TAPS = 3;
+
 // What is sent towards the beginning of a piece of a way through the grain.
 Radiance march(vec3 place, vec3 direction, float way, int taps) {
-  Spectrum sigma_t = SPECTRUM(stored.sigma_t);
-  float mean_sigma_t = (stored.sigma_t.r + stored.sigma_t.g + stored.sigma_t.b) / 3.0;
-  float thickness = mean_sigma_t * way;
+  float sigma_t = stored.sigma_t.r;
+  float thickness = sigma_t * way;
   float within = thickness > 1e-3 ? 1.0 - exp(-thickness) : thickness;
   Radiance radiance = Radiance(0.0);
-  Spectrum passed = Spectrum(1.0);
+  float passed = 1.0;
   for (int i = 0; i < taps; ++i) {
     // Intervals in each of which as much is scattered.
     float middle = (float(i) + 0.5) / float(taps);
     float end = (float(i) + 1.0) / float(taps);
-    float at = thickness > 1e-3 ? -log(1.0 - middle * within) / mean_sigma_t : middle * way;
-    float until = i + 1 == taps ? way : thickness > 1e-3 ? -log(1.0 - end * within) / mean_sigma_t : end * way;
-    Spectrum left = exp(-sigma_t * until);
+    float at = thickness > 1e-3 ? -log(1.0 - middle * within) / sigma_t : middle * way;
+    float until = i + 1 == taps ? way : thickness > 1e-3 ? -log(1.0 - end * within) / sigma_t : end * way;
+    float left = exp(-sigma_t * until);
     radiance += (passed - left) * source_at(place + at * direction);
     passed = left;
   }
   return radiance;
 }
+#else
+#ifdef REFRACTION
+const int FIRST_TAPS = 8;
+#else
+const int FIRST_TAPS = 10;
+#endif
+const int FURTHER_TAPS = 3;
+
+// The same for three channels, which see unlike depths: intervals in each of which, in the mean of the channels, as large a share of what they see
+// is scattered; within each the source is a constant and what grows as light from beyond does.
+vec3 march(vec3 place, vec3 direction, float way, int taps) {
+  vec3 sigma_t = stored.sigma_t;
+  float whole = max(way, 1e-6);
+  vec3 rates = max(sigma_t, vec3(1e-3 / whole));
+  vec3 shares = 1.0 / (3.0 * (1.0 - exp(-rates * whole)));
+  vec3 radiance = vec3(0.0);
+  vec3 passed = vec3(1.0);
+  vec3 before = source_at(place);
+  float from = 0.0;
+  for (int i = 1; i <= taps; ++i) {
+    // The share grows ever more slowly: steps of Newton's method do not go too far.
+    float until = from;
+    for (int turn = 0; turn < 2; ++turn) {
+      vec3 beyond = exp(-rates * until);
+      until += max(float(i) / float(taps) - dot(shares, 1.0 - beyond), 0.0) / dot(shares, rates * beyond);
+    }
+    until = i == taps ? way : min(until, way);
+    vec3 source = source_at(place + until * direction);
+    vec3 thickness = sigma_t * (until - from);
+    vec3 left = exp(-thickness);
+    // What the source at the interval's end counts.
+    vec3 late = mix((thickness - 1.0 + left) * left / max(1.0 - left, vec3(1e-6)), thickness * (0.5 - thickness * (5.0 / 12.0 - thickness / 6.0)),
+                    lessThan(thickness, vec3(0.05)));
+    radiance += passed * ((1.0 - left - late) * before + late * source);
+    passed *= left;
+    before = source;
+    from = until;
+  }
+  return radiance;
+}
+#endif
 
 float largest(Spectrum value) {
 #ifdef GREY
@@ -166,7 +218,8 @@ void follow(vec3 place, vec3 direction) {
 
 Radiance radiance_inside() {
   Radiance sum = Radiance(0.0);
-  for (int i = 0; i < piece_count; ++i) sum += pieces[i].left * march(pieces[i].place, pieces[i].direction, pieces[i].way, i == 0 ? 6 : 3);
+  for (int i = 0; i < piece_count; ++i)
+    sum += pieces[i].left * march(pieces[i].place, pieces[i].direction, pieces[i].way, i == 0 ? FIRST_TAPS : FURTHER_TAPS);
 #ifdef REFRACTION
   if (largest(beyond) > 0.0) sum += beyond * source_at(last_place);
 #endif

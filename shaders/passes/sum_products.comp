@@ -27,18 +27,22 @@ void take_lobe(int light) {
   barrier();
 }
 
-// Under the light whose lobe was taken. Channels of a grey medium are the same.
-vec3 source_of(ivec3 place, int planes) {
-  vec3 sum = vec3(0.0);
-  for (int block = 0; block < LOBE_TEXELS; ++block) {
-    vec4 texel = texelFetch(sources, ivec3(place.xy, place.z + block * planes), 0);
-#ifdef GREY
-    sum += dot(texel, lobe[block]);
-#else
-    sum += texel.rgb * lobe[block].rgb;
-#endif
+float channel_of(ivec3 place, int planes, int channel) {
+  float sum = 0.0;
+  for (int i = 0; i < CHANNEL_TEXELS; ++i) {
+    int block = channel * CHANNEL_TEXELS + i;
+    sum += dot(texelFetch(sources, ivec3(place.xy, place.z + block * planes), 0), lobe[block]);
   }
   return sum;
+}
+
+// Under the light whose lobe was taken. Channels of a grey medium are the same.
+vec3 source_of(ivec3 place, int planes) {
+#ifdef GREY
+  return vec3(channel_of(place, planes, 0));
+#else
+  return vec3(channel_of(place, planes, 0), channel_of(place, planes, 1), channel_of(place, planes, 2));
+#endif
 }
 
 void main() {
