@@ -100,6 +100,35 @@ def test_a_thick_grain_agrees_with_both_walks_of_cycles(tmp_path):
         assert abs(case["metrics"]["bias"] - 1.0) < 0.01
 
 
+def add_ground(colour):
+    bpy.ops.mesh.primitive_plane_add(size=40.0, location=(0.0, 0.0, -2.5))
+    material = bpy.data.materials.new("Ground")
+    material.use_nodes = True
+    material.node_tree.nodes.clear()
+    diffuse = material.node_tree.nodes.new("ShaderNodeBsdfDiffuse")
+    diffuse.inputs["Color"].default_value = (*colour, 1.0)
+    output = material.node_tree.nodes.new("ShaderNodeOutputMaterial")
+    material.node_tree.links.new(diffuse.outputs[0], output.inputs["Surface"])
+    bpy.context.object.data.materials.append(material)
+
+
+def test_a_ground_stays_what_it_is_beside_grains_and_does_not_count(tmp_path, native):
+    make_sphere([((0.6, 0.0, 1.0), 4.0)], sigma_a=(0.05, 0.1, 0.2), sigma_s=(1.95, 1.9, 1.8), model="model_3")
+    add_ground((0.8, 0.1, 0.1))
+    [case] = compare(tmp_path, models=("model_3",), size=(64, 64), samples=16, reference_samples=64,
+                     exchange="order_1", settings={"scale": 1.0})["cases"]
+    assert case["status"] == "done" and case["material"]["Ground"]["model"] == "lambert"
+    theirs, ours, mask = (native.read_exr(tmp_path / "out" / case["files"][name])[0]
+                          for name in ("reference", "model", "mask"))
+    corner = theirs[:6, :6, :3].mean(axis=(0, 1))
+    np.testing.assert_allclose(ours[:6, :6, :3].mean(axis=(0, 1)), corner, rtol=0.05)
+    assert corner[0] > 5.0 * corner[1] > 0.0  # the ground is red in both
+    across = np.hypot(*(np.mgrid[:64, :64] - 31.5))
+    assert mask[across > 30.0].max() == 0.0 and mask[across < 24.0].min() == 1.0
+    # What the ground throws onto the grain is in both, so the numbers are what they are of a grain alone.
+    assert case["metrics"]["relative_l1_blocks"] < 0.08 and abs(case["metrics"]["bias"] - 1.0) < 0.04
+
+
 def test_a_failing_case_is_recorded_and_the_others_go_on(tmp_path):
     make_sphere(SUNS, segments=16, rings=8, roughness=0.0)
     found = compare(tmp_path, size=(16, 16))

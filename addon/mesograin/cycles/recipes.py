@@ -211,6 +211,11 @@ def _coverage(values, features):
     return _recipe({"Emission": _emission()}, surface=("Emission", "Emission"))
 
 
+def _holdout(values, features):
+    node = {"type": "ShaderNodeHoldout", "properties": {}, "inputs": {}, "optional": {}}
+    return _recipe({"Holdout": node}, surface=("Holdout", "Holdout"))
+
+
 def _vector_math(operation, *vectors):
     """Vectors by the number of their socket; those that are left out are linked or not used by the operation."""
     inputs = dict(zip((0, 1, 2), (*vectors, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))))
@@ -263,6 +268,7 @@ _RECIPES = {
     "volume_lambert": _volume_lambert,
     "dielectric_specular": _dielectric_specular,
     "coverage": _coverage,
+    "holdout": _holdout,
     "normal": _normal,
     "mirrored": _mirrored,
 }

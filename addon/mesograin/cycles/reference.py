@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy
 
-from ..scene import export, meshes
-from . import kinds, nodes, photon, shot
+from ..scene import export
+from . import beside, kinds, nodes, photon, shot
 from .limits import limits
 from .shot import PROVENANCE, ReferenceError
 
@@ -67,7 +67,7 @@ class Sampling:
         self._unwrapping = unwrapping
         if unwrapping and not self.kind.has_texture:
             raise ReferenceError(f"The reference {kind} is a picture and has no texture: choose another.")
-        self.notes = _check(depsgraph, self.kind, self._overrides)
+        self._staying, self.notes = _check(depsgraph, self.kind, self._overrides)
         self._coverage = None
         self._shots = {}
 
@@ -78,7 +78,8 @@ class Sampling:
         """
         tell = on_progress or (lambda fraction: None)
         missing = [seed for seed in dict.fromkeys(seeds) if seed not in self._shots]
-        first = self.kind.coverage_pass and not self._unwrapping and self._coverage is None
+        covered = self.kind.coverage_pass or bool(self._staying)
+        first = covered and not self._unwrapping and self._coverage is None
         steps = len(missing) + first
         for step, seed in enumerate(missing):
             self._shots[seed] = self._take(self.kind, self.samples, seed, _part(tell, step, steps))
@@ -104,7 +105,7 @@ class Sampling:
 
     def _take(self, kind, samples, seed, on_progress):
         given = (self._depsgraph, kind, self._size, samples, seed, self._cache, self._overrides, on_progress)
-        return photon.take(*given) if kind.referee else shot.take(*given, self._unwrapping)
+        return photon.take(*given) if kind.referee else shot.take(*given, self._unwrapping, self._staying)
 
     def geometry(self):
         """(normal, way to the viewer mirrored at it), each (h, w, 3) float32 in world space, means over the pixel."""
@@ -128,17 +129,14 @@ def _part(tell, step, steps):
 
 
 def _check(depsgraph, kind, overrides):
-    """Raises ReferenceError for the first material that Cycles cannot render; returns what it can only approximate."""
-    materials = {}
+    """(beside.stays, sentences on what Cycles can only approximate). Raises ReferenceError for the first material that
+    it cannot render."""
     for instance in depsgraph.object_instances:
         if instance.show_self and instance.object.type == "POINTCLOUD":
             raise ReferenceError(f"Object '{instance.object.name}' is a point cloud, which a reference cannot show: "
                                  "hide it, or put an instance on each of its points.")
-        # Blender 3.4 crashes at the slots of an object that can have none.
-        drawn = instance.show_self and meshes.is_drawn(instance.object, instance.matrix_world)
-        for slot in instance.object.material_slots if drawn else ():
-            if slot.material:
-                materials[slot.material.name_full] = slot.material.original
+    materials = beside.drawn_materials(depsgraph)
+    staying = beside.stays(kind, materials)
     notes = []
     suns = [instance.object.data.angle for instance in depsgraph.object_instances
             if instance.show_self and export.is_sun(instance.object)]
@@ -152,10 +150,10 @@ def _check(depsgraph, kind, overrides):
     if kind.smooth_interface and not suns:
         raise ReferenceError(f"The reference {kind.name} is measured by the strongest sun, and there is no visible "
                              "sun: add one, or choose another reference.")
-    for name, material in sorted(materials.items()):
+    for name, material in sorted((name, each) for name, each in materials.items() if each and name not in staying):
         for limit in limits(shot.grain_values(depsgraph, overrides, material), kind.recipe):
             sentence = f"Material '{name}': {limit.sentence}"
             if limit.fatal:
                 raise ReferenceError(sentence)
             notes.append(sentence)
-    return tuple(notes)
+    return staying, tuple(notes)

@@ -12,7 +12,7 @@ import numpy
 
 from .. import native_module
 from ..scene import export
-from . import fingerprint, nodes, passes, recipes, settings
+from . import beside, fingerprint, nodes, passes, recipes, settings
 from .console import Console
 from .grain_values import GrainValues
 from .stage import Stage
@@ -40,13 +40,22 @@ def grain_values(depsgraph, overrides, material):
     return GrainValues.from_parameters({**parameters, **overrides})
 
 
+def _recipe(depsgraph, kind, overrides, material, staying):
+    if material is None or material.name_full not in staying:
+        return recipes.recipe(kind.recipe, grain_values(depsgraph, overrides, material), nodes.features())
+    parameters = dict(export.material_values(material, depsgraph.scene.mesograin.millimetres_per_unit).values)
+    name = beside.recipe_name(kind, parameters["model"])
+    return recipes.recipe(name, GrainValues.from_parameters(parameters), nodes.features())
+
+
 def take(
-    depsgraph, kind, size, samples, seed, cache=None, overrides=None, on_progress=None, unwrapping=None
+    depsgraph, kind, size, samples, seed, cache=None, overrides=None, on_progress=None, unwrapping=None,
+    staying=frozenset()
 ):
     """One image of one seed, from the cache or rendered into it: a Shot.
 
-    kind: kinds.Kind. unwrapping: `unwrapping.Unwrapping` for a baked texture instead of a picture. The rest as
-    in `reference.Sampling`. Raises ReferenceError, StageError or native.Error.
+    kind: kinds.Kind. unwrapping: `unwrapping.Unwrapping` for a baked texture instead of a picture. staying: of
+    `beside.stays`. The rest as in `reference.Sampling`. Raises ReferenceError, StageError or native.Error.
     """
     on_progress = on_progress or (lambda fraction: None)
     native = native_module.get()
@@ -55,7 +64,7 @@ def take(
     used = {}
 
     def build(material):
-        recipe = recipes.recipe(kind.recipe, grain_values(depsgraph, overrides or {}, material), nodes.features())
+        recipe = _recipe(depsgraph, kind, overrides or {}, material, staying)
         made = nodes.build("Mesograin reference", recipe)
         used[made.name] = recipe
         return made

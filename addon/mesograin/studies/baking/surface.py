@@ -203,7 +203,7 @@ def _instances(scene, name):
 
 
 def _with(material, overrides):
-    return export.MaterialValues(material.name, tuple({**dict(material.values), **overrides}.items()))
+    return dataclasses.replace(material, values=tuple({**dict(material.values), **overrides}.items()))
 
 
 def _picture_size(scene):

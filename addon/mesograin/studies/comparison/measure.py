@@ -85,7 +85,7 @@ def measure(case, chosen, request, depsgraph, size, overrides, ours, progress):
     verdict, scores = significance.test(images, theirs.images, mask)
     control = None
     if request.controls:
-        materials = ours.parameters(chosen)
+        materials = ours.parameters(chosen, sampling.kind.direct)
         control = controls.test(case, request, depsgraph, size, overrides, materials, theirs, mask, progress)
     if sampling.kind.smooth_interface:
         shape = profile.profile(image, theirs.images, mask, normals, suns[0][0])

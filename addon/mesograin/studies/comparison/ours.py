@@ -34,11 +34,11 @@ class Ours:
         self._camera = export.camera_from_scene(depsgraph, *size, sharp=True)
         self.warnings = scene.warnings
 
-    def parameters(self, chosen):
+    def parameters(self, chosen, direct=False):
         """{material name: {parameter: value}} as a case renders them; where objects of a material are given several
-        models, it has all their names. chosen: {parameter: value} of the case."""
+        models, it has all their names. chosen, direct: as `begin` takes them."""
         found = {}
-        scene = self._scene.with_materials(lambda material: self._material(material, chosen))
+        scene = self._with(chosen, direct)
         for material in scene.with_models_chosen().materials:
             values = dict(material.values)
             known = found.setdefault(material.name, values)
@@ -46,9 +46,18 @@ class Ours:
                 known["model"] += f", {values['model']}"
         return found
 
-    def _material(self, material, chosen):
-        values = {**dict(material.values), **self._overrides, **chosen}
-        return export.MaterialValues(material.name, tuple(values.items()))
+    def _with(self, chosen, direct):
+        """What is no grain stays what it is beside grains, in the comparison's mean colour, as `cycles.beside` has it
+        of the other side; under direct light alone it is what the kind of reference asks of everything."""
+        mixed = not direct and not all(material.plain for material in self._scene.materials)
+
+        def change(material):
+            if mixed and material.plain:
+                return material
+            values = {**dict(material.values), **self._overrides, **chosen}
+            return export.MaterialValues(material.name, tuple(values.items()))
+
+        return self._scene.with_materials(change)
 
     @property
     def samples(self):
@@ -71,8 +80,7 @@ class Ours:
         """Starts a picture without samples. chosen: the case's choice of parameters. least_sun: radians; narrower suns
         are widened to this. taps: of model 3, for each sample; None as they were. direct: without light between
         grains."""
-        changed = self._scene.with_materials(lambda material: self._material(material, chosen))
-        scene = dataclasses.replace(changed, lights=self._lights(least_sun),
+        scene = dataclasses.replace(self._with(chosen, direct), lights=self._lights(least_sun),
                                     exchange="off" if direct else self._scene.exchange).to_native()
         self._views = self._all_views
         for view in self._views:

@@ -97,7 +97,7 @@ class _Comparison:
             "reference_title": case.kind.title,
             "part": case.part or "whole",
             "boundary": chosen.get("boundary", ""),
-            "material": self._materials(chosen),
+            "material": self._materials(case, chosen),
             "versions": origin.versions(),
             "status": "done",
         }
@@ -121,15 +121,16 @@ class _Comparison:
         ours = {
             "model": case.model,
             "samples": found.numbers["samples"],
-            "materials": self._materials(chosen),
+            "materials": self._materials(case, chosen),
             "units": "coefficients per scene unit; pixels are linear radiance, alpha is coverage, premultiplied",
             "device": native_module.get().device_info()["renderer"],
         }
         common = {"scene": origin.scene_name(), "created_by": self.request.command}
         return {**found.numbers, **pictures.write(case, found, self.output, common, ours)}
 
-    def _materials(self, chosen):
-        return {name: controls.plain(values) for name, values in self.ours.parameters(chosen).items()}
+    def _materials(self, case, chosen):
+        found = self.ours.parameters(chosen, case.kind.direct)
+        return {name: controls.plain(values) for name, values in found.items()}
 
 
 def _size(scene):

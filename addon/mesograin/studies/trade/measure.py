@@ -120,7 +120,7 @@ def _measure(request, depsgraph, progress):
             "exchange": ours.exchange,
         },
         "definitions": {**DEFINITIONS, **{name: definitions.definition(name) for name in METRICS}},
-        "material": ours.parameters(chosen),
+        "material": ours.parameters(chosen, kind.direct),
         "reference": {
             "kind": kind.name,
             "title": kind.title,
