@@ -49,12 +49,13 @@ def page():
             lines += table(("value", "meaning"),
                            [(f"`{choice.name}`", text(choice.sentence)) for choice in parameter.choices])
     lines += ["## Of a scene", "",
-              "A key of a scene's JSON and of `native.Scene`, `--exchange` of the commands, a switch in the render "
-              "panel.", ""]
+              "Keys of a scene's JSON and of `native.Scene`, in the render panel; the first is `--exchange` of the "
+              "commands.", ""]
     for name, parameter in SCENE.items():
         lines += [f"`{name}`, by default `{shown(parameter)}`. {text(parameter.sentence, parameter.note)}", ""]
-        lines += table(("value", "meaning"),
-                       [(f"`{choice.name}`", text(choice.sentence)) for choice in parameter.choices])
+        if parameter.choices:
+            lines += table(("value", "meaning"),
+                           [(f"`{choice.name}`", text(choice.sentence)) for choice in parameter.choices])
     lines += ["## Models", ""]
     lines += table(("model", "meaning", "parameters that it reads"),
                    [(f"`{model.name}`", text(model.sentence), _parameters(model)) for model in CHOICES.values()])

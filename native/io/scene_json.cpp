@@ -198,9 +198,10 @@ Camera read_camera(const Node& node, double aspect) {
 
 SceneFile read(const Json& json, const std::filesystem::path& folder, const SceneChoices& choices) {
   const Node root(json, "");
-  root.require_object(std::array<std::string_view, 10>{"geometry", "camera", "resolution", "lights", "world",
-                                                       "material", "instances", "objects", "materials", "exchange"},
-                      provenance_keys);
+  root.require_object(
+      std::array<std::string_view, 11>{"geometry", "camera", "resolution", "lights", "world", "material", "instances",
+                                       "objects", "materials", "exchange", "denoise"},
+      provenance_keys);
   SceneFile file;
   file.width = choices.width;
   file.height = choices.height;
@@ -216,6 +217,7 @@ SceneFile read(const Json& json, const std::filesystem::path& folder, const Scen
     file.scene.exchange = *choices.exchange;
   else if (root.has("exchange"))
     file.scene.exchange = at(root["exchange"], [&] { return parse_choice<Exchange>(root["exchange"].text()); });
+  if (root.has("denoise")) file.scene.denoise = root["denoise"].boolean();
   read_objects(root, folder, choices, file.scene);
   if (choices.automatic) choose_models(file.scene);
   file.camera = read_camera(root["camera"], static_cast<double>(file.width) / file.height);

@@ -143,6 +143,7 @@ void write_scene(const std::filesystem::path& path, const SceneFile& file) {
             {"resolution", {file.width, file.height}},
             {"world", writer.world(file.scene.world)},
             {"exchange", exchange_names[static_cast<std::size_t>(file.scene.exchange)]},
+            {"denoise", file.scene.denoise},
             {"lights", Json::array()}};
   if (file.camera.lens) json["camera"]["lens"] = lens(*file.camera.lens);
   for (const Light& light : file.scene.lights) json["lights"].push_back(to_json(light));

@@ -289,9 +289,13 @@ void bind_scene(py::module_& module) {
   py::class_<scene::Scene>(module, "Scene", "Instances, lights and the world around them.")
       .def(py::init([](std::vector<scene::Instance> instances, std::vector<scene::Light> lights,
                        const std::optional<scene::World>& world, std::vector<scene::InstanceArray> arrays,
-                       const std::string& exchange) {
-             scene::Scene scene{std::move(instances), std::move(lights), world.value_or(scene::World{}),
-                                std::move(arrays), scene::parse_choice<scene::Exchange>(exchange)};
+                       const std::string& exchange, bool denoise) {
+             scene::Scene scene{std::move(instances),
+                                std::move(lights),
+                                world.value_or(scene::World{}),
+                                std::move(arrays),
+                                scene::parse_choice<scene::Exchange>(exchange),
+                                denoise};
              validate(scene);
              return scene;
            }),
@@ -299,14 +303,18 @@ void bind_scene(py::module_& module) {
            py::arg("lights") = std::vector<scene::Light>{}, py::arg("world") = py::none(),
            py::arg("arrays") = std::vector<scene::InstanceArray>{},
            py::arg("exchange") = std::string(scene::exchange_names[static_cast<std::size_t>(scene::default_exchange)]),
+           py::arg("denoise") = true,
            "arrays: InstanceArrays, drawn beside the instances. exchange: 'order_1', and light goes from grain to "
            "grain; 'heaps', where there are arrays of them; 'gathered', and each pixel's share of it is found by rays; "
-           "'off', and it does not. Raises Error for a transform that cannot be inverted.")
+           "'off', and it does not. denoise: whether what rays of each pixel find of it is told to its neighbours, "
+           "less and "
+           "less with each sample. Raises Error for a transform that cannot be inverted.")
       .def_readonly("instances", &scene::Scene::instances)
       .def_readonly("arrays", &scene::Scene::arrays)
       .def_property_readonly(
           "exchange",
           [](const scene::Scene& scene) { return scene::exchange_names[static_cast<std::size_t>(scene.exchange)]; })
+      .def_readonly("denoise", &scene::Scene::denoise)
       .def_readonly("lights", &scene::Scene::lights)
       .def_readonly("world", &scene::Scene::world);
 }

@@ -149,6 +149,7 @@ Sample Frame::begin_sample(const GoOn& go_on) {
       .lights = lighting_.sample(index, seed_, own_maps ? 1 : most_world_directions),
       .cast = arrays_.casts(*content_),
       .gathers = !unwrapping_ && exchange_.gather() != nullptr && (exchange_.gathers_all() || arrays_.casts(*content_)),
+      .denoises = scene_.denoise,
       .mirrors = mirrors,
       .go_on = go_on};
 }

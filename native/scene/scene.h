@@ -62,6 +62,7 @@ struct Scene {
   World world{};
   std::vector<InstanceArray> arrays{};
   Exchange exchange = default_exchange;
+  bool denoise = true;  ///< light that is found by rays of each pixel
 };
 
 /// The materials of all that is drawn, each once, in the order of the scene.

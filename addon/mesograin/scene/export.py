@@ -79,6 +79,7 @@ class SceneValues:
     heaps: tuple = ()  # heaps.HeapValues, drawn beside the instances
     millimetres_per_unit: float = 1.0
     exchange: str = parameters.SCENE["exchange"].default  # how grains send light to each other
+    denoise: bool = parameters.SCENE["denoise"].default
 
     @property
     def materials(self):
@@ -113,7 +114,7 @@ class SceneValues:
         return native.Scene(
             instances=instances, arrays=arrays,
             lights=[light.to_native(native) for light in self.lights], world=self.world.to_native(native),
-            exchange=self.exchange)
+            exchange=self.exchange, denoise=self.denoise)
 
 
 def scene_from_depsgraph(depsgraph, cache=None):
@@ -282,6 +283,7 @@ def with_new_materials(values, depsgraph):
         changed[material.name_full] = material_values(material, scene.mesograin.millimetres_per_unit)
     as_before = (values.millimetres_per_unit == scene.mesograin.millimetres_per_unit
                  and values.exchange == scene.mesograin.exchange
+                 and values.denoise == scene.mesograin.denoise
                  and values.world == surroundings.read(scene, _world_side(depsgraph))[0])
     if not changed or not as_before or any(heap.factors and heap.material.name in changed for heap in values.heaps):
         return None
@@ -463,7 +465,7 @@ class _Reader:
         if camera is not None and camera.type == "CAMERA" and camera.data.type == "PANO":
             self._warn(f"Camera '{camera.name}' is panoramic, which Mesograin draws as perspective.")
         return SceneValues(tuple(self._instances), (*self._lights, *around.suns), tuple(self._warnings), around,
-                           gathered, self._millimetres_per_unit, scene.mesograin.exchange)
+                           gathered, self._millimetres_per_unit, scene.mesograin.exchange, scene.mesograin.denoise)
 
     def _read_drawable(self, evaluated_object, matrix_world):
         parts = self._cache.parts(evaluated_object)

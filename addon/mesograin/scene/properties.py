@@ -59,6 +59,7 @@ class SceneProperties(bpy.types.PropertyGroup):
         name="Millimetres per unit", default=1.0, min=1e-6, max=1e9, soft_min=0.001, soft_max=1000.0, precision=4,
         update=_tag, description="Length of one Blender unit in mm; coefficients in 1/mm are multiplied by it")
     exchange: _property(parameters.SCENE["exchange"])
+    denoise: _property(parameters.SCENE["denoise"])
 
 
 PORTIONS = {

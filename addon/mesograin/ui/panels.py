@@ -225,6 +225,7 @@ class MESOGRAIN_PT_sampling(MesograinPanel, bpy.types.Panel):
         column.prop(settings, "viewport_samples", text="Viewport")
         layout.prop(settings, "millimetres_per_unit", text="Unit, mm")
         layout.prop(settings, "exchange", text="Exchange")
+        layout.prop(settings, "denoise")
         layout.column(heading="Film").prop(context.scene.render, "film_transparent", text="Transparent")
 
 

@@ -8,6 +8,7 @@
 
 #include "gl/program.h"
 #include "gl/texture.h"
+#include "render/denoiser.h"
 #include "render/passes/array_visibility.h"
 #include "render/passes/sample.h"
 #include "render/passes/surface_pass.h"
@@ -29,6 +30,7 @@ class GatherPass {
   void bind(const gl::Program& program) const;
 
  private:
+  Denoiser denoiser_;
   std::vector<glm::vec4> others_;     // of what grains send; w: 1 where it was looked
   std::vector<glm::vec4> lights_;     // and the world, seen through grains
   std::vector<glm::vec4> scattered_;  // lights, in grains that no model is asked of

@@ -47,8 +47,9 @@ struct Sample {
   std::uint32_t seed;
   glm::vec2 jitter;  ///< of the picture, in clip space
   SampledLights lights;
-  bool cast;     ///< rays find what is seen of arrays
-  bool gathers;  ///< light between grains is gathered for pixels that show them
+  bool cast;      ///< rays find what is seen of arrays
+  bool gathers;   ///< light between grains is gathered for pixels that show them
+  bool denoises;  ///< and neighbours that show the same tell each other what was found
   Mirrors mirrors;
   const GoOn& go_on;
   std::optional<Portion> portion{};  ///< of its light, that is shaded alone

@@ -48,7 +48,8 @@ class Subject:
                        for number, drawn in enumerate(self._scene.instances)],
             arrays=[drawn.with_material(material) if number in self._arrays else drawn
                     for number, drawn in enumerate(self._scene.arrays)],
-            lights=self._scene.lights, world=self._scene.world, exchange=self._scene.exchange)
+            lights=self._scene.lights, world=self._scene.world, exchange=self._scene.exchange,
+            denoise=self._scene.denoise)
         return self._draw(scene, samples or self.samples)
 
     def covered(self):
