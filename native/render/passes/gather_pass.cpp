@@ -93,7 +93,7 @@ bool GatherPass::run(const Sample& sample, const ArrayVisibility& arrays, Surfac
     }
   });
   if (!whole) return false;
-  if (sample.denoises && !denoiser_.run(seen, sample.index, others_, {&others_, &scattered_}, sample.go_on))
+  if (sample.denoises && !denoiser_.run(seen, sample.index, others_, {&others_, &lights_, &scattered_}, sample.go_on))
     return false;
   upload(device_others_, sample.size, others_);
   upload(device_lights_, sample.size, lights_);
