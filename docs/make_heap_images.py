@@ -4,8 +4,7 @@
 
 WITHOUT, WITH, GATHERED: folders that `./mesograin compare` wrote with --exchange off, heaps and gathered. A row for
 each case: the pictures, the reference, and what is left of the difference in the second. Above them the ratio of
-totals and relative L1 in blocks of 8 x 8 pixels, over those pixels that show grains: where the first case has light, an
-index-matched volume in which an open ground is nothing. Prints these, and by how much Cycles' own noise is in them.
+totals and relative L1 in blocks of 8 x 8 pixels, over the pixels that were compared, those that show grains. Prints these, and by how much Cycles' own noise is in them.
 """
 import json
 import pathlib
@@ -34,9 +33,9 @@ def cases(folder):
     return {case["name"]: case for case in results["cases"] if case["status"] == "done"}
 
 
-def shown(pixels, exposure):
+def shown(pixels, alpha, exposure):
     """sRGB of linear radiance over white."""
-    colours = pixels[..., :3] * exposure + (1.0 - pixels[..., 3:])
+    colours = pixels[..., :3] * exposure + (1.0 - alpha[..., None])
     colours = np.clip(colours, 0.0, 1.0)
     return np.where(colours < 0.0031308, 12.92 * colours, 1.055 * colours ** (1.0 / 2.4) - 0.055)
 
@@ -70,19 +69,19 @@ def draw(folders, out):
 
     found = [cases(folder) for folder in folders]
     names = [name for name in found[0] if all(name in each for each in found)]
-    mask = picture(folders[0], found[0][names[0]], "reference")[..., 1] > 0.0
     figure, axes = plt.subplots(len(names), 5, figsize=(20, 4.3 * len(names)), squeeze=False)
     for row, name in zip(axes, names):
         case = found[0][name]
         ours = [picture(folder, each[name], "model") for folder, each in zip(folders, found)]
         reference, deviation = (picture(folders[0], case, which) for which in ("reference", "noise"))
+        mask = picture(folders[0], case, "mask")[..., 0] > 0.5
         exposure = 0.8 / np.percentile(reference[..., :3][reference[..., 3] > 0.5], 98)
         titles = [f"{case['model']}, {column}\n{numbers(each, reference, mask)}" for column, each in zip(COLUMNS, ours)]
         titles.append(f"{case['reference_title']}\n{case['reference_seconds']:.0f} s, noise in blocks "
                       f"{noise(deviation, reference, mask)}")
         print(name, *titles, sep="\n  ")
         for axis, each, title in zip(row, (*ours, reference), titles):
-            axis.imshow(shown(each, exposure))
+            axis.imshow(shown(each, ours[0][..., 3], exposure))
             axis.set_title(title, fontsize=10)
         error = (ours[1][..., :3] - reference[..., :3]).mean(axis=-1) * exposure
         row[4].imshow(error, cmap="RdBu_r", vmin=-0.2, vmax=0.2)

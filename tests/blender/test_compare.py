@@ -118,6 +118,7 @@ def test_a_ground_stays_what_it_is_beside_grains_and_does_not_count(tmp_path, na
     [case] = compare(tmp_path, models=("model_3",), size=(64, 64), samples=16, reference_samples=64,
                      exchange="order_1", settings={"scale": 1.0})["cases"]
     assert case["status"] == "done" and case["material"]["Ground"]["model"] == "lambert"
+    assert any("'Ground' is no grain" in note for note in case["notes"])
     theirs, ours, mask = (native.read_exr(tmp_path / "out" / case["files"][name])[0]
                           for name in ("reference", "model", "mask"))
     corner = theirs[:6, :6, :3].mean(axis=(0, 1))

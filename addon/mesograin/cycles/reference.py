@@ -137,7 +137,8 @@ def _check(depsgraph, kind, overrides):
                                  "hide it, or put an instance on each of its points.")
     materials = beside.drawn_materials(depsgraph)
     staying = beside.stays(kind, materials)
-    notes = []
+    notes = [f"Material '{name}' is no grain: it stays what it is, in its mean colour, and its pixels do not count."
+             for name in sorted(staying)]
     suns = [instance.object.data.angle for instance in depsgraph.object_instances
             if instance.show_self and export.is_sun(instance.object)]
     if any(angle < kind.least_sun for angle in suns):
