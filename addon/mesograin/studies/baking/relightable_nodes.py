@@ -7,6 +7,7 @@ from ... import compat
 from . import lobes
 from .relightable_files import MAPS_A_TEXEL, grid
 
+NEXT_TO_NOTHING = 1e-4  # of the side of a map of 26 texels; less is lost in float numbers from pixel to pixel
 SOCKETS = (("To Light", "NodeSocketVector", (0.0, 0.0, 1.0)), ("Irradiance", "NodeSocketColor", (1.0, 1.0, 1.0, 1.0)))
 
 
@@ -52,9 +53,9 @@ def build(name, atlas, maps, count, eta=None):
     wires = _Wires(group)
     given = wires.node("NodeGroupInput")
     square = _on_the_map(wires, given["To Light"])
-    amounts = _lobes(wires, square, maps, count)
-    columns, rows = grid(count)
     uv = wires.node("ShaderNodeUVMap")["UV"]
+    amounts = _lobes(wires, square, uv, maps, count)
+    columns, rows = grid(count)
     total = None
     for component, amount in enumerate(amounts):
         tile = (component % columns, component // columns, 0.0)
@@ -92,14 +93,15 @@ def _on_the_map(wires, to_light):
     return placed
 
 
-def _lobes(wires, square, maps, count):
-    """A socket for each component: how much of it there is."""
+def _lobes(wires, square, uv, maps, count):
+    """A socket for each component: how much of it there is. Where a picture is looked up at the very same place all
+    over an object, EEVEE of Blender 4.3 sees black on a software device: it moves by next to nothing along `uv`."""
     blocks = -(-count // MAPS_A_TEXEL)
-    found = []
+    found, moves = [], wires.vector("MULTIPLY", uv, (NEXT_TO_NOTHING, NEXT_TO_NOTHING, 0.0))
     for block in range(blocks):
         v = wires.math("DIVIDE", wires.math("ADD", square[1], float(block)), float(blocks))
         place = wires.node("ShaderNodeCombineXYZ", square[0], v, 0.0)[0]
-        found.extend(wires.node("ShaderNodeSeparateXYZ", wires.image(maps, place)))
+        found.extend(wires.node("ShaderNodeSeparateXYZ", wires.image(maps, wires.vector("ADD", place, moves))))
     return found[:count]
 
 
