@@ -328,7 +328,7 @@ class Package(Command):
     def run(self, words, place):
         chosen = self.parser().parse_args(words)
         portable = ["--portable", place.build] if chosen.portable else []
-        return [place.python, SOURCE / ".launcher/package.py", SOURCE, *portable, *([chosen.zip] if chosen.zip else [])]
+        return [place.python, SOURCE / ".launcher/package.py", *portable, SOURCE, *([chosen.zip] if chosen.zip else [])]
 
 
 class Install(Command):

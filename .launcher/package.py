@@ -1,6 +1,6 @@
 """Makes the zip of the add-on: its Python files, the native modules that were built, the manifest and the licence.
 
-    package.py SOURCE_FOLDER [--portable BUILD_FOLDER] [FILE.zip]
+    package.py [--portable BUILD_FOLDER] SOURCE_FOLDER [FILE.zip]
 
 The zip holds one folder, mesograin/, with the manifest in it: Blender up to 4.1 installs that as an add-on, Blender 4.2
 and later as an extension. A portable one holds the libraries, too, that its modules need; see portable.py.
@@ -54,12 +54,16 @@ def make_zip(source, target, gathered=None):
             raise
 
 
-def main(words):
+def parse(words):
     parser = argparse.ArgumentParser()
     parser.add_argument("source", type=pathlib.Path)
     parser.add_argument("zip", nargs="?", type=pathlib.Path)
     parser.add_argument("--portable", metavar="BUILD_FOLDER", type=pathlib.Path)
-    chosen = parser.parse_args(words)
+    return parser.parse_args(words)
+
+
+def main(words):
+    chosen = parse(words)
     many = "-linux-x64" if chosen.portable else ""
     target = chosen.zip or chosen.source / "build/package" / f"mesograin-{version_of(chosen.source)}{many}.zip"
     gathered = chosen.portable / "portable/gathered" if chosen.portable else None

@@ -160,6 +160,22 @@ def test_the_package_holds_what_blender_needs(tmp_path):
     assert [path.name for path in archive.parent.iterdir()] == ["mesograin.zip"]
 
 
+def test_a_portable_package_goes_where_it_is_asked_for(monkeypatch):
+    sys.path.insert(0, str(SOURCE / ".launcher"))
+    import commands
+    import package
+
+    for name in ("LAUNCHER_BUILD", "LAUNCHER_LOGS", "LAUNCHER_PYTHON"):
+        monkeypatch.setenv(name, f"/{name}")
+    for words, portable, archive in (([], None, None), (["-o", "a.zip"], None, "a.zip"),
+                                     (["--portable"], "build", None), (["--portable", "-o", "a.zip"], "build", "a.zip")):
+        python, script, *given = commands.Package().run(words, commands.Place())
+        chosen = package.parse(list(map(str, given)))
+        assert script.name == "package.py" and chosen.source == SOURCE
+        assert chosen.zip == (archive and pathlib.Path(archive))
+        assert chosen.portable == (portable and pathlib.Path("/LAUNCHER_BUILD"))
+
+
 def test_versions_agree():
     """The build, the add-on and its manifest state one version, and the change log tells of it."""
     sys.path.insert(0, str(SOURCE / ".launcher"))
