@@ -168,7 +168,8 @@ def test_a_portable_package_goes_where_it_is_asked_for(monkeypatch):
     for name in ("LAUNCHER_BUILD", "LAUNCHER_LOGS", "LAUNCHER_PYTHON"):
         monkeypatch.setenv(name, f"/{name}")
     for words, portable, archive in (([], None, None), (["-o", "a.zip"], None, "a.zip"),
-                                     (["--portable"], "build", None), (["--portable", "-o", "a.zip"], "build", "a.zip")):
+                                     (["--portable"], "build", None),
+                                     (["--portable", "-o", "a.zip"], "build", "a.zip")):
         python, script, *given = commands.Package().run(words, commands.Place())
         chosen = package.parse(list(map(str, given)))
         assert script.name == "package.py" and chosen.source == SOURCE
