@@ -1,15 +1,18 @@
 // Each instance is a primitive of Embree's user geometry: its own instances would take ten times the memory.
 #include "casting/placed_tree.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
+#include <iterator>
 #include <limits>
 #include <utility>
 
 #include "base/error.h"
 #include "casting/device.h"
+#include "embree/first_hit.h"
 #include "embree/packets.h"
 
 namespace mesograin::casting {
@@ -42,6 +45,10 @@ struct ToMesh {
     x = scale * glm::vec3(bc.x, ca.x, ab.x);
     y = scale * glm::vec3(bc.y, ca.y, ab.y);
     z = scale * glm::vec3(bc.z, ca.z, ab.z);
+  }
+
+  glm::vec3 turn(const glm::vec3& direction) const {
+    return {glm::dot(x, direction), glm::dot(y, direction), glm::dot(z, direction)};
   }
 
   // Distances along the rays stay as they are.
@@ -91,7 +98,38 @@ const float* own_of(const RTCOccludedFunctionNArguments* arguments) {
   return reinterpret_cast<const embree::Context*>(arguments->context)->own;
 }
 
+// What a ray meets of an instance between these distances.
+RTCRayHit hit_of(const PlacedGroup& group, unsigned instance, const glm::vec3& origin, const glm::vec3& direction,
+                 float near, float far) {
+  const ToMesh to_mesh(group.rows + 3 * std::size_t{instance});
+  return embree::first_hit(to_scene(group.mesh->scene()), to_mesh.turn(origin - to_mesh.place), to_mesh.turn(direction),
+                           near, far);
+}
+
+void intersect_instance_alone(const RTCIntersectFunctionNArguments* arguments) {
+  const auto& group = *static_cast<const PlacedGroup*>(arguments->geometryUserPtr);
+  RTCRayHit& ray = *reinterpret_cast<RTCRayHit*>(arguments->rayhit);
+  float near = ray.ray.tnear;
+  if (ray.ray.id == group.first_number + arguments->primID) {
+    near = *own_of(arguments);
+    if (!(near > 0.0F)) return;
+  }
+  const RTCRayHit inside = hit_of(group, arguments->primID, {ray.ray.org_x, ray.ray.org_y, ray.ray.org_z},
+                                  {ray.ray.dir_x, ray.ray.dir_y, ray.ray.dir_z}, near, ray.ray.tfar);
+  if (inside.hit.geomID == RTC_INVALID_GEOMETRY_ID) return;
+  ray.ray.tfar = inside.ray.tfar;
+  ray.hit.geomID = arguments->geomID;
+  ray.hit.primID = inside.hit.primID;
+  ray.hit.instID[0] = arguments->primID;
+  ray.hit.u = inside.hit.u;
+  ray.hit.v = inside.hit.v;
+}
+
 void intersect_instance(const RTCIntersectFunctionNArguments* arguments) {
+  if (arguments->N == 1) {
+    intersect_instance_alone(arguments);
+    return;
+  }
   const auto& group = *static_cast<const PlacedGroup*>(arguments->geometryUserPtr);
   RTCRayHit8& rays = *reinterpret_cast<RTCRayHit8*>(arguments->rayhit);
   alignas(32) int valid[rays_in_packet];
@@ -183,6 +221,28 @@ void PlacedTree::first_hits(Packet& packet, Hits& hits) const {
     hits.second[i] = rays.hit.u[i];
     hits.third[i] = rays.hit.v[i];
   }
+}
+
+std::optional<Hit> PlacedTree::first_hit(const SingleRay& ray) const {
+  embree::Context context;
+  context.own = &ray.own;
+  const RTCRayHit found =
+      embree::first_hit(to_scene(scene_), ray.origin, ray.direction, 0.0F, ray.farthest, ray.from, &context.query);
+  if (found.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+  return Hit{found.ray.tfar,   found.hit.geomID, groups_[found.hit.geomID].first_number + found.hit.instID[0],
+             found.hit.primID, found.hit.u,      found.hit.v};
+}
+
+std::optional<Hit> PlacedTree::hit_of(std::uint32_t number, const SingleRay& ray, float near) const {
+  const auto after =
+      std::upper_bound(groups_.begin(), groups_.end(), number,
+                       [](std::uint32_t of, const PlacedGroup& group) { return of < group.first_number; });
+  const auto group = static_cast<std::size_t>(std::distance(groups_.begin(), after)) - 1;
+  const PlacedGroup& placed = groups_[group];
+  const RTCRayHit found =
+      casting::hit_of(placed, number - placed.first_number, ray.origin, ray.direction, near, ray.farthest);
+  if (found.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+  return Hit{found.ray.tfar, static_cast<std::uint32_t>(group), number, found.hit.primID, found.hit.u, found.hit.v};
 }
 
 void PlacedTree::find_occluded(Packet& packet) const {

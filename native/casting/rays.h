@@ -1,4 +1,5 @@
-// Eight rays side by side, as wide as the machine's registers: what is cast together should lie together.
+// Eight rays side by side, as wide as the machine's registers: what is cast together should lie together. Or one, which
+// goes nowhere near any other.
 #pragma once
 
 #include <cstdint>
@@ -39,6 +40,24 @@ struct Packet {
   }
 };
 
+/// What a ray met first.
+struct Hit {
+  float distance;          ///< in lengths of the direction
+  std::uint32_t group;     ///< of the tree
+  std::uint32_t number;    ///< of the instance
+  std::uint32_t triangle;  ///< of the mesh
+  float second;            ///< barycentric coordinates: of the triangle's second corner
+  float third;             ///< and its third
+};
+
+struct SingleRay {
+  glm::vec3 origin;
+  glm::vec3 direction;
+  std::uint32_t from = nobody;  ///< as in Packet
+  float own = 0.0F;
+  float farthest = std::numeric_limits<float>::infinity();
+};
+
 /// What each ray of a packet met first.
 struct Hits {
   bool met[rays_in_packet] = {};
@@ -48,6 +67,10 @@ struct Hits {
   std::uint32_t triangle[rays_in_packet] = {};  ///< of the mesh
   float second[rays_in_packet] = {};            ///< barycentric coordinates: of the triangle's second corner
   float third[rays_in_packet] = {};             ///< and its third
+
+  Hit of(unsigned ray) const {
+    return {distance[ray], group[ray], number[ray], triangle[ray], second[ray], third[ray]};
+  }
 };
 
 }  // namespace mesograin::casting

@@ -2,8 +2,27 @@
 #include "embree/first_hit.h"
 
 namespace mesograin::embree {
+namespace {
+
+QueryContext fresh() {
+  QueryContext context;
+#if RTC_VERSION_MAJOR >= 4
+  rtcInitRayQueryContext(&context);
+#else
+  rtcInitIntersectContext(&context);
+#endif
+  return context;
+}
+
+}  // namespace
 
 RTCRayHit first_hit(RTCScene scene, const glm::vec3& origin, const glm::vec3& direction, float near, float far) {
+  QueryContext context = fresh();
+  return first_hit(scene, origin, direction, near, far, 0, &context);
+}
+
+RTCRayHit first_hit(RTCScene scene, const glm::vec3& origin, const glm::vec3& direction, float near, float far,
+                    unsigned id, QueryContext* context) {
   RTCRayHit ray{};
   ray.ray.org_x = origin.x;
   ray.ray.org_y = origin.y;
@@ -14,13 +33,15 @@ RTCRayHit first_hit(RTCScene scene, const glm::vec3& origin, const glm::vec3& di
   ray.ray.tnear = near;
   ray.ray.tfar = far;
   ray.ray.mask = ~0U;
+  ray.ray.id = id;
   ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
 #if RTC_VERSION_MAJOR >= 4
-  rtcIntersect1(scene, &ray);
+  RTCIntersectArguments arguments;
+  rtcInitIntersectArguments(&arguments);
+  arguments.context = context;
+  rtcIntersect1(scene, &ray, &arguments);
 #else
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  rtcIntersect1(scene, &context, &ray);
+  rtcIntersect1(scene, context, &ray);
 #endif
   return ray;
 }

@@ -8,8 +8,18 @@
 
 namespace mesograin::embree {
 
+#if RTC_VERSION_MAJOR >= 4
+using QueryContext = RTCRayQueryContext;
+#else
+using QueryContext = RTCIntersectContext;
+#endif
+
 /// What a ray meets first between these distances along it; nothing if the hit's geomID is RTC_INVALID_GEOMETRY_ID.
 RTCRayHit first_hit(RTCScene scene, const glm::vec3& origin, const glm::vec3& direction, float near,
                     float far = std::numeric_limits<float>::infinity());
+
+/// The same of a ray that user geometry is to know: by `id`, and by what goes with it.
+RTCRayHit first_hit(RTCScene scene, const glm::vec3& origin, const glm::vec3& direction, float near, float far,
+                    unsigned id, QueryContext* context);
 
 }  // namespace mesograin::embree

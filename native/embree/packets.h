@@ -1,17 +1,13 @@
 // Eight rays at a time, which go nearly the same way.
 #pragma once
 
-#include "embree/rtcore.h"
+#include "embree/first_hit.h"
 
 namespace mesograin::embree {
 
 /// What goes with the rays of a packet on their way through user geometry.
 struct Context {
-#if RTC_VERSION_MAJOR >= 4
-  RTCRayQueryContext query;
-#else
-  RTCIntersectContext query;
-#endif
+  QueryContext query;
   const float* own = nullptr;  // of each ray, as in Packet
 
   Context() {

@@ -59,10 +59,10 @@ bool enters(const glm::vec3& normal, float alpha, double eta, glm::vec3& travell
 }  // namespace
 
 std::optional<Passage> walk_facets(const Optics& optics, float radius, const SeenFacet& seen, const Facets& facets,
-                                   Scatterings scatterings, Random& random) {
+                                   Scatterings scatterings, Random& random, glm::vec3* first) {
   glm::vec3 place = seen.place;
   glm::vec3 direction = -seen.towards;
-  const float alpha = facets.roughness(seen.grain);
+  const float alpha = facets.finish(seen.grain).roughness;
   if (!enters(seen.normal, alpha, optics.eta, direction, random))
     return Passage{place, direction, glm::vec3(1.0F), false, false};
   Flights flights(glm::vec3(optics.sigma_t) / radius, glm::vec3(optics.albedo), random);
@@ -73,6 +73,7 @@ std::optional<Passage> walk_facets(const Optics& optics, float radius, const See
     const float chord = glm::distance(place, facet->place);
     const float flight = flights.fly(chord);
     if (flight < chord) {
+      if (!scattered && first != nullptr) *first = flights.weight();
       scattered = true;
       place += flight * direction;
       if (scatterings == Scatterings::end) return Passage{place, direction, flights.weight(), true, true};

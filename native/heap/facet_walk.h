@@ -12,6 +12,13 @@
 
 namespace mesograin::heap {
 
+/// How a grain's surface reflects.
+struct Finish {
+  float roughness;  ///< GGX alpha
+  bool shown;       ///< what it mirrors of lights and the world
+  bool correlated;  ///< masking and shadowing of its facets
+};
+
 /// Grains' surfaces as they are, and walls, as rays (directions of unit length) meet them.
 class Facets {
  public:
@@ -28,8 +35,7 @@ class Facets {
   virtual std::optional<Meeting> beyond(std::uint32_t grain, const glm::vec3& origin,
                                         const glm::vec3& direction) const = 0;
 
-  /// GGX alpha.
-  virtual float roughness(std::uint32_t grain) const = 0;
+  virtual Finish finish(std::uint32_t grain) const = 0;
 };
 
 /// A dielectric grain as it is seen at a place of its surface.
@@ -56,8 +62,9 @@ enum class Scatterings {
 };
 
 /// Follows a view ray; lengths in `optics` are in `radius`. Where no facet is met, light goes straight on. Nothing,
-/// where all was absorbed or it does not come out.
+/// where all was absorbed or it does not come out. `first`: becomes the weight after the first scattering, if there is
+/// any.
 std::optional<Passage> walk_facets(const Optics& optics, float radius, const SeenFacet& seen, const Facets& facets,
-                                   Scatterings scatterings, transport::Random& random);
+                                   Scatterings scatterings, transport::Random& random, glm::vec3* first = nullptr);
 
 }  // namespace mesograin::heap

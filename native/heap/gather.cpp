@@ -10,7 +10,9 @@
 #include <utility>
 
 #include "heap/spread.h"
+#include "lights/device_light.h"
 #include "lights/world_light.h"
+#include "physics/physics.h"
 
 namespace mesograin::heap {
 namespace {
@@ -181,10 +183,11 @@ bool Gather::sees_into(std::uint32_t grain) const {
   return !light_->scattered.empty() && space_.kind(grain).from_light->is_clear();
 }
 
-Gather::Through Gather::look_into(const SeenFacet& seen, const Facets& facets, Scatterings scatterings,
+Gather::Through Gather::look_into(const SeenFacet& seen, const Facets& facets, const Look& how,
                                   transport::Random& random) const {
   Through sum;
-  follow_look(seen, facets, scatterings, random, sum);
+  follow_look(seen, facets, how, random, sum);
+  if (how.whole) return sum;
   const float mu = std::clamp(glm::dot(seen.normal, seen.towards), 0.0F, 1.0F);
   const GrainTable& table = *space_.kind(seen.grain).from_light;
   sum.others += table.lobe_at(mu) *
@@ -193,28 +196,49 @@ Gather::Through Gather::look_into(const SeenFacet& seen, const Facets& facets, S
   return sum;
 }
 
-void Gather::follow_look(SeenFacet seen, const Facets& facets, Scatterings scatterings, transport::Random& random,
+void Gather::add_scattered(const SeenFacet& seen, const glm::vec3& weight, bool lights, Through& sum) const {
+  const glm::vec3 place = space_.kind(seen.grain).from_light->seen_place(seen.normal, seen.towards);
+  const glm::vec3 all = glm::max(light_->seats->light_at(light_->scattered, seen.grain, place, true), 0.0F);
+  const glm::vec3 answer =
+      glm::clamp(light_->seats->light_at(light_->scattered_answer, seen.grain, place, true), glm::vec3(0.0F), all);
+  if (lights)
+    sum.scattered += weight * (all - answer);
+  else
+    sum.others += weight * answer;
+}
+
+void Gather::follow_look(SeenFacet seen, const Facets& facets, const Look& how, transport::Random& random,
                          Through& sum) const {
   glm::vec3 weight(1.0F);
   for (int through = 0; through < most_looked_into; ++through) {
     const bool first = through == 0;
     const Grain& grain = space_.grains()[seen.grain];
-    const std::optional<Passage> passage = walk_facets(heap_.grains.kinds[grain.kind], grain.radius, seen, facets,
-                                                       first ? scatterings : Scatterings::end, random);
+    glm::vec3 once_scattered(0.0F);
+    const std::optional<Passage> passage =
+        walk_facets(heap_.grains.kinds[grain.kind], grain.radius, seen, facets,
+                    first ? how.scatterings : Scatterings::end, random, &once_scattered);
+    // What lights and the world scatter in it is no other walk's to tell.
+    if (first && how.whole) add_scattered(seen, once_scattered, true, sum);
     if (!passage) return;
     weight *= passage->weight;
-    if (passage->scattered && (!first || scatterings == Scatterings::end)) {
-      const Field& scattered = first ? light_->scattered_answer : light_->scattered;
-      const glm::vec3 place = space_.kind(seen.grain).from_light->seen_place(seen.normal, seen.towards);
-      sum.others += weight * glm::max(light_->seats->light_at(scattered, seen.grain, place, true), 0.0F);
+    if (passage->scattered && (!first || how.scatterings == Scatterings::end)) {
+      add_scattered(seen, weight, false, sum);
+      if (!first) {
+        Through lit;
+        add_scattered(seen, weight, true, lit);
+        sum.others += lit.scattered;
+      }
       return;
     }
-    // What else the grain that is seen makes of the lights is its model's.
-    if (!first) sum.lights += weight * lights_along(seen.grain, *passage, facets, random);
+    // What else the grain that is seen makes of the lights is its model's, or highlights().
+    const bool straight = passage->entered && !passage->scattered;
+    if (!first || (how.whole && straight)) sum.lights += weight * lights_along(seen.grain, *passage, facets, random);
     const std::optional<Meeting> meeting = facets.beyond(seen.grain, passage->place, passage->direction);
     if (!meeting) {
-      if (!first || (passage->entered && !passage->scattered))
-        sum.lights += weight * glm::vec3(lights::radiance(heap_.world, glm::dvec3(passage->direction)));
+      if (first && passage->scattered) return;
+      if (first && !passage->entered && !(how.whole && facets.finish(seen.grain).shown)) return;
+      const glm::vec3 world(lights::radiance(heap_.world, glm::dvec3(passage->direction)));
+      (first && !passage->entered ? sum.mirrored : sum.lights) += weight * world;
       return;
     }
     if (meeting->wall || !sees_into(meeting->number) || through + 1 == most_looked_into) {
@@ -226,6 +250,43 @@ void Gather::follow_look(SeenFacet seen, const Facets& facets, Scatterings scatt
     }
     seen = {meeting->number, meeting->place, meeting->normal, -passage->direction};
   }
+}
+
+glm::vec3 Gather::highlights(const SeenFacet& seen, const Facets& facets, transport::Random& random) const {
+  glm::vec3 sum(0.0F);
+  const Finish finish = facets.finish(seen.grain);
+  if (!finish.shown) return sum;
+  const Optics& optics = heap_.grains.kinds[space_.grains()[seen.grain].kind];
+  const double mu_o = std::max(glm::dot(seen.normal, seen.towards), 1e-4F);
+  for (std::size_t i = 0; i < heap_.lights.size(); ++i) {
+    const lights::LightDraw light =
+        draws_[i](heap_.anchor + glm::dvec3(seen.place), {random.uniform(), random.uniform()});
+    const glm::vec3 to_light(light.to_light);
+    const double mu_i = glm::dot(seen.normal, to_light);
+    const lights::DeviceLight packed = lights::pack(heap_.lights[i], heap_.anchor);
+    // As shaders/models/dielectric.glsl has it.
+    const double alpha = physics::dielectric_alpha(finish.roughness, lights::light_angle(packed, light.reach));
+    if (!(mu_i > 0.0) || !(alpha > 0.0)) continue;
+    constexpr double smallest_alpha = 1e-3;
+    const double reflected =
+        physics::dielectric_reflection(glm::dvec3(seen.normal), glm::dvec3(to_light), mu_i, glm::dvec3(seen.towards),
+                                       mu_o, optics.eta, std::max(alpha, smallest_alpha), finish.correlated);
+    const glm::vec3 shown(mu_i * reflected * light.irradiance);
+    constexpr float least_shown = 1e-4F;
+    if (std::max({shown.r, shown.g, shown.b}) < least_shown) continue;
+    const auto reach = static_cast<float>(std::min(light.reach, 1e30));
+    sum += shown * passed_towards(seen.grain, seen.place, to_light, reach, facets);
+  }
+  return sum;
+}
+
+glm::vec3 Gather::passed_towards(std::uint32_t grain, const glm::vec3& place, const glm::vec3& to_light, float reach,
+                                 const Facets& facets) const {
+  const std::optional<Meeting> meeting = facets.beyond(grain, place, to_light);
+  if (!meeting || glm::distance(meeting->place, place) >= reach) return glm::vec3(1.0F);
+  if (meeting->wall || !heap_.grains.kinds[space_.grains()[meeting->number].kind].transparent()) return glm::vec3(0.0F);
+  Ray ray{place, to_light, glm::vec3(1.0F)};
+  return space_.passed(ray, reach);
 }
 
 glm::vec3 Gather::lights_along(std::uint32_t grain, const Passage& passage, const Facets& facets,
@@ -246,13 +307,7 @@ glm::vec3 Gather::lights_along(std::uint32_t grain, const Passage& passage, cons
     }
     if (cosine < edge) continue;
     const auto reach = static_cast<float>(std::min(light.reach, 1e30));
-    const std::optional<Meeting> meeting = facets.beyond(grain, passage.place, to_light);
-    glm::vec3 passed(1.0F);
-    if (meeting && glm::distance(meeting->place, passage.place) < reach) {
-      if (meeting->wall || !heap_.grains.kinds[space_.grains()[meeting->number].kind].transparent()) continue;
-      Ray ray{passage.place, to_light, glm::vec3(1.0F)};
-      passed = space_.passed(ray, reach);
-    }
+    const glm::vec3 passed = passed_towards(grain, passage.place, to_light, reach, facets);
     sum += glm::vec3(light.irradiance) * passed / (2.0F * std::numbers::pi_v<float> * (1.0F - edge));
   }
   return sum;

@@ -53,28 +53,51 @@ class Gather {
   /// Whether so much crosses this grain, whose surface refracts, that look_into() shows more of it.
   bool sees_into(std::uint32_t grain) const;
 
-  /// What is seen through a clear grain.
+  /// What is seen of a clear grain.
   struct Through {
-    glm::vec3 others{0.0F};  ///< of what grains and walls send
-    glm::vec3 lights{0.0F};  ///< of the world and the lights, unscattered
+    glm::vec3 others{0.0F};     ///< of what grains and walls send
+    glm::vec3 lights{0.0F};     ///< of the world and the lights, unscattered
+    glm::vec3 scattered{0.0F};  ///< of both, scattered in it
+    glm::vec3 mirrored{0.0F};   ///< of both, reflected by its surface
 
     void add(const Through& other) {
       others += other.others;
       lights += other.lights;
+      scattered += other.scattered;
+      mirrored += other.mirrored;
+    }
+
+    void scale(float by) {
+      others *= by;
+      lights *= by;
+      scattered *= by;
+      mirrored *= by;
     }
   };
 
+  /// How a clear grain is looked into.
+  struct Look {
+    Scatterings scatterings;  ///< of others' light in this grain; where they end, its numbers tell it
+    bool whole;               ///< no model tells what lights and the world do in it and at its surface
+  };
+
   /// What look() shows, through the grain's own facets and other clear grains that stand behind it; the world that is
-  /// seen so, but for what the grain's own surface reflects of it; and the lights, as far as those behind send them on.
-  /// `scatterings`: of others' light in this grain; where they end, its numbers tell it.
-  Through look_into(const SeenFacet& seen, const Facets& facets, Scatterings scatterings,
-                    transport::Random& random) const;
+  /// seen so; and the lights, as far as those behind send them on, or, if the look is whole, this one, too.
+  Through look_into(const SeenFacet& seen, const Facets& facets, const Look& how, transport::Random& random) const;
+
+  /// What a clear grain's surface reflects of suns and lamps.
+  glm::vec3 highlights(const SeenFacet& seen, const Facets& facets, transport::Random& random) const;
 
  private:
-  void follow_look(SeenFacet seen, const Facets& facets, Scatterings scatterings, transport::Random& random,
+  void follow_look(SeenFacet seen, const Facets& facets, const Look& how, transport::Random& random,
                    Through& sum) const;
+  /// What of the light scattered in a grain is seen there; `lights`: what comes from others' apart.
+  void add_scattered(const SeenFacet& seen, const glm::vec3& weight, bool lights, Through& sum) const;
   glm::vec3 lights_along(std::uint32_t grain, const Passage& passage, const Facets& facets,
                          transport::Random& random) const;
+  /// What is left of a light on its way to a grain's surface.
+  glm::vec3 passed_towards(std::uint32_t grain, const glm::vec3& place, const glm::vec3& to_light, float reach,
+                           const Facets& facets) const;
   /// What is sent along a ray, if it meets anything.
   std::optional<glm::vec3> sent_along(Ray& ray, transport::Random& random) const;
   /// What a world without a picture sends to the end of it.

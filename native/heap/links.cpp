@@ -102,6 +102,15 @@ class Opening {
   std::size_t looks_ = 0;
 };
 
+/// What a place's numbers make of how scattered light is weighed.
+float factor_at(const Scattering& scattering, const glm::vec3& place) {
+  const SecondOrder second = second_order(place);
+  const std::array<float, 9>& even = scattering.even;
+  float sum = even[0] + even[1] * place.x + even[2] * place.y + even[3] * place.z;
+  for (std::size_t i = 0; i < second.size(); ++i) sum += even[4 + i] * second[i];
+  return sum;
+}
+
 struct Found {
   std::vector<Link> links;
   Scattering scattering;
@@ -116,29 +125,47 @@ struct Behind {
   Share open;
 };
 
+/// By which sums of a place's numbers to weigh what departs so that even light leaves evenly, as far as `count` numbers
+/// tell, and comes to 1 in all; 0 where nothing departs. `weight`: of each.
+template <typename Weight>
+Numbers evening(const std::vector<Departing>& departing, std::size_t count, const Weight& weight) {
+  constexpr double least = 0.2;
+  std::array<Numbers, most_numbers> moments{};
+  for (const Departing& from : departing) {
+    const Numbers numbers = numbers_of(from.normal);
+    for (std::size_t row = 0; row < count; ++row)
+      for (std::size_t column = 0; column < count; ++column)
+        moments[row][column] += static_cast<double>(weight(from)) * numbers[row] * numbers[column];
+  }
+  const double sum = moments[0][0];
+  if (!(sum > 0.0)) return {};
+  const Numbers even{1.0 / sum};
+  const Numbers factors = solved_for(moments, {1.0}, count);
+  const bool sound = std::all_of(departing.begin(), departing.end(), [&](const Departing& from) {
+    return product(factors, numbers_of(from.normal)) > least * even[0];
+  });
+  return sound ? factors : even;
+}
+
 /// Scales the weights so that a grain in even light sends out just what its table says, as much at every normal as far
 /// as `count` numbers tell: which outcomes were drawn and where neither wins light nor turns it.
 void balance(std::vector<Departing>& departing, const glm::vec3& albedo, std::size_t count) {
-  constexpr double least = 0.2;
   for (int channel = 0; channel < 3; ++channel) {
-    std::array<Numbers, most_numbers> moments{};
-    for (const Departing& from : departing) {
-      const Numbers numbers = numbers_of(from.normal);
-      for (std::size_t row = 0; row < count; ++row)
-        for (std::size_t column = 0; column < count; ++column)
-          moments[row][column] += static_cast<double>(from.weight[channel]) * numbers[row] * numbers[column];
-    }
-    const double sum = moments[0][0];
-    if (!(sum > 0.0)) continue;
-    const Numbers even{1.0 / sum};
-    Numbers factors = solved_for(moments, {1.0}, count);
-    const bool sound = std::all_of(departing.begin(), departing.end(), [&](const Departing& from) {
-      return product(factors, numbers_of(from.normal)) > least * even[0];
-    });
-    if (!sound) factors = even;
+    const Numbers factors = evening(departing, count, [&](const Departing& from) { return from.weight[channel]; });
     for (Departing& from : departing)
       from.weight[channel] *= albedo[channel] * static_cast<float>(product(factors, numbers_of(from.normal)));
   }
+}
+
+/// How to weigh what was scattered in a clear grain. Few looks tell but few numbers.
+Scattering weigh(const std::vector<Departing>& scattered, std::size_t count) {
+  constexpr std::size_t enough = 3;  // for each number
+  while (count > 1 && scattered.size() < enough * count) count = count > 4 ? 4 : 1;
+  const Numbers even = evening(scattered, count, [](const Departing& from) { return mean(from.weight); });
+  Scattering weighed;
+  for (std::size_t i = 0; i < even.size(); ++i) weighed.even[i] = static_cast<float>(even[i]);
+  for (const Departing& from : scattered) weighed.share += from.weight * factor_at(weighed, from.normal);
+  return weighed;
 }
 
 // Of a node of walls, whose light is the same whatever the normal.
@@ -293,20 +320,24 @@ Found found_by(const Space& space, std::size_t answering, const std::vector<Look
   // The few rays of one of many that share tell too little to be turned so.
   const std::size_t numbers = answering >= space.seats()->own() ? 1 : fine ? most_numbers : 4;
   if (of_grain) balance(departing, table->albedo(), numbers);
+  std::vector<Departing> scattered;
+  for (std::size_t i = 0; i < looks.size(); ++i)
+    if (looks[i].scattered) scattered.push_back(departing[i]);
+  if (!scattered.empty()) found.scattering = weigh(scattered, numbers);
   found.links.reserve(static_cast<std::size_t>(
       std::count_if(endings.begin(), endings.end(), [](const Ending& ending) { return ending.source.has_value(); })));
   Opening opening;
   for (std::size_t i = 0; i < departing.size(); ++i) {
     const Departing& from = departing[i];
     const glm::vec3 weight = from.weight * endings[i].left;
-    if (looks[i].scattered) found.scattering.share += from.weight;
     if (looks[i].refracted) opening.add(mean(from.weight), endings[i].source ? 0.0F : mean(weight), from.normal);
     if (endings[i].source) {
       found.links.push_back(link_to(*endings[i].source, weight, from.normal));
       if (looks[i].scattered) std::swap(found.links[found.scattering.links++], found.links.back());
     } else {
       (endings[i].crossed ? found.crossed : found.direct).add(weight * radiance, from.normal, fine);
-      if (looks[i].scattered) found.scattered.add(weight * radiance, from.normal, fine);
+      if (looks[i].scattered)
+        found.scattered.add(weight * radiance * factor_at(found.scattering, from.normal), from.normal, fine);
     }
   }
   found.open = opening.share(fine);
@@ -366,9 +397,10 @@ std::size_t Links::count() const {
 
 namespace {
 
-/// What light sent out by others makes each send out by the first `first(i)` of its links.
-template <typename First>
-void gather_first(const Links& links, const First& first, const Field& sent, Field& answer,
+/// What light sent out by others makes each send out by the first `first(i)` of its links, weighed by `factor(i,
+/// place)`.
+template <typename First, typename Factor>
+void gather_first(const Links& links, const First& first, const Factor& factor, const Field& sent, Field& answer,
                   const transport::Effort& effort, const Change* change) {
   const std::size_t count = links.of.size();
   answer.resize(count);
@@ -383,7 +415,8 @@ void gather_first(const Links& links, const First& first, const Field& sent, Fie
         glm::vec3 weight(link.weight[0], link.weight[1], link.weight[2]);
         if (change != nullptr) weight *= change->received[link.from];
         const glm::vec3 light = links.seats->light_at(sent, link.from, unpacked(link.sent_at), !links.fine.empty());
-        sum.add(weight * light, unpacked(link.leaves_at), of_fine);
+        const glm::vec3 leaves_at = unpacked(link.leaves_at);
+        sum.add(weight * light * factor(i, leaves_at), leaves_at, of_fine);
       }
       if (change != nullptr && !change->answered.empty()) sum = sum * change->answered[links.seats->number(i)];
       answer[i] = sum;
@@ -395,14 +428,17 @@ void gather_first(const Links& links, const First& first, const Field& sent, Fie
 
 void Links::gather(const Field& sent, Field& answer, const transport::Effort& effort, const Change* change) const {
   gather_first(
-      *this, [this](std::size_t i) { return of[i].size(); }, sent, answer, effort, change);
+      *this, [this](std::size_t i) { return of[i].size(); },
+      [](std::size_t /*i*/, const glm::vec3& /*place*/) { return 1.0F; }, sent, answer, effort, change);
   answer = seats->told(std::move(answer));
 }
 
 void Links::gather_scattered(const Field& sent, Field& answer, const transport::Effort& effort,
                              const Change* change) const {
   gather_first(
-      *this, [this](std::size_t i) { return std::size_t{scattered[i].links}; }, sent, answer, effort, change);
+      *this, [this](std::size_t i) { return std::size_t{scattered[i].links}; },
+      [this](std::size_t i, const glm::vec3& place) { return factor_at(scattered[i], place); }, sent, answer, effort,
+      change);
 }
 
 bool Rays::fine(const Space& space, std::size_t answering) const {

@@ -1,6 +1,7 @@
 // Which grains and walls send light to which: G of S = D + G S, as the rays it was found by.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <limits>
@@ -33,10 +34,12 @@ struct Change {
 /// look_through(), or refracted, by GrainTable::seen_place(), as what it sends out is told.
 using Openness = std::vector<Share>;
 
-/// Of a clear grain: how many of its links, the first, are of light that it has scattered, and how much of light from
-/// everywhere would leave it by all looks that were scattered.
+/// Of a clear grain: how many of its links, the first, are of light that it has scattered; by which sum of the numbers
+/// that tell a place to weigh them, so that in even light it is scattered evenly; and how much of light from everywhere
+/// would leave it, so weighed, by all looks that were scattered.
 struct Scattering {
   std::uint32_t links = 0;
+  std::array<float, 9> even{};
   glm::vec3 share{0.0F};
 };
 

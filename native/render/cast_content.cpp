@@ -26,6 +26,18 @@ void CastContent::first_hits(casting::Packet& packet, casting::Hits& hits) const
   if (draws_ != nullptr) draws_->first_hits(packet, hits);
 }
 
+std::optional<casting::Hit> CastContent::first_hit(casting::SingleRay ray) const {
+  std::optional<casting::Hit> first;
+  for (const casting::PlacedTree* tree : {instances_, static_cast<const casting::PlacedTree*>(draws_.get())}) {
+    if (tree == nullptr) continue;
+    const std::optional<casting::Hit> hit = tree->first_hit(ray);
+    if (!hit) continue;
+    first = hit;
+    ray.farthest = hit->distance;
+  }
+  return first;
+}
+
 void CastContent::find_occluded(casting::Packet& packet) const {
   if (instances_ != nullptr) instances_->find_occluded(packet);
   if (draws_ != nullptr) draws_->find_occluded(packet);

@@ -3,6 +3,7 @@
 
 #include <glm/vec4.hpp>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "casting/placed_tree.h"
@@ -24,6 +25,7 @@ class CastContent {
   /// As those of casting::PlacedTree, of everything. Draws have the numbers by which shadows know them.
   void first_hits(casting::Packet& packet, casting::Hits& hits) const;
   void find_occluded(casting::Packet& packet) const;
+  std::optional<casting::Hit> first_hit(casting::SingleRay ray) const;
 
  private:
   const casting::PlacedTree* instances_;

@@ -41,19 +41,22 @@ std::size_t ClearLooks::instances() const {
 
 std::optional<ClearLooks::Hit> ClearLooks::first_hit(const glm::vec3& origin, const glm::vec3& direction,
                                                      std::size_t from, float clearance) const {
-  casting::Packet packet;
-  casting::Hits hits;
-  packet.set(0, origin, direction);
+  casting::SingleRay ray{origin, direction};
   if (from < instances())
-    packet.from[0] = static_cast<std::uint32_t>(from);
+    ray.from = static_cast<std::uint32_t>(from);
   else if (from != nothing)
-    packet.from[0] = static_cast<std::uint32_t>(content_.object_number(from - instances()));
-  packet.own[0] = clearance;
-  cast_.first_hits(packet, hits);
-  if (!hits.met[0]) return std::nullopt;
-  const glm::vec4 facing = hit_surface(cast_, content_, packet, hits, 0).normal;
-  return Hit{static_cast<std::size_t>(std::abs(facing.w)) - 1, origin + hits.distance[0] * direction, glm::vec3(facing),
-             facing.w > 0.0F};
+    ray.from = static_cast<std::uint32_t>(content_.object_number(from - instances()));
+  ray.own = clearance;
+  const std::optional<casting::Hit> hit = cast_.first_hit(ray);
+  if (!hit) return std::nullopt;
+  return place_of(*hit, origin, direction);
+}
+
+ClearLooks::Hit ClearLooks::place_of(const casting::Hit& hit, const glm::vec3& origin,
+                                     const glm::vec3& direction) const {
+  const glm::vec4 facing = hit_surface(cast_, content_, direction, hit).normal;
+  return {static_cast<std::size_t>(std::abs(facing.w)) - 1, origin + hit.distance * direction, glm::vec3(facing),
+          facing.w > 0.0F};
 }
 
 std::optional<heap::SeenFacet> ClearLooks::seen_along(std::uint32_t grain, const glm::vec3& origin,
@@ -66,7 +69,16 @@ std::optional<heap::SeenFacet> ClearLooks::seen_along(std::uint32_t grain, const
 std::optional<heap::Meeting> ClearLooks::inside(std::uint32_t grain, const glm::vec3& origin,
                                                 const glm::vec3& direction) const {
   const std::size_t object = objects_[grain];
-  std::optional<Hit> hit = first_hit(origin, direction, object, clear_of_itself * content_.receiver(object).ball.w);
+  const float clearance = clear_of_itself * content_.receiver(object).ball.w;
+  if (object < instances()) {
+    const std::optional<casting::Hit> own =
+        cast_.instances()->hit_of(static_cast<std::uint32_t>(object), {origin, direction}, clearance);
+    if (!own) return std::nullopt;
+    const Hit hit = place_of(*own, origin, direction);
+    if (hit.front) return std::nullopt;
+    return heap::Meeting{false, grain, hit.place, hit.normal};
+  }
+  std::optional<Hit> hit = first_hit(origin, direction, object, clearance);
   // Others may reach into it.
   for (int passed = 0; hit && hit->object != object && passed < most_passed; ++passed)
     hit = first_hit(hit->place, direction, hit->object, 0.0F);
@@ -90,11 +102,11 @@ std::optional<heap::Meeting> ClearLooks::beyond(std::uint32_t grain, const glm::
   return std::nullopt;
 }
 
-float ClearLooks::roughness(std::uint32_t grain) const {
+heap::Finish ClearLooks::finish(std::uint32_t grain) const {
   const std::size_t object = objects_[grain];
   const scene::Material& material = object < instances() ? content_.instances()->group_of(object).source
                                                          : content_.draws()[object - instances()].look;
-  return static_cast<float>(material.roughness);
+  return {static_cast<float>(material.roughness), material.specular, material.masking != scene::Masking::separable};
 }
 
 }  // namespace mesograin::render

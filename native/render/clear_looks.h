@@ -27,12 +27,13 @@ class ClearLooks : public heap::Facets {
                                       const glm::vec3& direction) const override;
   std::optional<heap::Meeting> beyond(std::uint32_t grain, const glm::vec3& origin,
                                       const glm::vec3& direction) const override;
-  float roughness(std::uint32_t grain) const override;
+  heap::Finish finish(std::uint32_t grain) const override;
 
  private:
   struct Hit;
   std::optional<Hit> first_hit(const glm::vec3& origin, const glm::vec3& direction, std::size_t from,
                                float clearance) const;
+  Hit place_of(const casting::Hit& hit, const glm::vec3& origin, const glm::vec3& direction) const;
   std::size_t instances() const;
 
   const CastContent& cast_;

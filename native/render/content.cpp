@@ -134,10 +134,10 @@ void Content::place(const scene::Scene& scene) {
   find_bounds();
 }
 
-bool Content::facets() const {
-  if (std::any_of(draws_.begin(), draws_.end(), [](const Draw& draw) { return draw.material->facets(); })) return true;
-  return instances_ && std::any_of(instances_->groups().begin(), instances_->groups().end(),
-                                   [](const InstanceGroup& group) { return group.material->facets(); });
+bool Content::facets(const std::function<bool(std::size_t unit)>& of) const {
+  for (std::size_t unit = 0; unit < units(); ++unit)
+    if (material(unit).facets() && of(unit)) return true;
+  return false;
 }
 
 void Content::find_shadows() {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <glm/vec3.hpp>
 #include <memory>
 #include <optional>
@@ -98,8 +99,8 @@ class Content {
   /// Whether any material wears pictures.
   bool textured() const { return textured_; }
 
-  /// Whether any has facets that mirror.
-  bool facets() const;
+  /// Whether any of these units has facets that mirror.
+  bool facets(const std::function<bool(std::size_t unit)>& of) const;
 
  private:
   void tell_objects();

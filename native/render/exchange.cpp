@@ -152,6 +152,9 @@ void Exchange::set(const Content& content, const scene::Scene& scene) {
   if (scene.exchange == scene::Exchange::order_1 || scene.exchange == scene::Exchange::gathered ||
       (scene.exchange == scene::Exchange::heaps && content.instances() != nullptr))
     gathered.add(content);
+  alike_.clear();
+  if (const Instances* instances = content.instances())
+    for (const InstanceGroup& group : instances->groups()) alike_.emplace_back(group.first, group.first + group.count);
   const heap::Grains& grains = gathered.grains;
   const bool heaped = content.instances() != nullptr && grains.grains.size() > 1;
   if (grains.grains.empty() || (!heaped && grains.walls.empty())) {
@@ -183,9 +186,11 @@ void Exchange::set(const Content& content, const scene::Scene& scene) {
   send();
 }
 
-bool Exchange::gathers_all_of(std::size_t number) const {
+bool Exchange::gathers_all_of(std::size_t number, bool cast) const {
   const std::optional<std::uint32_t>& grain = roles_[number].grain;
-  if (!gather_ || !grain || !gather_->sees_all(*grain)) return false;
+  if (!gather_ || !grain) return false;
+  if (gather_->sees_into(*grain)) return cast && whole_[number];
+  if (!gather_->sees_all(*grain)) return false;
   const heap::Grains& grains = solving_->heap().grains;
   return gathers_ || (follows_ && is_followed(grains.kinds[grains.grains[*grain].kind]));
 }
@@ -219,6 +224,24 @@ void Exchange::find_gather() {
   // What grains are made of, and lights, are seen to change at once, in the light that others sent before.
   if (wanted && gather_->heap() != solving_->heap() && alike(gather_->heap().grains, solving_->heap().grains))
     gather_ = gather_->among(solving_->heap());
+  find_whole();
+}
+
+// Crystals keep their model: what light does between their facets is not known well enough without.
+void Exchange::find_whole() {
+  whole_.assign(roles_.size(), false);
+  if (!gather_ || !(gathers_ || follows_)) return;
+  const heap::Grains& grains = gather_->heap().grains;
+  for (std::size_t object = 0; object < roles_.size(); ++object) {
+    const std::optional<std::uint32_t>& grain = roles_[object].grain;
+    whole_[object] = grain && gather_->sees_into(*grain) && grains.kinds[grains.grains[*grain].kind].clear() &&
+                     grains.kinds[grains.grains[*grain].kind].lens;
+  }
+  for (const auto& [first, end] : alike_) {
+    const auto begins = whole_.begin() + static_cast<std::ptrdiff_t>(first);
+    const auto ends = whole_.begin() + static_cast<std::ptrdiff_t>(end);
+    if (std::find(begins, ends, false) != ends) std::fill(begins, ends, false);
+  }
 }
 
 namespace {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "gl/buffer.h"
@@ -73,8 +74,8 @@ class Exchange {
   const heap::Gather* gather() const { return gather_.get(); }
   bool gathers_all() const { return gathers_; }
 
-  /// Whether all light of the object of this number is gathered, and no model is asked.
-  bool gathers_all_of(std::size_t number) const;
+  /// Whether all light of the object of this number is gathered, and no model is asked; `cast`: rays find what is seen.
+  bool gathers_all_of(std::size_t number, bool cast) const;
 
   /// What an object is to the light between grains.
   struct Role {
@@ -99,6 +100,7 @@ class Exchange {
 
   void send();
   void find_gather();
+  void find_whole();
 
   bool balls_ = true;
   std::vector<Role> roles_;
@@ -106,6 +108,8 @@ class Exchange {
   bool follows_ = false;     // light through what is seen of grains, where that is cheap
   bool shows_more_ = false;  // gathering, of some grains
   std::unique_ptr<const heap::Gather> gather_;
+  std::vector<std::pair<std::size_t, std::size_t>> alike_;  // objects of one unit: the first, and after the last
+  std::vector<bool> whole_;  // of objects, where clear ones are looked into: no model is asked of their unit
   std::shared_ptr<const heap::Solving> solving_;
   std::optional<Known> known_;
   std::optional<gl::Buffer> device_;

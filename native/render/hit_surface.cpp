@@ -87,18 +87,23 @@ glm::vec4 coordinates_at(const scene::Mesh& mesh, const glm::vec4* rows, const g
 
 HitSurface hit_surface(const CastContent& cast, const Content& content, const casting::Packet& packet,
                        const casting::Hits& hits, unsigned ray) {
+  return hit_surface(cast, content, {packet.direction_x[ray], packet.direction_y[ray], packet.direction_z[ray]},
+                     hits.of(ray));
+}
+
+HitSurface hit_surface(const CastContent& cast, const Content& content, const glm::vec3& direction,
+                       const casting::Hit& hit) {
   const Instances* instances = content.instances();
   const std::size_t count = instances != nullptr ? instances->count() : 0;
-  const bool instanced = hits.number[ray] < count;
-  const std::size_t group = hits.group[ray];
+  const bool instanced = hit.number < count;
+  const std::size_t group = hit.group;
   const scene::Mesh& mesh =
       instanced ? *instances->prototypes()[instances->groups()[group].prototype].mesh : *content.draws()[group].source;
   const DeviceMaterial& material = instanced ? *instances->groups()[group].material : *content.draws()[group].material;
-  const glm::vec4* rows = instanced ? instances->rows(hits.number[ray]) : cast.rows(group);
-  const std::size_t number = instanced ? hits.number[ray] : content.number(group);
-  const glm::vec3 direction(packet.direction_x[ray], packet.direction_y[ray], packet.direction_z[ray]);
-  const glm::vec3 weights(1.0F - hits.second[ray] - hits.third[ray], hits.second[ray], hits.third[ray]);
-  const glm::uvec3& corners = mesh.triangles()[hits.triangle[ray]];
+  const glm::vec4* rows = instanced ? instances->rows(hit.number) : cast.rows(group);
+  const std::size_t number = instanced ? hit.number : content.number(group);
+  const glm::vec3 weights(1.0F - hit.second - hit.third, hit.second, hit.third);
+  const glm::uvec3& corners = mesh.triangles()[hit.triangle];
   const Surface surface = surface_at(mesh, rows, corners, weights, direction, static_cast<std::uint32_t>(number));
   const glm::vec4 coordinates =
       material.textured() ? coordinates_at(mesh, rows, corners, weights, surface.normal) : glm::vec4(0.0F);

@@ -25,6 +25,8 @@ struct HitSurface {
 };
 
 /// Where a ray that met something did.
+HitSurface hit_surface(const CastContent& cast, const Content& content, const glm::vec3& direction,
+                       const casting::Hit& hit);
 HitSurface hit_surface(const CastContent& cast, const Content& content, const casting::Packet& packet,
                        const casting::Hits& hits, unsigned ray);
 

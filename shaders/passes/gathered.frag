@@ -3,8 +3,9 @@
 #include "models/portions.glsl"
 
 uniform sampler2D gathered;            // what grains and walls send
-uniform sampler2D gathered_lights;     // the world, seen through it
+uniform sampler2D gathered_lights;     // lights and the world, seen through it
 uniform sampler2D gathered_scattered;  // lights and the world, scattered in it
+uniform sampler2D gathered_mirrored;   // and at its surface
 
 out vec4 radiance;
 
@@ -13,5 +14,6 @@ void main() {
   vec3 sum = portion(EXCHANGE_PORTION, texelFetch(gathered, pixel, 0).rgb);
   sum += portion(TRANSMISSION_PORTION, texelFetch(gathered_lights, pixel, 0).rgb);
   sum += portion(SUBSURFACE_PORTION, texelFetch(gathered_scattered, pixel, 0).rgb);
+  sum += portion(SPECULAR_PORTION, texelFetch(gathered_mirrored, pixel, 0).rgb);
   radiance = vec4(sum, 1.0);
 }

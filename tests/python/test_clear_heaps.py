@@ -1,5 +1,7 @@
 """Clear grains of a heap show what is around them: through their own facets."""
 
+import math
+
 import mesograin_native as native
 import numpy
 import pytest
@@ -94,6 +96,102 @@ def test_what_stands_behind_a_clear_grain_is_seen_through_too():
     radiance, _ = picture(places, half_bright(), 0.8, 8, "order_1", mesh=cube(0.6))
     above, below = radiance[10:20, 20:28].mean(), radiance[28:38, 20:28].mean()
     assert above > 0.7 and below < 0.2
+
+
+CLEAR = native.Material(model="model_2", sigma_a=(0.0,) * 3, sigma_s=(0.2,) * 3, boundary="dielectric", eta=1.5)
+ROUGH = native.Material(model="model_2", sigma_a=(0.0,) * 3, sigma_s=(0.2,) * 3, boundary="dielectric", eta=1.5,
+                        roughness=0.3)
+
+
+# Without a model nothing of a clear grain's light is told twice or by none. Measured, mean and deviation: balls .994
+# and .002, glass 1.000, overlapping ones .994; by model 2 and what others send .95 and .08.
+@pytest.mark.parametrize("material, apart", [(GLASS, 2.1), (CLEAR, 2.1), (CLEAR, 1.2), (ROUGH, 2.1)])
+def test_clear_grains_that_absorb_nothing_lose_no_light(material, apart):
+    places = apart * numpy.stack(numpy.meshgrid(*[numpy.arange(3) - 1.0] * 3), -1).reshape(-1, 3)
+    radiance, coverage = picture(places, native.World(radiance=(1.0, 1.0, 1.0)), 3.0, 4, "heaps", material)
+    found = radiance[coverage > 0.999]
+    assert found.mean() == pytest.approx(1.0, abs=0.01)
+    assert found.std() < 0.01
+
+
+# Grains one in the other, all in one place, of no size to speak of: nothing is lost, nor is anything no number.
+def test_clear_grains_that_cannot_be_lose_no_light_either():
+    nested = numpy.tile(numpy.eye(4), (12, 1, 1))
+    nested[:, :3, :3] *= numpy.linspace(0.2, 2.0, 12)[:, None, None]
+    one_place = numpy.tile(numpy.eye(4), (9, 1, 1))
+    tiny = numpy.tile(numpy.eye(4), (27, 1, 1))
+    tiny[:, :3, 3] = 2.1 * numpy.stack(numpy.meshgrid(*[numpy.arange(3) - 1.0] * 3), -1).reshape(-1, 3)
+    tiny[::3, :3, :3] *= 1e-6
+    for transforms in (nested, one_place, tiny):
+        view = native.View(48, 48)
+        view.set_scene(native.Scene(arrays=[native.InstanceArray(ROUND, CLEAR, transforms)],
+                                    world=native.World(radiance=(1.0, 1.0, 1.0)), exchange="heaps"))
+        view.set_camera(native.Camera.look_at((0.0, -60.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 1.0), 6.0))
+        view.render(4)
+        pixels = view.read()
+        assert numpy.isfinite(pixels).all()
+        assert pixels[pixels[..., 3] > 0.999, 1].mean() == pytest.approx(1.0, abs=0.01)
+
+
+# Of an array whose grains' sizes lie about those that are clear no grain is left out.
+def test_clear_grains_among_larger_ones_that_are_not():
+    transforms = numpy.tile(numpy.eye(4), (27, 1, 1))
+    transforms[:, :3, 3] = 2.2 * numpy.stack(numpy.meshgrid(*[numpy.arange(3) - 1.0] * 3), -1).reshape(-1, 3)
+    transforms[:, :3, :3] *= numpy.linspace(0.7, 1.1, 27)[:, None, None]
+    view = native.View(48, 48)
+    murky = native.Material(model="model_2", sigma_a=(0.0,) * 3, sigma_s=(2.5,) * 3, boundary="dielectric", eta=1.5)
+    view.set_scene(native.Scene(arrays=[native.InstanceArray(ROUND, murky, transforms)],
+                                world=native.World(radiance=(1.0, 1.0, 1.0)), exchange="heaps"))
+    view.set_camera(native.Camera.look_at((0.0, -60.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 1.0), 6.0))
+    view.render(4)
+    pixels = view.read()
+    assert pixels[pixels[..., 3] > 0.999, 1].min() > 0.3
+
+
+def suns_all_around(count):
+    number = numpy.arange(count) + 0.5
+    height = 1.0 - 2.0 * number / count
+    around = math.pi * (1.0 + math.sqrt(5.0)) * number
+    across = numpy.sqrt(1.0 - height ** 2)
+    width = 2.0 * math.acos(1.0 - 2.0 / count)
+    return [native.DirectionalLight(towards, (4.0 * math.pi / count,) * 3, angle=width)
+            for towards in zip(across * numpy.cos(around), across * numpy.sin(around), height)]
+
+
+# Through the grain that is seen, too, and mirrored by it. Measured: glass .989, .2 mean free paths .967; mirrored .046
+# and .040 of the .050 that a world is, for the lobe that stands for a disc loses some at the rim.
+@pytest.mark.parametrize("material", [GLASS, CLEAR])
+def test_suns_all_around_are_a_white_world(material):
+    transforms = numpy.tile(numpy.eye(4), (27, 1, 1))
+    transforms[:, :3, 3] = 2.1 * numpy.stack(numpy.meshgrid(*[numpy.arange(3) - 1.0] * 3), -1).reshape(-1, 3)
+    view = native.View(48, 48)
+    view.set_portions(["specular"])
+    view.set_scene(native.Scene(arrays=[native.InstanceArray(ROUND, material, transforms)],
+                                lights=suns_all_around(60), world=native.World(radiance=(0.0, 0.0, 0.0)),
+                                exchange="heaps"))
+    view.set_camera(native.Camera.look_at((0.0, -60.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 1.0), 6.0))
+    view.render(8)
+    pixels = view.read()
+    inside = pixels[..., 3] > 0.999
+    assert pixels[inside, 1].mean() == pytest.approx(1.0, abs=0.04)
+    mirrored = view.read_portion("specular")[inside, 1].mean()
+    assert 0.03 < mirrored < 0.055
+
+
+def test_no_model_is_asked_of_clear_grains():
+    def passes(exchange):
+        view = native.View(16, 16)
+        transforms = numpy.tile(numpy.eye(4), (9, 1, 1))
+        transforms[:, 0, 3] = 2.1 * numpy.arange(9)
+        view.set_scene(native.Scene(arrays=[native.InstanceArray(ROUND, CLEAR, transforms)],
+                                    lights=[native.DirectionalLight((0.0, 0.0, 1.0), (3.0,) * 3)],
+                                    world=native.World(radiance=(1.0, 1.0, 1.0)), exchange=exchange))
+        view.set_camera(native.Camera.look_at((0.0, -60.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 1.0), 5.0))
+        view.render(1)
+        return {each["pass"] for each in view.timings()}
+
+    assert "mirror" in passes("order_1")
+    assert "gather" in passes("heaps") and "mirror" not in passes("heaps")
 
 
 def test_only_clear_grains_are_looked_into():

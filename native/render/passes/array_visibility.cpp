@@ -30,8 +30,9 @@ bool ArrayVisibility::casts(const Content& content) const {
          (!gl::ContextThread::instance().device_info().hardware && casting::available());
 }
 
-Mirrors ArrayVisibility::mirrors(const Content& content, bool world) const {
-  if (!content.facets()) return Mirrors::none;
+Mirrors ArrayVisibility::mirrors(const Content& content, bool world,
+                                 const std::function<bool(std::size_t unit)>& asks) const {
+  if (!content.facets(asks)) return Mirrors::none;
   if (!content.shadows()) return world ? Mirrors::unhindered : Mirrors::none;
   // A tree of arrays that the device draws is not worth its memory.
   return casts(content) || (content.instances() == nullptr && casting::available()) ? Mirrors::hindered : Mirrors::none;

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <functional>
 #include <memory>
 #include <string_view>
 
@@ -27,8 +29,9 @@ class ArrayVisibility {
   /// Whether rays are cast for this content.
   bool casts(const Content& content) const;
 
-  /// What surfaces of facets can do to find what they mirror. `world`: there is one to be mirrored.
-  Mirrors mirrors(const Content& content, bool world) const;
+  /// What surfaces of facets can do to find what they mirror, of those units whose models are asked. `world`: there is
+  /// one to be mirrored.
+  Mirrors mirrors(const Content& content, bool world, const std::function<bool(std::size_t unit)>& asks) const;
 
   /// Makes ready what the passes of this sample need of the arrays.
   void prepare(const Sample& sample);

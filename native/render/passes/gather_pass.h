@@ -31,12 +31,15 @@ class GatherPass {
 
  private:
   Denoiser denoiser_;
-  std::vector<glm::vec4> others_;     // of what grains send; w: 1 where it was looked
-  std::vector<glm::vec4> lights_;     // and the world, seen through grains
-  std::vector<glm::vec4> scattered_;  // lights, in grains that no model is asked of
+  std::vector<glm::vec4> others_;      // of what grains send; w: 1 where it was looked
+  std::vector<glm::vec4> lights_;      // and the world, seen through grains
+  std::vector<glm::vec4> scattered_;   // lights, in grains that no model is asked of
+  std::vector<glm::vec4> mirrored_;    // and at their surfaces
+  std::vector<glm::vec4> highlights_;  // of lights, there
   std::optional<gl::Texture> device_others_;
   std::optional<gl::Texture> device_lights_;
   std::optional<gl::Texture> device_scattered_;
+  std::optional<gl::Texture> device_mirrored_;
   bool ran_ = false;
   double milliseconds_ = 0.0;
 };
