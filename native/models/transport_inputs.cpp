@@ -25,10 +25,9 @@ constexpr int fewest_terms = 16;
 // What is divided by is not 0.
 constexpr double least_albedo = 1e-9;
 
-// Mean free paths across a grain that nothing to be seen crosses unscattered. Without refraction its rim and its edges
-// are thin, however thick it is: one that nothing were seen through would be lined in black.
-constexpr double most_clear = 6.0;
-constexpr double most_clear_straight = 60.0;
+// Mean free paths across a grain that nothing to be seen crosses unscattered. Its edges, and without refraction its
+// rim, are thin, however thick it is: one that nothing were seen through would be lined in black.
+constexpr double most_clear = 60.0;
 
 // The medium that is similar to the material's and scatters isotropically (van de Hulst 1980, section 14.1.3).
 transport::StoredMedium stored_medium(const scene::Material& material) {
@@ -201,8 +200,7 @@ MaterialInputs prototype_inputs(const scene::Material& material, const StoredTra
   const glm::dvec3 sigma_t = stored.unit * stored_medium(material).sigma_t;
   const glm::dvec3 unscattered =
       is_walked(material) ? stored.unit * material.scale * (material.sigma_a + material.sigma_s) : sigma_t;
-  if (stored.mean_chord * std::min({unscattered.r, unscattered.g, unscattered.b}) <
-      (stored.has_unscattered ? most_clear : most_clear_straight))
+  if (stored.mean_chord * std::min({unscattered.r, unscattered.g, unscattered.b}) < most_clear)
     inputs.defines.emplace_back("CLEAR");
   if (stored.terms > fewest_terms) inputs.defines.emplace_back("MANY_TERMS");
   inputs.uniforms["stored.x_axis"] = stored.axes[0];
