@@ -4,7 +4,8 @@
 
 WITHOUT, WITH, GATHERED: folders that `./mesograin compare` wrote with --exchange off, heaps and gathered. A row for
 each case: the pictures, the reference, and what is left of the difference in the second. Above them the ratio of
-totals and relative L1 in blocks of 8 x 8 pixels, over the pixels that were compared, those that show grains. Prints these, and by how much Cycles' own noise is in them.
+totals and relative L1 in blocks of 8 x 8 pixels, over the pixels that were compared, those that show grains. Prints
+these, and by how much Cycles' own noise is in them.
 """
 import json
 import pathlib
