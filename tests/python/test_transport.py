@@ -160,6 +160,17 @@ def brightness(view):
     return view.read()[..., 0].sum()
 
 
+def test_a_view_goes_on_when_another_has_taken_in_what_is_known(cube):
+    unknown = material(eta=1.32 + 1e-4 * random.random())
+    view, other = (show(native.View(32, 32, patient=False), cube, unknown) for _ in range(2))
+    brightness(view)
+    assert view.preparing is not None, "it was known before"
+    deadline = time.monotonic() + 120.0
+    while not other.take_news() and time.monotonic() < deadline:
+        time.sleep(0.02)
+    assert brightness(view) > 0.0 and view.take_news()
+
+
 def test_an_impatient_view_draws_at_once_and_better_later(cube):
     unknown = material(eta=1.31 + 1e-4 * random.random())  # of which no run before has left anything in the cache
     view = show(native.View(32, 32, patient=False), cube, unknown)

@@ -218,7 +218,8 @@ void ShadePass::set_draw(const Sample& sample, const gl::Program& program, const
   const bool at_place = sample.lights_at_place(*draw.material, false);
   set_lights(sample, program, at_place ? sample.lights.distant : sample.lighting.at(sample.lights, draw.centre),
              draw.centre);
-  if (draw.light_maps) draw.light_maps->bind(program);
+  // Another view may have taken in what the material has become since, and this one not yet.
+  if (draw.light_maps && draw.material->light_maps()) draw.light_maps->bind(program);
   program.offer("grain_reach", static_cast<float>(draw.reach));
   program.offer("grain_to_prototype", glm::mat3(draw.grain_to_prototype));
   program.offer("place_of_grain", glm::vec3(draw.centre - content.anchor()));
