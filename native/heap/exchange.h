@@ -18,11 +18,12 @@ struct Quality {
   int light_rays = 64;  ///< to each light
   int seen_rays = 64;   ///< straight through each transparent grain
   float tolerance = 3e-4F;
-  int walks = GrainTable::most_walks;  ///< for each interval of a kind's table, where kinds are few
-  bool quick = false;                  ///< links that were found at other materials will do
-  int deep_rays = 16;                  ///< of each kind, of grains that lie deep in a heap of many
-  int sharing_rays = 12;               ///< of each kind, of each of the few that answer for all that share numbers
-  std::size_t shared_from = 50'000;    ///< as many grains or more share numbers where they lie deep
+  int walks = GrainTable::most_walks;       ///< for each interval of a kind's table, where kinds are few
+  bool quick = false;                       ///< links that were found at other materials will do
+  int deep_rays = 16;                       ///< of each kind, of grains that lie deep in a heap of many
+  int sharing_rays = 12;                    ///< of each kind, of each of the few that answer for all that share numbers
+  std::size_t shared_from = 50'000;         ///< as many grains or more share numbers where they lie deep
+  std::size_t clear_shared_from = 250'000;  ///< some of them clear: few rays tell too little of what those scatter
 };
 
 /// Where there are few grains, finer than the default, but with no more rays in all than 10^4 grains have there.

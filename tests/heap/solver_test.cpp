@@ -306,6 +306,15 @@ TEST(Solver, TellsWhatClearGrainsScatterOverTheShareThatTheyDo) {
   EXPECT_TRUE(solver.solve(heap, {}, {}).scattered.empty());
 }
 
+TEST(Solver, LetsClearGrainsShareTheirNumbersOnlyWhereTheyAreManyMore) {
+  const Heap heap = lit(glass(0.2), 12);
+  Quality quality = sharing();
+  quality.rays = quality.light_rays = quality.seen_rays = 8;
+  EXPECT_FALSE(solve_exchange(heap, quality, {}, {}).seats->shared());
+  quality.clear_shared_from = 0;
+  EXPECT_TRUE(solve_exchange(heap, quality, {}, {}).seats->shared());
+}
+
 TEST(Solver, TellsWhatClearGrainsScatterAfterOneHasMoved) {
   Heap heap = lit(glass(0.4));
   Solver solver;
