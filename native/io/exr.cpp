@@ -49,12 +49,7 @@ class MemoryInput : public Imf::IStream {
  public:
   explicit MemoryInput(std::string& bytes) : Imf::IStream("an OpenEXR file"), bytes_(bytes) {}
 
-  bool isMemoryMapped() const override { return true; }
-  char* readMemoryMapped(int count) override {
-    char* start = bytes_.data() + position_;
-    advance(count);
-    return start;
-  }
+  // Not as memory that is mapped: of that OpenEXR reads as much as a block should have, however much it has.
   bool read(char target[], int count) override {
     const char* start = bytes_.data() + position_;
     advance(count);
@@ -169,11 +164,13 @@ void check_header(const Imf::Header& header, const std::string& bytes, std::size
   const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
   const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
   std::int64_t channels = 0;
+  std::int64_t bytes_of_pixel = 0;
   for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel) {
     if (channel.channel().xSampling != 1 || channel.channel().ySampling != 1)
       throw Corrupt(
           fmt::format("its channel '{}' is subsampled and full resolution is needed; save it as RGB", channel.name()));
     ++channels;
+    bytes_of_pixel += channel.channel().type == Imf::HALF ? 2 : 4;
   }
   if (channels == 0) throw Corrupt("it has no channels");
   if (width < 1 || height < 1) throw Corrupt(fmt::format("its size is {} x {} pixels", width, height));
@@ -184,10 +181,14 @@ void check_header(const Imf::Header& header, const std::string& bytes, std::size
 
   const std::int64_t chunks = chunks_of_finest_level(header, width, height);
   if (chunks > static_cast<std::int64_t>((bytes.size() - chunk_table) / 8)) throw Corrupt("it ends too early");
+  const bool as_they_are = header.compression() == Imf::NO_COMPRESSION && !header.hasTileDescription();
   std::int64_t missing = 0;
   for (std::int64_t chunk = 0; chunk < chunks; ++chunk) {
     const auto offset = little_endian<std::uint64_t>(bytes, chunk_table + static_cast<std::size_t>(chunk) * 8);
-    if (offset < chunk_table || offset > bytes.size() - 8) ++missing;
+    if (offset < chunk_table || offset > bytes.size() - 8)
+      ++missing;
+    else if (as_they_are && little_endian<std::int32_t>(bytes, offset + 4) != width * bytes_of_pixel)
+      throw Corrupt(fmt::format("its blocks of pixels are not {} pixels wide", width));
   }
   if (missing > 0) throw Corrupt(fmt::format("{} of its {} blocks of pixels are missing", missing, chunks));
 }

@@ -261,6 +261,17 @@ TEST(Exr, HugeSizesAreRefusedBeforeTheyAreAllocated) {
   expect_error([&] { read_exr(folder / "huge.exr"); }, "Can't read");
 }
 
+TEST(Exr, DoesNotReadBeyondWhatALineHas) {
+  const TemporaryFolder folder;
+  for (const Imf::Compression compression : {Imf::NO_COMPRESSION, Imf::RLE_COMPRESSION, Imf::ZIPS_COMPRESSION}) {
+    std::string bytes = small_file(folder, compression, false);
+    const std::size_t window = bytes.find(std::string("dataWindow\0box2i\0", 17)) + 17 + 4;
+    const std::int32_t box[] = {0, 0, 65534, 17};
+    std::memcpy(bytes.data() + window, box, sizeof(box));
+    EXPECT_FALSE(is_readable(bytes)) << "compression " << compression;
+  }
+}
+
 TEST(Exr, RefusesNamesAndShapesThatDoNotFit) {
   const TemporaryFolder folder;
   const Image image = random_image(4, 4, 3);

@@ -1,27 +1,44 @@
 # What is no grain and stays what it is beside grains: a ground, a wall.
 """Both sides of a comparison draw it in its mean colour; pixels that show it do not count."""
 
+import numpy
+
 from ..scene import meshes, plain_materials
 
 
 def drawn_materials(depsgraph):
     """{full name: bpy.types.Material} of all that a reference draws; None stands for faces that have none."""
-    found = {}
+    found, known = {}, {}
     for instance in depsgraph.object_instances:
         # Blender 3.4 crashes at the slots of an object that can have none.
         if not (instance.show_self and meshes.is_drawn(instance.object, instance.matrix_world)):
             continue
-        slots = [slot.material.original if slot.material else None for slot in instance.object.material_slots] or [None]
-        found.update((material and material.name_full, material) for material in slots)
+        slots = instance.object.material_slots
+        key = (instance.object.data.as_pointer(), len(slots))
+        if key not in known:
+            known[key] = _used(instance.object.data, len(slots))
+        for slot in known[key]:
+            material = slots[slot].material.original if slots and slots[slot].material else None
+            found[material and material.name_full] = material
     return found
 
 
-def stays(kind, materials):
-    """Full names of those of `materials`, as `drawn_materials` has them, that stay what they are in a kinds.Kind: those
-    for which nothing of Mesograin was ever chosen, if others are there. Under direct light alone none does: the kinds
-    that show nothing else say what everything is."""
+def _used(shape, count):
+    """Numbers of the slots, of so many, that faces of a shape have; those beyond the last have the last."""
+    polygons = getattr(shape, "polygons", None)
+    if polygons is None:
+        return range(max(count, 1))
+    numbers = numpy.zeros(len(polygons), numpy.int32)
+    polygons.foreach_get("material_index", numbers)
+    return {min(int(number), max(count - 1, 0)) for number in numpy.unique(numbers)}
+
+
+def stays(materials):
+    """Full names of those of `materials`, as `drawn_materials` has them, that stay what they are: those for which
+    nothing of Mesograin was ever chosen, if others are there. (Not under direct light alone: the kinds of reference
+    that show nothing else say what everything is.)"""
     plain = {name for name, material in materials.items() if material and plain_materials.is_plain(material)}
-    return frozenset() if kind.direct or len(plain) == len(materials) else frozenset(plain)
+    return frozenset() if len(plain) == len(materials) else frozenset(plain)
 
 
 def recipe_name(kind, model):

@@ -136,7 +136,7 @@ def _check(depsgraph, kind, overrides):
             raise ReferenceError(f"Object '{instance.object.name}' is a point cloud, which a reference cannot show: "
                                  "hide it, or put an instance on each of its points.")
     materials = beside.drawn_materials(depsgraph)
-    staying = beside.stays(kind, materials)
+    staying = frozenset() if kind.direct else beside.stays(materials)
     notes = [f"Material '{name}' is no grain: it stays what it is, in its mean colour, and its pixels do not count."
              for name in sorted(staying)]
     suns = [instance.object.data.angle for instance in depsgraph.object_instances

@@ -20,7 +20,6 @@ class MaterialValues:
     name: str
     values: tuple  # (parameter, value) pairs
     finish: object = None  # plain_materials.FinishValues, of what is no grain
-    plain: bool = False  # no grain: a ground, a wall
 
     def multiplied(self, factors):
         """The material with some of its colours multiplied. factors: {parameter: 3 numbers}."""
@@ -240,7 +239,7 @@ def material_values(material, millimetres_per_unit, reading=None):
     if not plain_materials.is_plain(material):
         return MaterialValues(material.name_full, tuple(values.items()))
     reading = reading or plain_materials.read(material)
-    return MaterialValues(material.name_full, tuple({**values, **reading.values}.items()), reading.finish, plain=True)
+    return MaterialValues(material.name_full, tuple({**values, **reading.values}.items()), reading.finish)
 
 
 def read_scene(depsgraph, cache, varied=True):

@@ -5,6 +5,7 @@ import dataclasses
 import statistics
 
 from ... import native_module
+from ...cycles import beside
 from ...engine import stated_error
 from ...scene import export, lights, meshes
 
@@ -25,6 +26,7 @@ class Ours:
     def __init__(self, depsgraph, size, overrides, parts=SEEDS, exchange=None):
         native = native_module.get()
         self._overrides = overrides
+        self._staying = beside.stays(beside.drawn_materials(depsgraph))
         scene = export.read_scene(depsgraph, meshes.MeshCache(), varied=False)
         if exchange:
             scene = dataclasses.replace(scene, exchange=exchange)
@@ -47,12 +49,11 @@ class Ours:
         return found
 
     def _with(self, chosen, direct):
-        """What is no grain stays what it is beside grains, in the comparison's mean colour, as `cycles.beside` has it
-        of the other side; under direct light alone it is what the kind of reference asks of everything."""
-        mixed = not direct and not all(material.plain for material in self._scene.materials)
+        """What is no grain stays what it is beside grains, in its mean colour, as on the other side; under direct light
+        alone it is what the kind of reference asks of everything."""
 
         def change(material):
-            if mixed and material.plain:
+            if not direct and material.name in self._staying:
                 return material
             values = {**dict(material.values), **self._overrides, **chosen}
             return export.MaterialValues(material.name, tuple(values.items()))
