@@ -84,8 +84,9 @@ struct Blocks {
 
   // What `stored` holds of some place, of so many that each term has, or of some direction.
   std::size_t index(int block, int component, std::size_t places, std::size_t place) const {
-    const auto term = static_cast<std::size_t>(block % a_channel * terms_a_texel + component);
-    return (term * places + place) * static_cast<std::size_t>(channels) + static_cast<std::size_t>(block / a_channel);
+    const int term = block % a_channel * terms_a_texel + component;
+    return (static_cast<std::size_t>(term) * places + place) * static_cast<std::size_t>(channels) +
+           static_cast<std::size_t>(block / a_channel);
   }
 
   int channels;
@@ -147,9 +148,10 @@ Volume lobes_volume(const StoredTransport& stored) {
           v = v < 0 ? 0 : side - 1;
           u = side - 1 - u;
         }
-        const auto texel = static_cast<std::size_t>(v * side + u);
+        const int texel = v * side + u;
         for (int component = 0; component < terms_a_texel; ++component)
-          maps.texels.push_back(stored.lobes[blocks.index(block, component, transport::octahedron_texels, texel)]);
+          maps.texels.push_back(stored.lobes[blocks.index(block, component, transport::octahedron_texels,
+                                                          static_cast<std::size_t>(texel))]);
       }
   return maps;
 }
