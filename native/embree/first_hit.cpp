@@ -2,22 +2,9 @@
 #include "embree/first_hit.h"
 
 namespace mesograin::embree {
-namespace {
-
-QueryContext fresh() {
-  QueryContext context;
-#if RTC_VERSION_MAJOR >= 4
-  rtcInitRayQueryContext(&context);
-#else
-  rtcInitIntersectContext(&context);
-#endif
-  return context;
-}
-
-}  // namespace
 
 RTCRayHit first_hit(RTCScene scene, const glm::vec3& origin, const glm::vec3& direction, float near, float far) {
-  QueryContext context = fresh();
+  QueryContext context = fresh_context();
   return first_hit(scene, origin, direction, near, far, 0, &context);
 }
 

@@ -14,6 +14,16 @@ using QueryContext = RTCRayQueryContext;
 using QueryContext = RTCIntersectContext;
 #endif
 
+inline QueryContext fresh_context() {
+  QueryContext context;
+#if RTC_VERSION_MAJOR >= 4
+  rtcInitRayQueryContext(&context);
+#else
+  rtcInitIntersectContext(&context);
+#endif
+  return context;
+}
+
 /// What a ray meets first between these distances along it; nothing if the hit's geomID is RTC_INVALID_GEOMETRY_ID.
 RTCRayHit first_hit(RTCScene scene, const glm::vec3& origin, const glm::vec3& direction, float near,
                     float far = std::numeric_limits<float>::infinity());

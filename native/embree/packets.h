@@ -7,17 +7,12 @@ namespace mesograin::embree {
 
 /// What goes with the rays of a packet on their way through user geometry.
 struct Context {
-  QueryContext query;
+  QueryContext query = fresh_context();
   const float* own = nullptr;  // of each ray, as in Packet
 
-  Context() {
-#if RTC_VERSION_MAJOR >= 4
-    rtcInitRayQueryContext(&query);
-#else
-    rtcInitIntersectContext(&query);
-    query.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+#if RTC_VERSION_MAJOR < 4
+  Context() { query.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT; }
 #endif
-  }
 };
 
 inline void intersect(const int* valid, RTCScene scene, Context& context, RTCRayHit8& rays) {

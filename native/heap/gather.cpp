@@ -180,7 +180,7 @@ Gather::All Gather::look_at_all(std::uint32_t grain, const glm::vec3& place, con
 }
 
 bool Gather::sees_into(std::uint32_t grain) const {
-  return !light_->scattered.empty() && space_.kind(grain).from_light->is_clear();
+  return sees_into_any() && space_.kind(grain).from_light->is_clear();
 }
 
 Gather::Through Gather::look_into(const SeenFacet& seen, const Facets& facets, const Look& how,
@@ -196,15 +196,11 @@ Gather::Through Gather::look_into(const SeenFacet& seen, const Facets& facets, c
   return sum;
 }
 
-void Gather::add_scattered(const SeenFacet& seen, const glm::vec3& weight, bool lights, Through& sum) const {
+Gather::ScatteredLight Gather::scattered_in(const SeenFacet& seen) const {
   const glm::vec3 place = space_.kind(seen.grain).from_light->seen_place(seen.normal, seen.towards);
   const glm::vec3 all = glm::max(light_->seats->light_at(light_->scattered, seen.grain, place, true), 0.0F);
-  const glm::vec3 answer =
-      glm::clamp(light_->seats->light_at(light_->scattered_answer, seen.grain, place, true), glm::vec3(0.0F), all);
-  if (lights)
-    sum.scattered += weight * (all - answer);
-  else
-    sum.others += weight * answer;
+  const glm::vec3 answer = light_->seats->light_at(light_->scattered_answer, seen.grain, place, true);
+  return {all, glm::clamp(answer, glm::vec3(0.0F), all)};
 }
 
 void Gather::follow_look(SeenFacet seen, const Facets& facets, const Look& how, transport::Random& random,
@@ -218,16 +214,15 @@ void Gather::follow_look(SeenFacet seen, const Facets& facets, const Look& how, 
         walk_facets(heap_.grains.kinds[grain.kind], grain.radius, seen, facets,
                     first ? how.scatterings : Scatterings::end, random, &once_scattered);
     // What lights and the world scatter in it is no other walk's to tell.
-    if (first && how.whole) add_scattered(seen, once_scattered, true, sum);
+    if (first && how.whole && once_scattered != glm::vec3(0.0F)) {
+      const ScatteredLight scattered = scattered_in(seen);
+      sum.scattered += once_scattered * (scattered.all - scattered.of_others);
+    }
     if (!passage) return;
     weight *= passage->weight;
     if (passage->scattered && (!first || how.scatterings == Scatterings::end)) {
-      add_scattered(seen, weight, false, sum);
-      if (!first) {
-        Through lit;
-        add_scattered(seen, weight, true, lit);
-        sum.others += lit.scattered;
-      }
+      const ScatteredLight scattered = scattered_in(seen);
+      sum.others += weight * (first ? scattered.of_others : scattered.all);
       return;
     }
     // What else the grain that is seen makes of the lights is its model's, or highlights().

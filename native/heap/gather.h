@@ -53,6 +53,9 @@ class Gather {
   /// Whether so much crosses this grain, whose surface refracts, that look_into() shows more of it.
   bool sees_into(std::uint32_t grain) const;
 
+  /// Whether that is so of any grain.
+  bool sees_into_any() const { return !light_->scattered.empty(); }
+
   /// What is seen of a clear grain.
   struct Through {
     glm::vec3 others{0.0F};     ///< of what grains and walls send
@@ -91,8 +94,12 @@ class Gather {
  private:
   void follow_look(SeenFacet seen, const Facets& facets, const Look& how, transport::Random& random,
                    Through& sum) const;
-  /// What of the light scattered in a grain is seen there; `lights`: what comes from others' apart.
-  void add_scattered(const SeenFacet& seen, const glm::vec3& weight, bool lights, Through& sum) const;
+  /// What was scattered in a clear grain, over the share of light that is.
+  struct ScatteredLight {
+    glm::vec3 all;
+    glm::vec3 of_others;  ///< that grains and walls have sent
+  };
+  ScatteredLight scattered_in(const SeenFacet& seen) const;
   glm::vec3 lights_along(std::uint32_t grain, const Passage& passage, const Facets& facets,
                          transport::Random& random) const;
   /// What is left of a light on its way to a grain's surface.

@@ -57,8 +57,8 @@ bool Space::is_open(std::uint32_t grain, float far) const {
   return false;
 }
 
-bool Space::any_clear() const {
-  return std::any_of(kinds_.begin(), kinds_.end(), [](const Kind& kind) { return kind.from_light->is_clear(); });
+bool any_clear(const std::vector<Kind>& kinds) {
+  return std::any_of(kinds.begin(), kinds.end(), [](const Kind& kind) { return kind.from_light->is_clear(); });
 }
 
 WallPlace Space::place(const Patches::Node& node, float u, float v) const {

@@ -35,6 +35,9 @@ struct Kind {
 /// `walks` for each interval of a table, or fewer where kinds are many.
 std::vector<Kind> kinds_of(const Grains& grains, int walks, const transport::Effort& effort);
 
+/// Whether grains of any kind are clear.
+bool any_clear(const std::vector<Kind>& kinds);
+
 /// A straight line between grains, with what is left of its weight.
 struct Ray {
   glm::vec3 origin;  ///< of one that was followed: where it has come to
@@ -70,8 +73,7 @@ class Space {
   const Kind& kind(const Patches::Node& node) const { return kinds_[walls_[node.wall].kind]; }
   const Patches& patches() const { return patches_; }
 
-  /// Whether any kind of grain is clear.
-  bool any_clear() const;
+  bool any_clear() const { return heap::any_clear(kinds_); }
 
   /// Of all that answers: grains in their seats, then nodes.
   std::size_t size() const { return seats_->answering() + patches_.nodes().size(); }

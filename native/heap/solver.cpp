@@ -172,9 +172,7 @@ void Solver::find_matter(const Grains& grains, const Quality& quality, const tra
     matter->kinds = kinds_of(grains, quality.walks, effort);
     ++parts_.tables;
   }
-  const bool clear = std::any_of(matter->kinds.begin(), matter->kinds.end(),
-                                 [](const Kind& kind) { return kind.from_light->is_clear(); });
-  if (grains.grains.size() >= (clear ? quality.clear_shared_from : quality.shared_from)) {
+  if (grains.grains.size() >= (any_clear(matter->kinds) ? quality.clear_shared_from : quality.shared_from)) {
     matter->cells_below = cells_below(grains, matter->kinds);
     if (traced_) take_seats(*traced_->matter, *matter);
     if (matter_) take_seats(*matter_, *matter);

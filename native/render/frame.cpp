@@ -133,29 +133,29 @@ Sample Frame::begin_sample(const GoOn& go_on) {
       std::any_of(draws.begin(), draws.end(), [](const Draw& draw) { return draw.light_maps != nullptr; });
   const bool cast = arrays_.casts(*content_);
   const bool gathers = !unwrapping_ && exchange_.gather() != nullptr && (exchange_.gathers_all() || cast);
-  const auto asks = [&](std::size_t unit) {
-    return !gathers || !exchange_.gathers_all_of(content_->first_number(unit), cast);
-  };
-  const Mirrors mirrors = unwrapping_ ? Mirrors::none : arrays_.mirrors(*content_, lighting_.world().shines(), asks);
-  if (mirrors == Mirrors::hindered && !targets_->mirror) targets_->mirror.emplace(targets_->sample, targets_->depth);
-  return {.cache = cache_,
-          .content = *content_,
-          .lighting = lighting_,
-          .exchange = exchange_,
-          .targets = *targets_,
-          .camera = unwrapping_ ? pinhole() : seen_through(index),
-          .unwrapping = unwrapping_ ? &*unwrapping_ : nullptr,
-          .size = size_,
-          .index = index,
-          .seed = seed_,
-          // Uniform over the pixel: the box filter, one pixel wide.
-          .jitter = glm::vec2((2.0 * r2_point(index, seeded_offset(seed_)) - 1.0) / glm::dvec2(size_)),
-          .lights = lighting_.sample(index, seed_, own_maps ? 1 : most_world_directions),
-          .cast = cast,
-          .gathers = gathers,
-          .denoises = scene_.denoise,
-          .mirrors = mirrors,
-          .go_on = go_on};
+  Sample sample{.cache = cache_,
+                .content = *content_,
+                .lighting = lighting_,
+                .exchange = exchange_,
+                .targets = *targets_,
+                .camera = unwrapping_ ? pinhole() : seen_through(index),
+                .unwrapping = unwrapping_ ? &*unwrapping_ : nullptr,
+                .size = size_,
+                .index = index,
+                .seed = seed_,
+                // Uniform over the pixel: the box filter, one pixel wide.
+                .jitter = glm::vec2((2.0 * r2_point(index, seeded_offset(seed_)) - 1.0) / glm::dvec2(size_)),
+                .lights = lighting_.sample(index, seed_, own_maps ? 1 : most_world_directions),
+                .cast = cast,
+                .gathers = gathers,
+                .denoises = scene_.denoise,
+                .go_on = go_on};
+  if (unwrapping_) return sample;
+  sample.mirrors =
+      arrays_.mirrors(*content_, lighting_.world().shines(), [&](std::size_t unit) { return sample.asks_model(unit); });
+  if (sample.mirrors == Mirrors::hindered && !targets_->mirror)
+    targets_->mirror.emplace(targets_->sample, targets_->depth);
+  return sample;
 }
 
 bool Frame::add_sample(const GoOn& go_on) {

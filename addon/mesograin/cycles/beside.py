@@ -1,8 +1,6 @@
 # What is no grain and stays what it is beside grains: a ground, a wall.
 """Both sides of a comparison draw it in its mean colour; pixels that show it do not count."""
 
-import numpy
-
 from ..scene import meshes, plain_materials
 
 
@@ -16,21 +14,11 @@ def drawn_materials(depsgraph):
         slots = instance.object.material_slots
         key = (instance.object.data.as_pointer(), len(slots))
         if key not in known:
-            known[key] = _used(instance.object.data, len(slots))
+            known[key] = meshes.used_slots(instance.object.data, len(slots))
         for slot in known[key]:
             material = slots[slot].material.original if slots and slots[slot].material else None
             found[material and material.name_full] = material
     return found
-
-
-def _used(shape, count):
-    """Numbers of the slots, of so many, that faces of a shape have; those beyond the last have the last."""
-    polygons = getattr(shape, "polygons", None)
-    if polygons is None:
-        return range(max(count, 1))
-    numbers = numpy.zeros(len(polygons), numpy.int32)
-    polygons.foreach_get("material_index", numbers)
-    return {min(int(number), max(count - 1, 0)) for number in numpy.unique(numbers)}
 
 
 def stays(materials):

@@ -34,18 +34,20 @@ class Shot:
     cached: bool
 
 
+def _parameters(depsgraph, material):
+    return dict(export.material_values(material, depsgraph.scene.mesograin.millimetres_per_unit).values)
+
+
 def grain_values(depsgraph, overrides, material):
     """GrainValues of a bpy.types.Material, or of the default grain for faces that have none (None)."""
-    parameters = dict(export.material_values(material, depsgraph.scene.mesograin.millimetres_per_unit).values)
-    return GrainValues.from_parameters({**parameters, **overrides})
+    return GrainValues.from_parameters({**_parameters(depsgraph, material), **overrides})
 
 
 def _recipe(depsgraph, kind, overrides, material, staying):
-    if material is None or material.name_full not in staying:
-        return recipes.recipe(kind.recipe, grain_values(depsgraph, overrides, material), nodes.features())
-    parameters = dict(export.material_values(material, depsgraph.scene.mesograin.millimetres_per_unit).values)
-    name = beside.recipe_name(kind, parameters["model"])
-    return recipes.recipe(name, GrainValues.from_parameters(parameters), nodes.features())
+    name = kind.recipe
+    if material is not None and material.name_full in staying:
+        name, overrides = beside.recipe_name(kind, _parameters(depsgraph, material)["model"]), {}
+    return recipes.recipe(name, grain_values(depsgraph, overrides, material), nodes.features())
 
 
 def take(

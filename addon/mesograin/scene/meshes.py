@@ -23,6 +23,17 @@ def is_drawn(thing, matrix_world):
     return is_shape(thing) and has_extent(matrix_world) and is_finite(matrix_world)
 
 
+def used_slots(shape, count):
+    """Numbers of the slots, of so many that an object has, that faces of its data have: those beyond the last have the
+    last. Of what has no faces to ask (curves, text, metaballs), all."""
+    polygons = getattr(shape, "polygons", None)
+    if polygons is None:
+        return list(range(max(count, 1)))
+    slots = np.empty(len(polygons), dtype=np.int32)
+    polygons.foreach_get("material_index", slots)
+    return np.unique(np.minimum(slots, max(count - 1, 0))).tolist()
+
+
 THINNEST = 1e-7
 """How short an object's shortest axis may be beside its longest: single precision tells no more apart."""
 

@@ -5,7 +5,7 @@ from bpy.props import EnumProperty, FloatProperty, FloatVectorProperty, PointerP
 
 from .. import native_module
 from ..schema import advice, models
-from ..scene import export, thick_layer
+from ..scene import export, meshes, thick_layer
 from .active_material import OnActiveMaterial, active_material
 
 INDICES = {"air": 1.0, "water": 1.333, "oil": 1.47}
@@ -105,13 +105,10 @@ def _is_on(material, thing):
     theirs."""
     if thing.type != "MESH":
         return True
-    polygons, slots = thing.data.polygons, thing.material_slots
-    if not polygons or len(slots) < 2:
-        return len(polygons) > 0
-    used = np.empty(len(polygons), dtype=np.int32)
-    polygons.foreach_get("material_index", used)
-    used = np.unique(np.minimum(used, len(slots) - 1))
-    return any(slots[int(number)].material == material for number in used)
+    slots = thing.material_slots
+    if len(slots) < 2:
+        return len(thing.data.polygons) > 0
+    return any(slots[number].material == material for number in meshes.used_slots(thing.data, len(slots)))
 
 
 def hint(material, thing, millimetres_per_unit):

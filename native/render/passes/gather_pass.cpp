@@ -51,14 +51,14 @@ bool GatherPass::run(const Sample& sample, const ArrayVisibility& arrays, Surfac
   if (!ran_) return true;
   const auto start = std::chrono::steady_clock::now();
   std::optional<ClearLooks> clear;
-  if (sample.cast) clear.emplace(arrays.tree(), sample.content, sample.exchange);
+  if (sample.cast && gather->sees_into_any()) clear.emplace(arrays.tree(), sample.content, sample.exchange);
   const SeenSurfaces seen = surfaces.seen(sample);
   const std::vector<Exchange::Role>& roles = sample.exchange.roles();
   others_.assign(seen.normals.size(), glm::vec4(0.0F));
   lights_.assign(seen.normals.size(), glm::vec4(0.0F));
   scattered_.assign(seen.normals.size(), glm::vec4(0.0F));
   mirrored_.assign(seen.normals.size(), glm::vec4(0.0F));
-  highlights_.assign(seen.normals.size(), glm::vec4(0.0F));
+  if (clear) highlights_.assign(seen.normals.size(), glm::vec4(0.0F));
   const auto width = static_cast<std::size_t>(sample.size.x);
   const PixelRays pixel_rays(anchor_to_clip(sample.content, sample.camera), sample.size, glm::dvec2(0.0),
                              sample.content.instances() != nullptr ? sample.content.instances()->bounds() : Bounds{});
@@ -99,11 +99,14 @@ bool GatherPass::run(const Sample& sample, const ArrayVisibility& arrays, Surfac
     }
   });
   if (!whole) return false;
-  if (sample.denoises &&
-      !denoiser_.run(seen, sample.index, others_, {&others_, &lights_, &scattered_, &mirrored_}, sample.go_on))
-    return false;
+  if (sample.denoises) {
+    std::vector<std::vector<glm::vec4>*> noisy{&others_, &lights_, &scattered_};
+    if (clear) noisy.push_back(&mirrored_);
+    if (!denoiser_.run(seen, sample.index, others_, noisy, sample.go_on)) return false;
+  }
   // They have no noise, and edges.
-  for (std::size_t i = 0; i < mirrored_.size(); ++i) mirrored_[i] += highlights_[i];
+  if (clear)
+    for (std::size_t i = 0; i < mirrored_.size(); ++i) mirrored_[i] += highlights_[i];
   upload(device_others_, sample.size, others_);
   upload(device_lights_, sample.size, lights_);
   upload(device_scattered_, sample.size, scattered_);

@@ -50,7 +50,7 @@ struct Sample {
   bool cast;      ///< rays find what is seen of arrays
   bool gathers;   ///< light between grains is gathered for pixels that show them
   bool denoises;  ///< and neighbours that show the same tell each other what was found
-  Mirrors mirrors;
+  Mirrors mirrors = Mirrors::none;
   const GoOn& go_on;
   std::optional<Portion> portion{};  ///< of its light, that is shaded alone
 
