@@ -33,6 +33,23 @@ class Slow:
         return self._seconds
 
 
+class Withheld:
+    """A native.View of which what becomes known is told only once it may be: machines differ in how soon it is."""
+
+    def __init__(self, view):
+        self._view, self.told = view, False
+
+    def __getattr__(self, name):
+        return getattr(self._view, name)
+
+    @property
+    def preparing(self):
+        return self._view.preparing if self.told else 0.5
+
+    def take_news(self):
+        return self.told and self._view.take_news()
+
+
 @pytest.fixture
 def drag(native, blend_files, monkeypatch):
     """drag(sample_seconds, redraw_seconds): a new reflectance for each redraw, which takes as long, or with None as
@@ -174,14 +191,18 @@ def test_transport_is_waited_for_by_nobody_and_comes_into_the_picture(native, bl
         started = time.monotonic()
         session.set_scene(export.read_scene(depsgraph, meshes.MeshCache()))
         assert time.monotonic() - started < 2.0, "computing it takes longer"
+        session._view = Withheld(session._view)
         session.set_camera(export.camera_from_scene(depsgraph, *SIZE), *SIZE)
-        while (not shown or session.busy) and time.monotonic() - started < 300.0:
+        while session.busy and time.monotonic() - started < 300.0:
             picture = session.advance(4)
             if picture is not None:
                 shown.append(picture.copy())
+                session._view.told = True
         assert not session.busy and session.samples == 4 and session.warnings == ()
+        # The first is drawn without transport; what comes next fades in from it.
         steps = [np.abs(after - before).mean() for before, after in zip(shown, shown[1:])]
-        assert len(shown) > 4 and max(steps[2:]) < 0.1 * brightness(shown[-1])
+        assert len(shown) >= 3 and np.abs(shown[-1] - shown[0]).mean() > 0.0
+        assert max(steps) < 0.1 * brightness(shown[-1])
         view = native.View(*SIZE)
         view.set_scene(export.scene_from_depsgraph(depsgraph)[0])
         view.set_camera(export.camera_from_scene(depsgraph, *SIZE))
