@@ -27,6 +27,8 @@ ROOMS = ("compat", "native_module", "grains.shape", "grains.kinds", "grains.pile
          *(f"ui.compare_panel.{name}" for name in ("properties", "session", "operators", "panel")),
          *(f"ui.bake_panel.{name}" for name in ("properties", "compared", "session", "operators", "panel")),
          *(f"ui.match_panel.{name}" for name in ("properties", "session", "operators", "panel")))
+# What there is instead where Blender's Python has no NumPy, as Debian's may be installed.
+ROOMS_WITHOUT_NUMPY = ("without_numpy",)
 # What scripts use, from `studies.scripting`.
 SCRIPTED = ("compare", "Comparison", "ComparisonError")
 _rooms = []
@@ -41,12 +43,20 @@ def __getattr__(name):
     return getattr(importlib.import_module(f"{__package__}.studies.scripting"), name)
 
 
+def _has_numpy():
+    try:
+        import numpy  # noqa: F401
+    except ImportError:
+        return False
+    return True
+
+
 def _load_rooms():
     """The rooms' modules; read again from disk if they were loaded before, which is what Reload Scripts asks for."""
     import importlib
     import sys
 
-    for room in ROOMS:
+    for room in ROOMS if _has_numpy() else ROOMS_WITHOUT_NUMPY:
         name = f"{__package__}.{room}"
         yield importlib.reload(sys.modules[name]) if name in sys.modules else importlib.import_module(name)
 

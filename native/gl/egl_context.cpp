@@ -109,15 +109,17 @@ Attempt try_candidate(const Candidate& candidate) {
   return attempt;
 }
 
-// libepoxy aborts the process where the library is missing, so it is looked for first.
-void require_egl_library() {
-  void* library = dlopen("libEGL.so.1", RTLD_LAZY | RTLD_LOCAL);
+// libepoxy ends the process where a library is missing, so it is looked for first.
+void require_library(const char* name, const char* remedy) {
+  void* library = dlopen(name, RTLD_LAZY | RTLD_LOCAL);
   if (library == nullptr)
-    throw Error(
-        "Rendering needs EGL, but libEGL.so.1 cannot be loaded ({}); install the graphics driver or Mesa's "
-        "libegl1.",
-        dlerror());
+    throw Error("Rendering needs {}, which cannot be loaded ({}); install {}.", name, dlerror(), remedy);
   dlclose(library);
+}
+
+void require_libraries() {
+  require_library("libEGL.so.1", "the graphics driver or Mesa's libegl1");
+  require_library("libGL.so.1", "the graphics driver or libgl1");
 }
 
 std::string describe(GLenum name) {
@@ -128,7 +130,7 @@ std::string describe(GLenum name) {
 }  // namespace
 
 EglContext::EglContext() {
-  require_egl_library();
+  require_libraries();
   const char* variable = std::getenv("MESOGRAIN_GL_DEVICE");
   const std::string choice = variable != nullptr ? variable : "";
   for (const Candidate& candidate : find_candidates()) {

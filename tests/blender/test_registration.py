@@ -48,6 +48,38 @@ def test_reload_scripts_keeps_everything_working(render, blend_files):
     assert (abs(render() - before) > 1e-4).mean() < 1e-4
 
 
+WITHOUT_NUMPY = """
+import importlib.abc, sys
+
+class Missing(importlib.abc.MetaPathFinder):
+    def find_spec(self, name, path=None, target=None):
+        if name.partition(".")[0] == "numpy":
+            raise ModuleNotFoundError("No module named 'numpy'", name="numpy")
+
+for name in [name for name in sys.modules if name.partition(".")[0] == "numpy"]:
+    del sys.modules[name]
+sys.meta_path.insert(0, Missing())
+sys.path.insert(0, sys.argv[-1])
+import addon_utils, bpy, mesograin
+mesograin.register()
+print("preferences:", bpy.types.AddonPreferences.bl_rna_get_subclass_py("MesograinPreferencesWithoutNumpy"))
+mesograin.unregister()
+"""
+
+
+def test_without_numpy_a_sentence_says_so(tmp_path):
+    script = tmp_path / "without_numpy.py"
+    script.write_text(WITHOUT_NUMPY)
+    done = subprocess.run([bpy.app.binary_path, "-b", "--factory-startup", "--python-exit-code", "1",
+                           "--python", str(script), "--", str(PACKAGE.parent)],
+                          capture_output=True, text=True, timeout=120)
+    output = done.stdout + done.stderr
+    assert done.returncode == 0, output
+    assert "Mesograin needs NumPy" in output and "python3-numpy" in output
+    assert "Traceback" not in output
+    assert re.search("preferences: <class .*WithoutNumpy", output)
+
+
 def test_one_version_everywhere(native):
     manifest = (PACKAGE / "blender_manifest.toml").read_text()
     assert re.search(r'^version = "(.*)"', manifest, re.M).group(1) == mesograin.__version__

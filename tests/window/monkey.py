@@ -1,4 +1,5 @@
 # A monkey at Blender's window: does one operation after the other, drawn by a seed, and keeps book of memory and time.
+import collections
 import faulthandler
 import inspect
 import random
@@ -17,6 +18,7 @@ BETWEEN = (0.02, 0.05, 0.15, 0.4)  # s that may pass between two operations
 TOO_LONG = 20.0  # s without an answer that are worth a word
 STEPS_OF_A_DRAG = 6
 MOST_TRIES = 60  # to open a file
+MOST_TOLD = 8  # of the operations that took longest
 
 
 class Monkey:
@@ -27,6 +29,7 @@ class Monkey:
         self.folder = window.folder
         self.random = random.Random(seed)
         self.longest = (0.0, "")  # s in which Blender did not answer, and the operation
+        self.took = collections.Counter()  # s that went to each operation, and to being at home
 
     # Choices
 
@@ -166,9 +169,12 @@ class Monkey:
         memory = []
 
         def visit_home():
+            started = time.monotonic()
             yield from self.home()
+            self.took["home"] += time.monotonic() - started
             memory.append(resident.settled())
-            print(f"monkey at home: {memory[-1] / 1e6:.0f} MB, {resident.holders()}, {self.window.native.sent()}",
+            print(f"monkey at home: {memory[-1] / 1e6:.0f} MB, {resident.holders()}, {self.window.native.sent()}, "
+                  f"s so far: {', '.join(f'{name} {took:.0f}' for name, took in self.took.most_common(MOST_TOLD))}",
                   flush=True)
 
         weights, functions = zip(*monkey_work.WORK)
@@ -200,6 +206,7 @@ class Monkey:
             self.operator("ed", "undo_push", message=function.__name__)
         yield 0.0  # Blender's own loop: redraws are what an edit costs
         took = time.monotonic() - started
+        self.took[function.__name__] += took
         if took > self.longest[0]:
             self.longest = took, function.__name__
         if took > TOO_LONG:
