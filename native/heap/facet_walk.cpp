@@ -82,6 +82,7 @@ std::optional<Passage> walk_facets(const Optics& optics, float radius, const See
       continue;
     }
     place = facet->place;
+    if (facet->wall) return Passage{place, direction, flights.weight(), true, scattered, facet};
     // Near an edge an interpolated normal may point away from light that comes out there.
     constexpr float least_cosine = 1e-4F;
     const float cosine = glm::dot(facet->normal, direction);

@@ -27,7 +27,7 @@ class Facets {
   Facets(const Facets&) = delete;
   Facets& operator=(const Facets&) = delete;
 
-  /// What is met from inside a grain: its own facets alone.
+  /// What is met from inside a grain: its own facets, or a wall that reaches into it.
   virtual std::optional<Meeting> inside(std::uint32_t grain, const glm::vec3& origin,
                                         const glm::vec3& direction) const = 0;
 
@@ -53,6 +53,7 @@ struct Passage {
   glm::vec3 weight;  ///< linear RGB, of what the viewer sees of that radiance
   bool entered;      ///< else the surface that is seen has reflected it
   bool scattered;
+  std::optional<Meeting> wall{};  ///< where it ends, if that is in the grain
 };
 
 /// What becomes of a view ray that is scattered.

@@ -227,8 +227,10 @@ void Gather::follow_look(SeenFacet seen, const Facets& facets, const Look& how, 
     }
     // What else the grain that is seen makes of the lights is its model's, or highlights().
     const bool straight = passage->entered && !passage->scattered;
-    if (!first || (how.whole && straight)) sum.lights += weight * lights_along(seen.grain, *passage, facets, random);
-    const std::optional<Meeting> meeting = facets.beyond(seen.grain, passage->place, passage->direction);
+    if (!passage->wall && (!first || straight))
+      sum.lights += weight * lights_along(seen.grain, *passage, facets, random);
+    const std::optional<Meeting> meeting =
+        passage->wall ? passage->wall : facets.beyond(seen.grain, passage->place, passage->direction);
     if (!meeting) {
       if (first && passage->scattered) return;
       if (first && !passage->entered && !(how.whole && facets.finish(seen.grain).shown)) return;

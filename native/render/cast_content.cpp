@@ -38,6 +38,10 @@ std::optional<casting::Hit> CastContent::first_hit(casting::SingleRay ray) const
   return first;
 }
 
+std::optional<casting::Hit> CastContent::first_hit_of_draws(const casting::SingleRay& ray) const {
+  return draws_ != nullptr ? draws_->first_hit(ray) : std::nullopt;
+}
+
 void CastContent::find_occluded(casting::Packet& packet) const {
   if (instances_ != nullptr) instances_->find_occluded(packet);
   if (draws_ != nullptr) draws_->find_occluded(packet);

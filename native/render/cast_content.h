@@ -26,6 +26,7 @@ class CastContent {
   void first_hits(casting::Packet& packet, casting::Hits& hits) const;
   void find_occluded(casting::Packet& packet) const;
   std::optional<casting::Hit> first_hit(casting::SingleRay ray) const;
+  std::optional<casting::Hit> first_hit_of_draws(const casting::SingleRay& ray) const;
 
  private:
   const casting::PlacedTree* instances_;

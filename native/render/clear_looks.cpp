@@ -73,6 +73,11 @@ std::optional<heap::Meeting> ClearLooks::inside(std::uint32_t grain, const glm::
   if (object < instances()) {
     const std::optional<casting::Hit> own =
         cast_.instances()->hit_of(static_cast<std::uint32_t>(object), {origin, direction}, clearance);
+    casting::SingleRay ray{origin, direction};
+    if (own) ray.farthest = own->distance;
+    if (const std::optional<casting::Hit> before = cast_.first_hit_of_draws(ray))
+      if (const std::optional<heap::Meeting> wall = wall_at(place_of(*before, origin, direction), direction))
+        return wall;
     if (!own) return std::nullopt;
     const Hit hit = place_of(*own, origin, direction);
     if (hit.front) return std::nullopt;
@@ -80,26 +85,35 @@ std::optional<heap::Meeting> ClearLooks::inside(std::uint32_t grain, const glm::
   }
   std::optional<Hit> hit = first_hit(origin, direction, object, clearance);
   // Others may reach into it.
-  for (int passed = 0; hit && hit->object != object && passed < most_passed; ++passed)
+  for (int passed = 0; hit && hit->object != object && passed < most_passed; ++passed) {
+    if (const std::optional<heap::Meeting> wall = wall_at(*hit, direction)) return wall;
     hit = first_hit(hit->place, direction, hit->object, 0.0F);
+  }
   if (!hit || hit->object != object || hit->front) return std::nullopt;
   return heap::Meeting{false, grain, hit->place, hit->normal};
 }
 
 std::optional<heap::Meeting> ClearLooks::beyond(std::uint32_t grain, const glm::vec3& origin,
                                                 const glm::vec3& direction) const {
-  std::optional<Hit> hit = first_hit(origin, direction, objects_[grain], 0.0F);
+  const std::size_t object = objects_[grain];
+  // What it lies on begins where it ends.
+  const float back = clear_of_itself * content_.receiver(object).ball.w;
+  std::optional<Hit> hit = first_hit(origin - back * direction, direction, object, 0.0F);
   for (int passed = 0; hit && passed < most_passed; ++passed) {
     const Exchange::Role& role = roles_[hit->object];
     // One that reaches into the grain that is looked through is not met from inside.
     if (role.grain && hit->front) return heap::Meeting{false, *role.grain, hit->place, hit->normal};
-    if (role.wall) {
-      const bool against = glm::dot(hit->normal, direction) < 0.0F;
-      return heap::Meeting{true, *role.wall, hit->place, against ? hit->normal : -hit->normal};
-    }
+    if (const std::optional<heap::Meeting> wall = wall_at(*hit, direction)) return wall;
     hit = first_hit(hit->place, direction, hit->object, 0.0F);
   }
   return std::nullopt;
+}
+
+std::optional<heap::Meeting> ClearLooks::wall_at(const Hit& hit, const glm::vec3& direction) const {
+  const std::optional<std::uint32_t>& wall = roles_[hit.object].wall;
+  if (!wall) return std::nullopt;
+  const bool against = glm::dot(hit.normal, direction) < 0.0F;
+  return heap::Meeting{true, *wall, hit.place, against ? hit.normal : -hit.normal};
 }
 
 heap::Finish ClearLooks::finish(std::uint32_t grain) const {

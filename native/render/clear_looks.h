@@ -34,6 +34,7 @@ class ClearLooks : public heap::Facets {
   std::optional<Hit> first_hit(const glm::vec3& origin, const glm::vec3& direction, std::size_t from,
                                float clearance) const;
   Hit place_of(const casting::Hit& hit, const glm::vec3& origin, const glm::vec3& direction) const;
+  std::optional<heap::Meeting> wall_at(const Hit& hit, const glm::vec3& direction) const;
   std::size_t instances() const;
 
   const CastContent& cast_;

@@ -227,15 +227,13 @@ void Exchange::find_gather() {
   find_whole();
 }
 
-// Crystals keep their model: what light does between their facets is not known well enough without.
 void Exchange::find_whole() {
   whole_.assign(roles_.size(), false);
   if (!gather_ || !(gathers_ || follows_)) return;
   const heap::Grains& grains = gather_->heap().grains;
   for (std::size_t object = 0; object < roles_.size(); ++object) {
     const std::optional<std::uint32_t>& grain = roles_[object].grain;
-    whole_[object] = grain && gather_->sees_into(*grain) && grains.kinds[grains.grains[*grain].kind].clear() &&
-                     grains.kinds[grains.grains[*grain].kind].lens;
+    whole_[object] = grain && gather_->sees_into(*grain) && grains.kinds[grains.grains[*grain].kind].clear();
   }
   for (const auto& [first, end] : alike_) {
     const auto begins = whole_.begin() + static_cast<std::ptrdiff_t>(first);
