@@ -27,33 +27,64 @@ glm::vec3 mirrored(const glm::vec3& direction, const glm::vec3& normal) {
   return glm::normalize(direction - 2.0F * glm::dot(direction, normal) * normal);
 }
 
-/// The normal of the microfacet that is met, on the side of `normal`.
-glm::vec3 microfacet(const glm::vec3& normal, const glm::vec3& travelling, float alpha, Random& random) {
-  if (alpha < least_alpha) return normal;
-  const TurnedFrame frame(normal, -travelling);
+/// On beyond a facet, or back from it. `normal`: against what is travelling; `eta`: beyond it over before it.
+bool enters_smooth(const glm::vec3& normal, double eta, glm::vec3& travelling, Random& random) {
   const double cosine = std::clamp(-static_cast<double>(glm::dot(travelling, normal)), 0.0, 1.0);
+  const bool reflected = random.uniform() < physics::fresnel_reflectance(cosine, eta);
+  travelling =
+      reflected ? mirrored(travelling, normal) : transport::refracted(travelling, normal, static_cast<float>(eta));
+  return !reflected;
+}
+
+/// A facet of GGX as it is seen from where a ray comes from: normals on the side of `up`.
+glm::vec3 visible_facet(const glm::vec3& up, const glm::vec3& travelling, float alpha, Random& random) {
+  const double cosine = std::clamp(-static_cast<double>(glm::dot(travelling, up)), -1.0, 1.0);
   const double radius = std::sqrt(static_cast<double>(random.uniform()));
   const double azimuth = 2.0 * std::numbers::pi * random.uniform();
   const glm::dvec3 facet =
       physics::visible_normal({std::sqrt((1.0 - cosine) * (1.0 + cosine)), 0.0, cosine}, alpha, radius, azimuth);
-  return frame * glm::vec3(facet);
+  return TurnedFrame(up, -travelling) * glm::vec3(facet);
 }
 
-/// On beyond a facet, or back from it. `normal`: against what is travelling; `eta`: beyond it over before it.
-/// What another microfacet would catch goes the way of a smooth surface.
+/// How high over a rough surface a ray meets it next, as the share of it that lies below; nothing, if it leaves it.
+/// `rise`: the ray's cosine with the way up. Heights are evenly spread (Heitz et al. 2016, section 4 and supplement,
+/// sampleHeight).
+std::optional<float> next_height(float height, float rise, float alpha, Random& random) {
+  constexpr float upright = 0.9999F;
+  constexpr float level = 1e-4F;
+  const float u = random.uniform();
+  if (rise > upright) return std::nullopt;
+  if (rise < -upright) return u * height;
+  if (std::abs(rise) < level) return height;
+  // Smith's Lambda of GGX, below the horizon too (eq. 8 there).
+  const float slope = alpha * std::sqrt((1.0F - rise) * (1.0F + rise)) / rise;
+  const float lambda = 0.5F * (std::copysign(std::sqrt(1.0F + slope * slope), rise) - 1.0F);
+  if (rise > 0.0F && u > 1.0F - std::pow(height, lambda)) return std::nullopt;
+  return std::min(height / std::pow(1.0F - u, 1.0F / lambda), 1.0F);
+}
+
+/// As enters_smooth(), of a rough surface: from facet to facet until light leaves it to either side (Heitz, Hanika,
+/// d'Eon and Dachsbacher, "Multiple-scattering microfacet BSDFs with the Smith model", 2016, algorithm 1), so that no
+/// light is lost.
 bool enters(const glm::vec3& normal, float alpha, double eta, glm::vec3& travelling, Random& random) {
-  const float choice = random.uniform();
-  for (const glm::vec3& facet : {microfacet(normal, travelling, alpha, random), normal}) {
-    const double cosine = std::clamp(-static_cast<double>(glm::dot(travelling, facet)), 0.0, 1.0);
-    const bool reflected = choice < physics::fresnel_reflectance(cosine, eta);
-    const glm::vec3 on =
-        reflected ? mirrored(travelling, facet) : transport::refracted(travelling, facet, static_cast<float>(eta));
-    if ((glm::dot(on, normal) > 0.0F) == reflected) {
-      travelling = on;
-      return !reflected;
+  if (alpha < least_alpha) return enters_smooth(normal, eta, travelling, random);
+  glm::vec3 on = travelling;
+  bool before = true;  // the surface, as the ray came
+  float height = 1.0F;
+  for (int met = 0; met < most_facets; ++met) {
+    const glm::vec3 up = before ? normal : -normal;
+    const std::optional<float> next = next_height(height, glm::dot(on, up), alpha, random);
+    if (!next) {
+      travelling = glm::normalize(on);
+      return !before;
     }
+    height = *next;
+    const bool crosses = enters_smooth(visible_facet(up, on, alpha, random), before ? eta : 1.0 / eta, on, random);
+    if (!crosses) continue;
+    before = !before;
+    height = 1.0F - height;
   }
-  return true;
+  return enters_smooth(normal, eta, travelling, random);
 }
 
 }  // namespace

@@ -25,6 +25,9 @@ constexpr int most_looked_into = 12;
 // regularization for holistic and robust light transport", 2013, section 4).
 const float least_spread = 15.0F * std::numbers::pi_v<float> / 180.0F;
 
+// The same through rough facets of a grain alone, over their alpha: about what two of them spread it by.
+constexpr float spread_of_alpha = 0.6F;
+
 /// What one direction of a light makes a walk send back: of all places that ask for it one is looked at, the likelier
 /// the more it found.
 class Asking {
@@ -93,7 +96,10 @@ Gather::Gather(Heap heap, std::shared_ptr<const Found> found)
       found_(std::move(found)),
       light_(found_->light),
       space_(found_->space),
-      draws_(draws_of(heap_)) {}
+      draws_(draws_of(heap_)) {
+  lights_.reserve(heap_.lights.size());
+  for (const scene::Light& light : heap_.lights) lights_.push_back(lights::pack(light, heap_.anchor));
+}
 
 Gather::Gather(const Heap& heap, std::shared_ptr<const HeapLight> light)
     : Gather(heap, std::make_shared<const Found>(heap, std::move(light))) {}
@@ -227,8 +233,10 @@ void Gather::follow_look(SeenFacet seen, const Facets& facets, const Look& how, 
     }
     // What else the grain that is seen makes of the lights is its model's, or highlights().
     const bool straight = passage->entered && !passage->scattered;
-    if (!passage->wall && (!first || straight))
-      sum.lights += weight * lights_along(seen.grain, *passage, facets, random);
+    if (!passage->wall && (!first || straight)) {
+      const float spread = how.alone ? spread_of_alpha * facets.finish(seen.grain).roughness : least_spread;
+      sum.lights += weight * lights_along(seen.grain, *passage, spread, facets, random);
+    }
     const std::optional<Meeting> meeting =
         passage->wall ? passage->wall : facets.beyond(seen.grain, passage->place, passage->direction);
     if (!meeting) {
@@ -260,9 +268,8 @@ glm::vec3 Gather::highlights(const SeenFacet& seen, const Facets& facets, transp
         draws_[i](heap_.anchor + glm::dvec3(seen.place), {random.uniform(), random.uniform()});
     const glm::vec3 to_light(light.to_light);
     const double mu_i = glm::dot(seen.normal, to_light);
-    const lights::DeviceLight packed = lights::pack(heap_.lights[i], heap_.anchor);
     // As shaders/models/dielectric.glsl has it.
-    const double alpha = physics::dielectric_alpha(finish.roughness, lights::light_angle(packed, light.reach));
+    const double alpha = physics::dielectric_alpha(finish.roughness, lights::light_angle(lights_[i], light.reach));
     if (!(mu_i > 0.0) || !(alpha > 0.0)) continue;
     constexpr double smallest_alpha = 1e-3;
     const double reflected =
@@ -286,23 +293,21 @@ glm::vec3 Gather::passed_towards(std::uint32_t grain, const glm::vec3& place, co
   return space_.passed(ray, reach);
 }
 
-glm::vec3 Gather::lights_along(std::uint32_t grain, const Passage& passage, const Facets& facets,
+glm::vec3 Gather::lights_along(std::uint32_t grain, const Passage& passage, float spread, const Facets& facets,
                                transport::Random& random) const {
   glm::vec3 sum(0.0F);
   for (std::size_t i = 0; i < heap_.lights.size(); ++i) {
+    // A disc that is found as it is; the cone is around its middle.
+    const lights::DeviceLight& of = lights_[i];
+    const bool sun = std::holds_alternative<scene::DirectionalLight>(heap_.lights[i]);
+    const glm::vec3 middle = glm::vec3(of.place) - (sun ? glm::vec3(0.0F) : passage.place);
+    const auto wide = static_cast<float>(0.5 * lights::light_angle(of, glm::length(glm::dvec3(middle))));
+    const float cosine = glm::dot(glm::normalize(middle), passage.direction);
+    const float edge = std::cos(std::min(std::max(spread, wide), 0.5F * std::numbers::pi_v<float>));
+    if (!(edge < 1.0F) || cosine < edge) continue;
     const lights::LightDraw light =
         draws_[i](heap_.anchor + glm::dvec3(passage.place), {random.uniform(), random.uniform()});
-    glm::vec3 to_light(light.to_light);
-    float cosine = glm::dot(to_light, passage.direction);
-    float edge = std::cos(least_spread);
-    if (const auto* sun = std::get_if<scene::DirectionalLight>(&heap_.lights[i])) {
-      // Its disc is found as it is, the cone is around its middle.
-      const auto of_disc = static_cast<float>(std::cos(0.5 * sun->angle));
-      cosine = glm::dot(glm::vec3(glm::normalize(sun->direction_to_light)), passage.direction);
-      edge = std::min(edge, of_disc);
-      if (cosine >= of_disc) to_light = passage.direction;
-    }
-    if (cosine < edge) continue;
+    const glm::vec3 to_light = sun && cosine >= std::cos(wide) ? passage.direction : glm::vec3(light.to_light);
     const auto reach = static_cast<float>(std::min(light.reach, 1e30));
     const glm::vec3 passed = passed_towards(grain, passage.place, to_light, reach, facets);
     sum += glm::vec3(light.irradiance) * passed / (2.0F * std::numbers::pi_v<float> * (1.0F - edge));

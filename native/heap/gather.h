@@ -82,10 +82,11 @@ class Gather {
   struct Look {
     Scatterings scatterings;  ///< of others' light in this grain; where they end, its numbers tell it
     bool whole;               ///< no model tells what lights and the world do in it and at its surface
+    bool alone = false;       ///< none of many: lights are seen through it as sharp as its facets leave them
   };
 
-  /// What look() shows, through the grain's own facets and other clear grains that stand behind it; the world that is
-  /// seen so; and the lights, as far as those behind send them on, or, if the look is whole, this one, too.
+  /// What look() shows, through the grain's own facets and other clear grains that stand behind it, and the world and
+  /// the lights that are seen so.
   Through look_into(const SeenFacet& seen, const Facets& facets, const Look& how, transport::Random& random) const;
 
   /// What a clear grain's surface reflects of suns and lamps.
@@ -100,7 +101,8 @@ class Gather {
     glm::vec3 of_others;  ///< that grains and walls have sent
   };
   ScatteredLight scattered_in(const SeenFacet& seen) const;
-  glm::vec3 lights_along(std::uint32_t grain, const Passage& passage, const Facets& facets,
+  /// `spread`: the least half angle of the cone in which a light is seen.
+  glm::vec3 lights_along(std::uint32_t grain, const Passage& passage, float spread, const Facets& facets,
                          transport::Random& random) const;
   /// What is left of a light on its way to a grain's surface.
   glm::vec3 passed_towards(std::uint32_t grain, const glm::vec3& place, const glm::vec3& to_light, float reach,
@@ -119,6 +121,7 @@ class Gather {
   const std::shared_ptr<const HeapLight>& light_;  // of found_
   const Space& space_;                             // of found_
   std::vector<Draw> draws_;
+  std::vector<lights::DeviceLight> lights_;  // of the heap, its places from the anchor
 };
 
 }  // namespace mesograin::heap

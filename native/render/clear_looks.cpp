@@ -1,6 +1,7 @@
 // Rays one by one: they go nowhere near each other.
 #include "render/clear_looks.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <optional>
@@ -12,6 +13,9 @@ namespace {
 
 // Of the ball around a grain: how far from its own surface a ray begins that may meet it again.
 constexpr float clear_of_itself = 1e-4F;
+
+// The same of how far away it is from where places are told from, for rounding.
+constexpr float rounding = 1e-6F;
 
 // A ray that starts from no object.
 constexpr auto nothing = static_cast<std::size_t>(-1);
@@ -37,6 +41,10 @@ ClearLooks::ClearLooks(const CastContent& cast, const Content& content, const Ex
 
 std::size_t ClearLooks::instances() const {
   return content_.instances() != nullptr ? content_.instances()->count() : 0;
+}
+
+float ClearLooks::clear_of(std::size_t object, const glm::vec3& place) const {
+  return std::max(clear_of_itself * content_.receiver(object).ball.w, rounding * glm::length(place));
 }
 
 std::optional<ClearLooks::Hit> ClearLooks::first_hit(const glm::vec3& origin, const glm::vec3& direction,
@@ -69,7 +77,7 @@ std::optional<heap::SeenFacet> ClearLooks::seen_along(std::uint32_t grain, const
 std::optional<heap::Meeting> ClearLooks::inside(std::uint32_t grain, const glm::vec3& origin,
                                                 const glm::vec3& direction) const {
   const std::size_t object = objects_[grain];
-  const float clearance = clear_of_itself * content_.receiver(object).ball.w;
+  const float clearance = clear_of(object, origin);
   if (object < instances()) {
     const std::optional<casting::Hit> own =
         cast_.instances()->hit_of(static_cast<std::uint32_t>(object), {origin, direction}, clearance);
@@ -97,8 +105,7 @@ std::optional<heap::Meeting> ClearLooks::beyond(std::uint32_t grain, const glm::
                                                 const glm::vec3& direction) const {
   const std::size_t object = objects_[grain];
   // What it lies on begins where it ends.
-  const float back = clear_of_itself * content_.receiver(object).ball.w;
-  std::optional<Hit> hit = first_hit(origin - back * direction, direction, object, 0.0F);
+  std::optional<Hit> hit = first_hit(origin - clear_of(object, origin) * direction, direction, object, 0.0F);
   for (int passed = 0; hit && passed < most_passed; ++passed) {
     const Exchange::Role& role = roles_[hit->object];
     // One that reaches into the grain that is looked through is not met from inside.

@@ -33,6 +33,8 @@ class ClearLooks : public heap::Facets {
   struct Hit;
   std::optional<Hit> first_hit(const glm::vec3& origin, const glm::vec3& direction, std::size_t from,
                                float clearance) const;
+  /// How far from a place on an object's surface a ray no longer meets that place.
+  float clear_of(std::size_t object, const glm::vec3& place) const;
   Hit place_of(const casting::Hit& hit, const glm::vec3& origin, const glm::vec3& direction) const;
   std::optional<heap::Meeting> wall_at(const Hit& hit, const glm::vec3& direction) const;
   std::size_t instances() const;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <map>
@@ -145,19 +146,39 @@ void append_second_order(std::vector<glm::vec4>& numbers, const std::array<heap:
   for (std::size_t i = 0; i < open.size(); ++i) numbers.emplace_back(second[0][i], second[1][i], second[2][i], open[i]);
 }
 
+/// Whether any object may be a clear grain.
+bool any_refracts(const Content& content) {
+  return std::any_of(content.draws().begin(), content.draws().end(), [](const Draw& draw) {
+    return heap::optics_of(draw.look, draw.reach).surface == heap::Surface::dielectric;
+  });
+}
+
+/// Whether there is anything that could be seen through a clear grain.
+bool shows_through(const heap::Grains& grains, const scene::Scene& scene) {
+  if (grains.grains.size() + grains.walls.size() > 1 || scene.world.shines()) return true;
+  return std::any_of(scene.lights.begin(), scene.lights.end(), [](const scene::Light& light) {
+    const auto* sun = std::get_if<scene::DirectionalLight>(&light);
+    return sun == nullptr || sun->angle > 0.0;
+  });
+}
+
 }  // namespace
 
 void Exchange::set(const Content& content, const scene::Scene& scene) {
   Gatherer gathered;
-  if (scene.exchange == scene::Exchange::order_1 || scene.exchange == scene::Exchange::gathered ||
-      (scene.exchange == scene::Exchange::heaps && content.instances() != nullptr))
-    gathered.add(content);
+  const bool arrays = content.instances() != nullptr;
+  const bool heaps = scene.exchange == scene::Exchange::heaps;
+  if (scene.exchange != scene::Exchange::off && (!heaps || arrays || any_refracts(content))) gathered.add(content);
+  const bool clear =
+      std::any_of(gathered.grains.kinds.begin(), gathered.grains.kinds.end(), std::mem_fn(&heap::Optics::clear));
+  // A grain alone is its model's, but for what is seen through it.
+  if (heaps && !arrays && !(clear && shows_through(gathered.grains, scene))) gathered = {};
   alike_.clear();
   if (const Instances* instances = content.instances())
     for (const InstanceGroup& group : instances->groups()) alike_.emplace_back(group.first, group.first + group.count);
   const heap::Grains& grains = gathered.grains;
-  const bool heaped = content.instances() != nullptr && grains.grains.size() > 1;
-  if (grains.grains.empty() || (!heaped && grains.walls.empty())) {
+  const bool heaped = arrays && grains.grains.size() > 1;
+  if (grains.grains.empty() || (!heaped && !clear && grains.walls.empty())) {
     solving_.reset();
     known_.reset();
     device_.reset();
@@ -166,7 +187,7 @@ void Exchange::set(const Content& content, const scene::Scene& scene) {
     return;
   }
   gathers_ = scene.exchange == scene::Exchange::gathered;
-  follows_ = scene.exchange == scene::Exchange::heaps;
+  follows_ = heaps && arrays;
   shows_more_ = std::any_of(grains.kinds.begin(), grains.kinds.end(),
                             [&](const heap::Optics& kind) { return kind.clear() || (follows_ && is_followed(kind)); });
   heap::Heap heap{std::move(gathered.grains), content.anchor(), scene.lights, scene.world};
@@ -186,10 +207,10 @@ void Exchange::set(const Content& content, const scene::Scene& scene) {
   send();
 }
 
-bool Exchange::gathers_all_of(std::size_t number, bool cast) const {
+bool Exchange::gathers_all_of(std::size_t number, bool traced) const {
   const std::optional<std::uint32_t>& grain = roles_[number].grain;
   if (!gather_ || !grain) return false;
-  if (gather_->sees_into(*grain)) return cast && whole_[number];
+  if (gather_->sees_into(*grain)) return traced && whole_[number];
   if (!gather_->sees_all(*grain)) return false;
   const heap::Grains& grains = solving_->heap().grains;
   return gathers_ || (follows_ && is_followed(grains.kinds[grains.grains[*grain].kind]));
@@ -227,18 +248,21 @@ void Exchange::find_gather() {
   find_whole();
 }
 
+// What a clear grain scatters is told by a few numbers: enough of one among many, and too little of one alone, whose
+// model knows more.
 void Exchange::find_whole() {
   whole_.assign(roles_.size(), false);
   if (!gather_ || !(gathers_ || follows_)) return;
   const heap::Grains& grains = gather_->heap().grains;
-  for (std::size_t object = 0; object < roles_.size(); ++object) {
-    const std::optional<std::uint32_t>& grain = roles_[object].grain;
-    whole_[object] = grain && gather_->sees_into(*grain) && grains.kinds[grains.grains[*grain].kind].clear();
-  }
+  const auto is_clear = [&](const Role& role) {
+    return role.grain && gather_->sees_into(*role.grain) && grains.kinds[grains.grains[*role.grain].kind].clear();
+  };
   for (const auto& [first, end] : alike_) {
-    const auto begins = whole_.begin() + static_cast<std::ptrdiff_t>(first);
-    const auto ends = whole_.begin() + static_cast<std::ptrdiff_t>(end);
-    if (std::find(begins, ends, false) != ends) std::fill(begins, ends, false);
+    const auto begins = roles_.begin() + static_cast<std::ptrdiff_t>(first);
+    const auto ends = roles_.begin() + static_cast<std::ptrdiff_t>(end);
+    if (std::all_of(begins, ends, is_clear))
+      std::fill(whole_.begin() + static_cast<std::ptrdiff_t>(first), whole_.begin() + static_cast<std::ptrdiff_t>(end),
+                true);
   }
 }
 

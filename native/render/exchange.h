@@ -74,8 +74,9 @@ class Exchange {
   const heap::Gather* gather() const { return gather_.get(); }
   bool gathers_all() const { return gathers_; }
 
-  /// Whether all light of the object of this number is gathered, and no model is asked; `cast`: rays find what is seen.
-  bool gathers_all_of(std::size_t number, bool cast) const;
+  /// Whether all light of the object of this number is gathered, and no model is asked; `traced`: rays can be followed
+  /// through all of the content.
+  bool gathers_all_of(std::size_t number, bool traced) const;
 
   /// What an object is to the light between grains.
   struct Role {
@@ -105,7 +106,7 @@ class Exchange {
   bool balls_ = true;
   std::vector<Role> roles_;
   bool gathers_ = false;
-  bool follows_ = false;     // light through what is seen of grains, where that is cheap
+  bool follows_ = false;     // light through what is seen of an array's grains, where that is cheap
   bool shows_more_ = false;  // gathering, of some grains
   std::unique_ptr<const heap::Gather> gather_;
   std::vector<std::pair<std::size_t, std::size_t>> alike_;  // objects of one unit: the first, and after the last

@@ -132,7 +132,8 @@ Sample Frame::begin_sample(const GoOn& go_on) {
   const bool own_maps =
       std::any_of(draws.begin(), draws.end(), [](const Draw& draw) { return draw.light_maps != nullptr; });
   const bool cast = arrays_.casts(*content_);
-  const bool gathers = !unwrapping_ && exchange_.gather() != nullptr && (exchange_.gathers_all() || cast);
+  const bool traced = arrays_.traces(*content_);
+  const bool gathers = !unwrapping_ && exchange_.gather() != nullptr && (exchange_.gathers_all() || traced);
   Sample sample{.cache = cache_,
                 .content = *content_,
                 .lighting = lighting_,
@@ -147,6 +148,7 @@ Sample Frame::begin_sample(const GoOn& go_on) {
                 .jitter = glm::vec2((2.0 * r2_point(index, seeded_offset(seed_)) - 1.0) / glm::dvec2(size_)),
                 .lights = lighting_.sample(index, seed_, own_maps ? 1 : most_world_directions),
                 .cast = cast,
+                .traced = traced,
                 .gathers = gathers,
                 .denoises = scene_.denoise,
                 .go_on = go_on};

@@ -227,3 +227,54 @@ def on_ground(height, direction_to_camera):
 @pytest.mark.parametrize("height", [0.3, 1.0])
 def test_no_world_is_seen_below_the_ground_that_a_crystal_lies_on(height):
     assert on_ground(height, (0.0, 0.0, 1.0)) == pytest.approx(0.04, abs=0.004)
+
+
+def alone(world, others=(), mesh=None, material=GLASS, samples=4, lights=(), exchange="heaps"):
+    """Radiance of the green channel, (48, 48), where one clear grain stands, of which no array is made; along y."""
+    instances = [native.Instance(cube(0.6) if mesh is None else mesh, material), *others]
+    view = native.View(48, 48)
+    view.set_scene(native.Scene(instances=instances, world=world, lights=list(lights), exchange=exchange))
+    view.set_camera(native.Camera.look_at((0.0, -60.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 1.0),
+                                          numpy.degrees(2.0 * numpy.arctan(0.8 / 60.0))))
+    view.render(samples)
+    return view.read()[..., 1]
+
+
+def black_thing(place, scale):
+    transform = numpy.diag((*scale, 1.0))
+    transform[:3, 3] = place
+    return native.Instance(cube(1.0), native.Material(model="lambert", reflectance=(0.0,) * 3), transform)
+
+
+# What a ball of its area would show upside down; and of nothing else there is need.
+@pytest.mark.parametrize("exchange", ["heaps", "order_1", "gathered"])
+def test_one_clear_crystal_is_seen_through_its_own_facets(exchange):
+    radiance = alone(half_bright(), exchange=exchange)
+    assert radiance[10:20, 20:28].mean() > 0.8 and radiance[28:38, 20:28].mean() < 0.2
+
+
+def test_a_crystal_shows_what_stands_behind_it():
+    white = native.World(radiance=(1.0, 1.0, 1.0))
+    assert alone(white)[16:32, 16:32].mean() == pytest.approx(1.0, abs=0.01)
+    behind = alone(white, [black_thing((0.0, 9.0, 0.0), (5.0, 1.0, 5.0))])
+    assert behind[16:32, 16:32].mean() < 0.15
+
+
+# Places are told from amid all that there is, in single precision.
+def test_a_small_crystal_in_a_large_scene_is_as_clear():
+    near, far = alone(half_bright()), alone(half_bright(), [black_thing((4000.0, 0.0, 0.0), (1.0, 1.0, 1.0))])
+    assert numpy.abs(far - near).mean() < 0.02 * near.mean()
+
+
+# A lamp that is a point to it is no cone through smooth facets, and a wide sun is as wide as it is.
+def test_suns_are_seen_through_one_crystal_as_wide_as_they_are():
+    dark = native.World(radiance=(0.0, 0.0, 0.0))
+    behind = (0.0, 1.0, 0.0)
+    wide = alone(dark, lights=[native.DirectionalLight(behind, (3.0,) * 3, angle=math.radians(20.0))])
+    disc = 3.0 / (math.pi * math.sin(math.radians(10.0)) ** 2)
+    assert wide[16:32, 16:32].mean() == pytest.approx(0.92 * disc, rel=0.02)
+    beside = (math.sin(math.radians(12.0)), math.cos(math.radians(12.0)), 0.0)
+    aside = alone(dark, lights=[native.DirectionalLight(beside, (3.0,) * 3, angle=math.radians(20.0))])
+    assert aside[16:32, 16:32].mean() < 0.01 * disc
+    point = alone(dark, lights=[native.PointLight((0.0, 40.0, 0.3), (900.0,) * 3)])
+    assert point[16:32, 16:32].mean() < 0.1

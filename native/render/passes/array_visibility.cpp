@@ -30,16 +30,19 @@ bool ArrayVisibility::casts(const Content& content) const {
          (!gl::ContextThread::instance().device_info().hardware && casting::available());
 }
 
+bool ArrayVisibility::traces(const Content& content) const {
+  return casts(content) || (content.instances() == nullptr && casting::available());
+}
+
 Mirrors ArrayVisibility::mirrors(const Content& content, bool world,
                                  const std::function<bool(std::size_t unit)>& asks) const {
   if (!content.facets(asks)) return Mirrors::none;
   if (!content.shadows()) return world ? Mirrors::unhindered : Mirrors::none;
-  // A tree of arrays that the device draws is not worth its memory.
-  return casts(content) || (content.instances() == nullptr && casting::available()) ? Mirrors::hindered : Mirrors::none;
+  return traces(content) ? Mirrors::hindered : Mirrors::none;
 }
 
 void ArrayVisibility::prepare(const Sample& sample) {
-  if ((sample.cast || sample.mirrors == Mirrors::hindered) && !tree_)
+  if ((sample.cast || sample.looks_into_clear() || sample.mirrors == Mirrors::hindered) && !tree_)
     tree_ = std::make_unique<CastContent>(sample.cache, sample.content);
   const Instances* instances = sample.content.instances();
   if (instances == nullptr || selection_) return;

@@ -29,6 +29,9 @@ class ArrayVisibility {
   /// Whether rays are cast for this content.
   bool casts(const Content& content) const;
 
+  /// Whether rays can be followed through all of it: a tree of arrays that the device draws is not worth its memory.
+  bool traces(const Content& content) const;
+
   /// What surfaces of facets can do to find what they mirror, of those units whose models are asked. `world`: there is
   /// one to be mirrored.
   Mirrors mirrors(const Content& content, bool world, const std::function<bool(std::size_t unit)>& asks) const;

@@ -51,7 +51,7 @@ bool GatherPass::run(const Sample& sample, const ArrayVisibility& arrays, Surfac
   if (!ran_) return true;
   const auto start = std::chrono::steady_clock::now();
   std::optional<ClearLooks> clear;
-  if (sample.cast && gather->sees_into_any()) clear.emplace(arrays.tree(), sample.content, sample.exchange);
+  if (sample.looks_into_clear()) clear.emplace(arrays.tree(), sample.content, sample.exchange);
   const SeenSurfaces seen = surfaces.seen(sample);
   const std::vector<Exchange::Role>& roles = sample.exchange.roles();
   others_.assign(seen.normals.size(), glm::vec4(0.0F));
@@ -62,6 +62,7 @@ bool GatherPass::run(const Sample& sample, const ArrayVisibility& arrays, Surfac
   const auto width = static_cast<std::size_t>(sample.size.x);
   const PixelRays pixel_rays(anchor_to_clip(sample.content, sample.camera), sample.size, glm::dvec2(0.0),
                              sample.content.instances() != nullptr ? sample.content.instances()->bounds() : Bounds{});
+  const std::size_t instances = sample.content.instances() != nullptr ? sample.content.instances()->count() : 0;
   const auto pixel_at = [&](std::size_t i) { return glm::dvec2(i % width, i / width); };
   const std::uint64_t seed = (static_cast<std::uint64_t>(sample.seed) << 32U) + sample.index;
   const bool whole = cast_rows(sample.size.y, sample.go_on, [&](int first, int end) {
@@ -77,7 +78,7 @@ bool GatherPass::run(const Sample& sample, const ArrayVisibility& arrays, Surfac
       const glm::vec3 normal(facing);
       if (clear && gather->sees_into(*grain)) {
         const heap::Gather::Look how{all ? heap::Scatterings::followed : heap::Scatterings::end,
-                                     sample.gathers_all_of(number)};
+                                     sample.gathers_all_of(number), number >= instances};
         const heap::Gather::Through into =
             into_clear({*grain, place, normal, towards}, pixel_rays, pixel_at(i), *gather, *clear,
                        all ? rays_a_sample : rays_into_clear, how, random);

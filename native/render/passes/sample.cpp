@@ -33,6 +33,6 @@ bool Sample::lights_about(std::size_t unit) const {
       largest_of_typical * group.typical_scale * instances.prototypes()[group.prototype].mesh->reach());
 }
 
-bool Sample::gathers_all_of(std::size_t number) const { return gathers && exchange.gathers_all_of(number, cast); }
+bool Sample::gathers_all_of(std::size_t number) const { return gathers && exchange.gathers_all_of(number, traced); }
 
 }  // namespace mesograin::render

@@ -48,6 +48,7 @@ struct Sample {
   glm::vec2 jitter;  ///< of the picture, in clip space
   SampledLights lights;
   bool cast;      ///< rays find what is seen of arrays
+  bool traced;    ///< rays can be followed through all of the content
   bool gathers;   ///< light between grains is gathered for pixels that show them
   bool denoises;  ///< and neighbours that show the same tell each other what was found
   Mirrors mirrors = Mirrors::none;
@@ -64,6 +65,9 @@ struct Sample {
 
   /// Whether it matters to a unit of the content where the light of a lamp comes in.
   bool lights_about(std::size_t unit) const;
+
+  /// Whether clear grains are seen into through their own facets.
+  bool looks_into_clear() const { return gathers && traced && exchange.gather()->sees_into_any(); }
 
   /// Whether all light of an object that is seen is gathered; its unit's others are then, too.
   bool gathers_all_of(std::size_t number) const;
