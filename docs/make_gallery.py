@@ -333,4 +333,5 @@ def main():
                 write_lines(heap, take(heap, pathlib.Path(folder)))
 
 
-main()
+if __name__ == "__main__":
+    main()

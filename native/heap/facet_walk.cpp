@@ -91,35 +91,42 @@ bool enters(const glm::vec3& normal, float alpha, double eta, glm::vec3& travell
 
 std::optional<Passage> walk_facets(const Optics& optics, float radius, const SeenFacet& seen, const Facets& facets,
                                    Scatterings scatterings, Random& random, glm::vec3* first) {
-  glm::vec3 place = seen.place;
+  const glm::vec3 place = seen.place;
   glm::vec3 direction = -seen.towards;
   const float alpha = facets.finish(seen.grain).roughness;
   if (!enters(seen.normal, alpha, optics.eta, direction, random))
     return Passage{place, direction, glm::vec3(1.0F), false, false};
   Flights flights(glm::vec3(optics.sigma_t) / radius, glm::vec3(optics.albedo), random);
-  bool scattered = false;
+  Passage passage{place, direction, glm::vec3(1.0F), true, false};
   for (int met = 0; met < most_facets; ++met) {
-    const std::optional<Meeting> facet = facets.inside(seen.grain, place, direction);
-    if (!facet) return Passage{place, direction, flights.weight(), true, scattered};
-    const float chord = glm::distance(place, facet->place);
+    passage.weight = flights.weight();
+    const std::optional<Meeting> facet = facets.inside(seen.grain, passage.place, passage.direction);
+    if (!facet) return passage;
+    const float chord = glm::distance(passage.place, facet->place);
     const float flight = flights.fly(chord);
+    passage.weight = flights.weight();
+    passage.length += std::min(flight, chord);
     if (flight < chord) {
-      if (!scattered && first != nullptr) *first = flights.weight();
-      scattered = true;
-      place += flight * direction;
-      if (scatterings == Scatterings::end) return Passage{place, direction, flights.weight(), true, true};
-      direction = transport::scattered(direction, static_cast<float>(optics.g), random.uniform(), random.uniform());
+      if (!passage.scattered && first != nullptr) *first = flights.weight();
+      passage.scattered = true;
+      passage.place += flight * passage.direction;
+      if (scatterings == Scatterings::end) return passage;
+      passage.direction =
+          transport::scattered(passage.direction, static_cast<float>(optics.g), random.uniform(), random.uniform());
       if (!flights.survives()) return std::nullopt;
       continue;
     }
-    place = facet->place;
-    if (facet->wall) return Passage{place, direction, flights.weight(), true, scattered, facet};
+    passage.place = facet->place;
+    if (facet->wall) {
+      passage.wall = facet;
+      return passage;
+    }
     // Near an edge an interpolated normal may point away from light that comes out there.
     constexpr float least_cosine = 1e-4F;
-    const float cosine = glm::dot(facet->normal, direction);
-    const glm::vec3 inwards = -glm::normalize(facet->normal + std::max(least_cosine - cosine, 0.0F) * direction);
-    if (enters(inwards, alpha, 1.0 / optics.eta, direction, random))
-      return Passage{place, direction, flights.weight(), true, scattered};
+    const float cosine = glm::dot(facet->normal, passage.direction);
+    const glm::vec3 inwards =
+        -glm::normalize(facet->normal + std::max(least_cosine - cosine, 0.0F) * passage.direction);
+    if (enters(inwards, alpha, 1.0 / optics.eta, passage.direction, random)) return passage;
     if (!flights.survives()) return std::nullopt;
   }
   return std::nullopt;

@@ -54,6 +54,7 @@ struct Passage {
   bool entered;      ///< else the surface that is seen has reflected it
   bool scattered;
   std::optional<Meeting> wall{};  ///< where it ends, if that is in the grain
+  float length = 0.0F;            ///< of its way in the grain
 };
 
 /// What becomes of a view ray that is scattered.

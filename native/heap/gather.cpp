@@ -28,6 +28,13 @@ const float least_spread = 15.0F * std::numbers::pi_v<float> / 180.0F;
 // The same through rough facets of a grain alone, over their alpha: about what two of them spread it by.
 constexpr float spread_of_alpha = 0.6F;
 
+/// But for what it scatters and absorbs.
+Optics glass(const Optics& optics) {
+  Optics clear = optics;
+  clear.sigma_t = glm::dvec3(0.0);
+  return clear;
+}
+
 /// What one direction of a light makes a walk send back: of all places that ask for it one is looked at, the likelier
 /// the more it found.
 class Asking {
@@ -212,12 +219,14 @@ Gather::ScatteredLight Gather::scattered_in(const SeenFacet& seen) const {
 void Gather::follow_look(SeenFacet seen, const Facets& facets, const Look& how, transport::Random& random,
                          Through& sum) const {
   glm::vec3 weight(1.0F);
+  bool crosses = false;  // the grain that is seen, and its model tells how much does
   for (int through = 0; through < most_looked_into; ++through) {
     const bool first = through == 0;
     const Grain& grain = space_.grains()[seen.grain];
+    const Optics& optics = heap_.grains.kinds[grain.kind];
     glm::vec3 once_scattered(0.0F);
     const std::optional<Passage> passage =
-        walk_facets(heap_.grains.kinds[grain.kind], grain.radius, seen, facets,
+        walk_facets(first && how.alone ? glass(optics) : optics, grain.radius, seen, facets,
                     first ? how.scatterings : Scatterings::end, random, &once_scattered);
     // What lights and the world scatter in it is no other walk's to tell.
     if (first && how.whole && once_scattered != glm::vec3(0.0F)) {
@@ -225,11 +234,17 @@ void Gather::follow_look(SeenFacet seen, const Facets& facets, const Look& how, 
       sum.scattered += once_scattered * (scattered.all - scattered.of_others);
     }
     if (!passage) return;
+    crosses = crosses || (first && how.alone && passage->entered);
+    glm::vec3& behind = crosses ? sum.lights : sum.others;
     weight *= passage->weight;
     if (passage->scattered && (!first || how.scatterings == Scatterings::end)) {
       const ScatteredLight scattered = scattered_in(seen);
-      sum.others += weight * (first ? scattered.of_others : scattered.all);
+      behind += weight * (first ? scattered.of_others : scattered.all);
       return;
+    }
+    if (first && how.alone && passage->entered) {
+      const glm::vec3 passed = glm::exp(-glm::vec3(optics.sigma_t) * (passage->length / grain.radius));
+      sum.others += glm::vec3(optics.albedo) * (1.0F - passed) * scattered_in(seen).of_others;
     }
     // What else the grain that is seen makes of the lights is its model's, or highlights().
     const bool straight = passage->entered && !passage->scattered;
@@ -249,8 +264,8 @@ void Gather::follow_look(SeenFacet seen, const Facets& facets, const Look& how, 
     if (meeting->wall || !sees_into(meeting->number) || through + 1 == most_looked_into) {
       Ray ray{passage->place, passage->direction, weight};
       if (const std::optional<Source> source = space_.source(*meeting, ray, random))
-        sum.others += ray.weight / source->met *
-                      glm::max(light_->seats->light_at(light_->sent, source->number, source->normal, true), 0.0F);
+        behind += ray.weight / source->met *
+                  glm::max(light_->seats->light_at(light_->sent, source->number, source->normal, true), 0.0F);
       return;
     }
     seen = {meeting->number, meeting->place, meeting->normal, -passage->direction};

@@ -58,8 +58,8 @@ class Gather {
 
   /// What is seen of a clear grain.
   struct Through {
-    glm::vec3 others{0.0F};     ///< of what grains and walls send
-    glm::vec3 lights{0.0F};     ///< of the world and the lights, unscattered
+    glm::vec3 others{0.0F};  ///< of what grains and walls send
+    glm::vec3 lights{0.0F};  ///< of the world and the lights, unscattered; of a grain alone, of all that is behind it
     glm::vec3 scattered{0.0F};  ///< of both, scattered in it
     glm::vec3 mirrored{0.0F};   ///< of both, reflected by its surface
 
@@ -82,7 +82,7 @@ class Gather {
   struct Look {
     Scatterings scatterings;  ///< of others' light in this grain; where they end, its numbers tell it
     bool whole;               ///< no model tells what lights and the world do in it and at its surface
-    bool alone = false;       ///< none of many: lights are seen through it as sharp as its facets leave them
+    bool alone = false;       ///< its model tells how much crosses it, and the look of what
   };
 
   /// What look() shows, through the grain's own facets and other clear grains that stand behind it, and the world and

@@ -35,8 +35,8 @@ vec3 second_order_at(int first, vec3 p) {
 }
 
 #ifdef GATHERED
-uniform sampler2D gathered;         // w: 1 where a grain was looked at
-uniform sampler2D gathered_lights;  // and the world, seen through clear grains
+uniform sampler2D gathered;         // w: 1 where a grain was looked at, 2 where its model tells how much crosses it
+uniform sampler2D gathered_lights;  // and the world, seen through clear grains; where w is 2, all that is behind one
 #endif
 
 // The mean place of what is seen, as heap::GrainTable::seen_place has it; w of a kind its scale.
@@ -75,3 +75,12 @@ vec3 light_from_grains(int object, vec3 place, vec3 normal, vec3 to_viewer) {
   return lobe * max(answer, vec3(0.0)) + crossing * max(light_at_normal(first + 3, through), vec3(0.0));
 }
 #endif
+
+// Whether what is behind the grain was looked at through its own facets, so that the model is asked how much of it crosses.
+bool looked_through() {
+#if defined(EXCHANGE) && defined(GATHERED)
+  return texelFetch(gathered, ivec2(gl_FragCoord.xy), 0).w > 1.5;
+#else
+  return false;
+#endif
+}

@@ -5,10 +5,22 @@
 //   GATHERED             what is seen through some grains was gathered for each pixel, the world with it
 #include "heap/light_from_grains.glsl"
 #include "scene/grain.glsl"
+#include "scene/world.glsl"
+
+// Of each part of what crosses.
+vec3 seen_behind(vec3 direction) {
+  if (looked_through()) return vec3(1.0);
+#ifdef WORLD
+  return seen_of_world(direction);
+#else
+  return vec3(0.0);
+#endif
+}
 
 float open_beyond(vec3 normal, vec3 to_viewer) {
 #ifdef EXCHANGE
 #ifdef GATHERED
+  if (looked_through()) return 1.0;
   if (texelFetch(gathered, ivec2(gl_FragCoord.xy), 0).w > 0.0) return 0.0;
 #endif
   int first = OBJECT_NUMBERS * grain_instance;

@@ -17,7 +17,7 @@
 uniform vec3 clear_sigma_t;  // per radius of the sphere; what is scattered within the phase function's forward peak goes on
 uniform float clear_eta;
 
-#ifdef WORLD
+#if defined(WORLD) || defined(GATHERED)
 // What leaves the sphere is followed until so little of it is left.
 const float LEAST_CLEAR = 0.004;
 const int MOST_CHORDS = 6;
@@ -40,14 +40,14 @@ vec3 crossing_light(SurfacePoint point, Outwards outwards) {
     bool last = i + 1 == MOST_CHORDS || max(left.r, max(left.g, left.b)) * again < LEAST_CLEAR;
     // What is left then leaves by and by, as if all of it looked this way.
     vec3 share = last ? leaves / max(1.0 - again * passed, 1e-6) : vec3(leaves);
-    sum += left * share * seen_of_world(outside);
+    sum += left * share * seen_behind(outside);
     if (last) break;
     left *= again * passed;
     direction -= 2.0 * outwards.mu_refracted * normal;
   }
   return sum;
 #else
-  return left * seen_of_world(-point.to_viewer);
+  return left * seen_behind(-point.to_viewer);
 #endif
 }
 #endif

@@ -174,8 +174,11 @@ const int MOST_WAYS = 6;
 #else
 const int MOST_WAYS = 4;
 #endif
-// Light that is reflected wholly for ever, where nothing is scattered, is told as if so little of it left.
-const float TRAPPED = 1e-6;
+// What is inside still, after as many ways, is reflected no more than light that goes every way is: whatever has come in through facets finds
+// one to leave by, though it be reflected wholly a few times.
+const float MOST_AGAIN = 0.6;
+
+float later_again(float again) { return min(again, MOST_AGAIN); }
 
 #ifndef WALKED
 // A straight piece of the view ray's way through the grain.
@@ -208,7 +211,7 @@ void follow(vec3 place, vec3 direction) {
     if (largest(left) < LEAST_PASSED) break;
     // From there on as if every piece were like this one and the source as it is there.
     last_place = place;
-    if (i + 1 == MOST_WAYS) beyond = left * (1.0 - passed) / (1.0 - again * passed + TRAPPED);
+    if (i + 1 == MOST_WAYS) beyond = left * (1.0 - passed) / (1.0 - later_again(again) * passed);
     direction = direction - 2.0 * cosine * normal;
 #else
     break;
@@ -271,7 +274,7 @@ vec3 evaluate_model(SurfacePoint point, Outwards outwards, LightSample light) {
   return radiance;
 }
 
-#if defined(CLEAR) && defined(WORLD)
+#if defined(CLEAR) && (defined(WORLD) || defined(GATHERED))
 // What is refracted out of the grain after each reflection inside; the last stands for all that follow. Lengths are too short to tell the world
 // from elsewhere.
 vec3 crossing_light(SurfacePoint point, Outwards outwards) {
@@ -296,14 +299,15 @@ vec3 crossing_light(SurfacePoint point, Outwards outwards) {
     float sine_squared = stored.eta * stored.eta * (1.0 - cosine) * (1.0 + cosine);
     vec3 outside = normalize(stored.eta * (direction - cosine * normal) + sqrt(max(1.0 - sine_squared, 0.0)) * normal);
     bool last = i + 1 == MOST_WAYS || max(left.r, max(left.g, left.b)) * again < LEAST_PASSED;
-    // What is left after as many ways as radiance_inside follows goes on as if every way were like this one; what is scattered there is told there.
-    vec3 leaves = last ? (1.0 - again + TRAPPED) / (1.0 - again * passed + TRAPPED) : vec3(1.0 - again);
-    sum += left * leaves * seen_of_world(to_world * outside);
+    // What is left after as many ways as radiance_inside follows goes on as it has it; what is scattered there is told there.
+    float later = later_again(again);
+    vec3 leaves = 1.0 - again + (last ? again * (1.0 - later) * passed / (1.0 - later * passed) : vec3(0.0));
+    sum += left * leaves * seen_behind(to_world * outside);
     if (last) break;
     left *= again;
     direction = direction - 2.0 * cosine * normal;
 #else
-    sum += left * seen_of_world(to_world * direction);
+    sum += left * seen_behind(to_world * direction);
     break;
 #endif
   }

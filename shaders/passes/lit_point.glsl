@@ -7,6 +7,7 @@
 //   NEAR_LIGHTS          lights have a place: the light map of each shows the grain from one direction, but each point has its light from where it is
 //   LIGHTS_ABOUT         one of them is so near that it matters where its light comes in
 //   CLEAR, WORLD         the model knows what crosses the grain unscattered, and there is a world to be seen through it
+//   GATHERED             what is behind some was gathered
 //   TOGETHER             what the model makes of all lights but for mirroring was summed, and nothing stands in their way
 //   WHOLE_GRAIN          the model knows what light does in all of the grain, but not where it enters
 //   EMITS                the surface sends out light of its own
@@ -178,13 +179,16 @@ vec3 emitted();
 Mirrored mirrored;
 #endif
 
+// Of what a look finds through a surface at grazing.
+const float LEAST_ENTERING = 1e-3;
+
 vec3 lit_point(SurfacePoint point) {
   Outwards outwards = look_outwards(point);
 #if defined(EXCHANGE) && !(defined(FACETS_ALONE) && defined(MIRRORS_WORLD))
   vec3 place = settled_place() + grain_unit * point.on_triangle;
   vec3 sum = portion(EXCHANGE_PORTION, light_from_grains(grain_instance, place, point.normal, point.to_viewer));
 #ifdef GATHERED
-  sum += portion(TRANSMISSION_PORTION, texelFetch(gathered_lights, ivec2(gl_FragCoord.xy), 0).rgb);
+  if (!looked_through()) sum += portion(TRANSMISSION_PORTION, texelFetch(gathered_lights, ivec2(gl_FragCoord.xy), 0).rgb);
 #endif
 #else
   vec3 sum = vec3(0.0);
@@ -195,8 +199,13 @@ vec3 lit_point(SurfacePoint point) {
 #ifdef LIGHTS_AT_PLACE
   if (LIGHTS_TELL) sum += locally_lit(point, outwards);
 #endif
-#if defined(CLEAR) && defined(WORLD)
-  sum += portion(TRANSMISSION_PORTION, crossing_light(point, outwards));
+#if defined(CLEAR) && (defined(WORLD) || defined(GATHERED))
+  vec3 crossing = crossing_light(point, outwards);
+#ifdef GATHERED
+  // A look that the surface has reflected saw nothing behind.
+  if (looked_through()) crossing *= texelFetch(gathered_lights, ivec2(gl_FragCoord.xy), 0).rgb / max(outwards.transmittance, LEAST_ENTERING);
+#endif
+  sum += portion(TRANSMISSION_PORTION, crossing);
 #endif
 #ifdef MIRRORS_WORLD
 #ifdef SHADOWS

@@ -77,12 +77,13 @@ bool GatherPass::run(const Sample& sample, const ArrayVisibility& arrays, Surfac
       transport::Random random(seed, i);
       const glm::vec3 normal(facing);
       if (clear && gather->sees_into(*grain)) {
-        const heap::Gather::Look how{all ? heap::Scatterings::followed : heap::Scatterings::end,
-                                     sample.gathers_all_of(number), number >= instances};
+        const bool all_told = sample.gathers_all_of(number);
+        const heap::Gather::Look how{all ? heap::Scatterings::followed : heap::Scatterings::end, all_told,
+                                     !all_told && number >= instances};
         const heap::Gather::Through into =
             into_clear({*grain, place, normal, towards}, pixel_rays, pixel_at(i), *gather, *clear,
                        all ? rays_a_sample : rays_into_clear, how, random);
-        others_[i] = glm::vec4(into.others, 1.0F);
+        others_[i] = glm::vec4(into.others, how.alone ? 2.0F : 1.0F);
         lights_[i] = glm::vec4(into.lights, 0.0F);
         scattered_[i] = glm::vec4(into.scattered, 0.0F);
         mirrored_[i] = glm::vec4(into.mirrored, 0.0F);
