@@ -17,7 +17,8 @@ OUR_SAMPLES = 32
 TABLE = (0.45, 0.2, 0.11)
 LIGHTS = ((gallery.window, "a room with a window"), (gallery.soft, "a sun behind a thin cloud"))
 # (shape, preset, changes of it)
-GRAINS = (("salt", "salt", {}), ("sugar", "sugar", {}), ("bead", "salt", {}), ("salt", "salt", {"sigma_s": (0.0,) * 3, "roughness": 0.0}))
+CLEAR = {"sigma_s": (0.0,) * 3, "roughness": 0.0}
+GRAINS = (("salt", "salt", {}), ("sugar", "sugar", {}), ("bead", "salt", {}), ("salt", "salt", CLEAR))
 NAMES = ("salt", "sugar", "a bead of salt", "clear, smooth salt")
 START, END = "| grain | light | total | blocks | noise |\n|---|---|---|---|---|\n", "\n![](images/crystals.jpg)"
 
@@ -55,7 +56,8 @@ def main():
                 (total, off, noise), *pictures = take(grain, light, pathlib.Path(folder, f"{light.__name__}_{number}"))
                 exposure = 0.85 / np.percentile(pictures[1].mean(axis=-1), 97.0)
                 looks.append(np.concatenate([gallery.shown(picture, exposure) for picture in pictures]))
-                rows.append(f"| {NAMES[number]} | {sentence} | {total:.2f} | {100.0 * off:.1f} % | {100.0 * noise:.1f} % |\n")
+                rows.append(f"| {NAMES[number]} | {sentence} | {total:.2f} | {100.0 * off:.1f} % |"
+                            f" {100.0 * noise:.1f} % |\n")
             strips.append(np.concatenate(looks, axis=1))
     parts.save_beside(gallery.DOCS / "images" / "crystals.jpg", strips, 85)
     page = gallery.DOCS / "gallery.md"
