@@ -106,26 +106,38 @@ Volume sources_volume(const StoredTransport& stored) {
   return volume;
 }
 
-// Which way the distance from the surface grows, at the nodes; beyond the box it is as on the box's side.
-Volume slopes_volume(const StoredTransport& stored) {
+// Which way the distance from the surface grows, at the nodes; beyond the box nothing is known. `smoothed` across by
+// the neighbours (Sobel's operator), or as it is.
+Volume slopes_volume(const StoredTransport& stored, bool smoothed) {
   const glm::ivec3 last = stored.size - 1;
   const auto distance_at = [&](glm::ivec3 node) {
     node = glm::clamp(node, glm::ivec3(0), last);
     const int index = (node.z * stored.size.y + node.y) * stored.size.x + node.x;
     return stored.distances[static_cast<std::size_t>(index)];
   };
+  const auto slope = [&](const glm::ivec3& node, int axis) {
+    glm::ivec3 before = node, after = node;
+    before[axis] = std::max(node[axis] - 1, 0);
+    after[axis] = std::min(node[axis] + 1, last[axis]);
+    const float apart = static_cast<float>(after[axis] - before[axis]) * stored.spacing[axis];
+    if (!smoothed) return (distance_at(after) - distance_at(before)) / apart;
+    float rise = 0.0F;
+    for (int i = -1; i <= 1; ++i)
+      for (int j = -1; j <= 1; ++j) {
+        glm::ivec3 aside(0);
+        aside[(axis + 1) % 3] = i;
+        aside[(axis + 2) % 3] = j;
+        const int weight = (2 - std::abs(i)) * (2 - std::abs(j));
+        rise += static_cast<float>(weight) / 16.0F * (distance_at(after + aside) - distance_at(before + aside));
+      }
+    return rise / apart;
+  };
   Volume volume{stored.size.x, stored.size.y, stored.size.z, 3, {}};
   volume.texels.reserve(3 * stored.nodes());
   for (int z = 0; z <= last.z; ++z)
     for (int y = 0; y <= last.y; ++y)
       for (int x = 0; x <= last.x; ++x)
-        for (int axis = 0; axis < 3; ++axis) {
-          const glm::ivec3 node(x, y, z);
-          glm::ivec3 step(0);
-          step[axis] = 1;
-          volume.texels.push_back((distance_at(node + step) - distance_at(node - step)) /
-                                  (2.0F * stored.spacing[axis]));
-        }
+        for (int axis = 0; axis < 3; ++axis) volume.texels.push_back(slope({x, y, z}, axis));
   return volume;
 }
 
@@ -217,7 +229,8 @@ MaterialInputs prototype_inputs(const scene::Material& material, const StoredTra
   if (stored.convex) inputs.defines.emplace_back("CONVEX");
   if (is_walked(material)) {
     add_forward(material, stored, inputs);
-    inputs.volumes["slopes"] = slopes_volume(stored);
+    inputs.volumes["slopes"] = slopes_volume(stored, false);
+    inputs.volumes["smooth_slopes"] = slopes_volume(stored, true);
   }
   // Of the sphere that has this mean chord.
   add_light_about(material, 0.75 * stored.unit * stored.mean_chord, inputs);

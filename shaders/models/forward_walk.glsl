@@ -27,8 +27,10 @@ const float LEAST_KEPT = 0.1;     // of the first direction, by the mean cosine:
 const int MOST_STEPS = 40;
 const float LEAST_FLIGHT = 1e-7;       // in mean free paths
 const float LEAST_EXTINCTION = 1e-12;  // a channel of less flies through
-const int FIRST_TRIES = 2;             // to find where light came in; for what is scattered next, it is looked for near there
-const float SUN_SHARPNESS = 50.0;      // of the lobe exp(sharpness (cosine - 1)) that reflected light comes from
+const float LEAST_FOLLOWED = 0.25;     // of walks that meet the surface, were nothing lost: what it reflects is rare and bright
+const float SUN_SHARPNESS = 50.0;      // of the lobe exp(sharpness (cosine - 1)) that reflected light comes from, at first
+const float SHARPENED_BY = 16.0;       // samples: the more there are, the narrower it is, so that its width goes with the noise
+                                       // (as in Knaus and Zwicker, "Progressive photon mapping: a probabilistic approach", 2011)
 
 vec3 turned(vec3 direction, float versine, float random) {
   float sine = sqrt(versine * (2.0 - versine));
@@ -70,11 +72,7 @@ Spectrum walked_radiance(vec3 place, vec3 direction, vec3 to_light, int light) {
   bool first_place = true;
   float kept = 1.0;
   bool mirrored = false;
-  vec3 back = to_light;
-#if defined(REFRACTION) && !defined(SUMMED)
-  vec3 here = outwards_about(place);
-  if (dot(here, to_light) > 0.0) back = back_to_entry(to_light, here);
-#endif
+  float sharpness = SUN_SHARPNESS * sqrt(1.0 + float(sample_index) / SHARPENED_BY);
   for (int i = 0; i < MOST_STEPS; ++i) {
     vec4 random = vec4(pcg4d(seed + uvec4(0u, 0u, 0u, uint(i + 1) << 8u)) >> 8u) * (1.0 / 16777216.0);
     if (i == 0) random.xy = low_discrepancy_beside_pixel(uint(sample_index), pcg4d(uvec4(seed.xy, 5u, seed.w)).xy);
@@ -107,11 +105,10 @@ Spectrum walked_radiance(vec3 place, vec3 direction, vec3 to_light, int light) {
 #if defined(SUMMED) && defined(REFRACTION)
       Unscattered unscattered = unscattered_found(place);
 #else
-      Unscattered unscattered = unscattered_at(place, to_light, back, first_place ? FIRST_TRIES : 1);
+      Unscattered unscattered = unscattered_at(place, to_light);
 #endif
       first_place = false;
-      back = unscattered.back;
-      float versine = 1.0 - dot(back, direction);
+      float versine = 1.0 - dot(unscattered.back, direction);
       float phase = henyey_greenstein(versine, g, one_minus_g);
       float mean_cosine = whole && !narrow ? forward.wide_g : g;
       bool coarser = !narrow && scatterings + 1 >= EXACT_SCATTERINGS && scatterings % 2 == 1;
@@ -154,9 +151,11 @@ Spectrum walked_radiance(vec3 place, vec3 direction, vec3 to_light, int light) {
     float again = fresnel_reflectance(min(cosine, 1.0), 1.0 / stored.eta);
     if (mirrored && !first_place && again < 1.0) {
       vec3 outside = refract(direction, -normal, stored.eta);
-      sum += left * ((1.0 - again) * stored.eta * stored.eta * SUN_SHARPNESS / (2.0 * PI) * exp(SUN_SHARPNESS * (dot(outside, to_light) - 1.0)));
+      sum += left * ((1.0 - again) * stored.eta * stored.eta * sharpness / (2.0 * PI) * exp(sharpness * (dot(outside, to_light) - 1.0)));
     }
-    if (cosine <= 0.0 || random.w >= again) break;
+    float followed = max(again, LEAST_FOLLOWED * largest(left));
+    if (cosine <= 0.0 || random.w >= followed) break;
+    left *= again / followed;
     direction = direction - 2.0 * cosine * normal;
     mirrored = true;
 #else

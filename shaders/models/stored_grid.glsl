@@ -8,14 +8,18 @@ uniform sampler3D distances;  // from the surface, at the nodes; negative inside
 
 vec3 to_nodes(vec3 place) { return clamp((place - stored.lower) * stored.nodes_a_unit, vec3(0.0), stored.last_node); }
 
-float distance_at(vec3 place) { return texture(distances, (to_nodes(place) + 0.5) / (stored.last_node + 1.0)).r; }
+float distance_at_node(vec3 node) { return texture(distances, (node + 0.5) / (stored.last_node + 1.0)).r; }
+
+float distance_at(vec3 place) { return distance_at_node(to_nodes(place)); }
 
 vec3 outwards_at(vec3 place) {
-  vec3 step = 0.5 / stored.nodes_a_unit;
-  vec3 gradient = vec3(distance_at(place + vec3(step.x, 0.0, 0.0)) - distance_at(place - vec3(step.x, 0.0, 0.0)),
-                       distance_at(place + vec3(0.0, step.y, 0.0)) - distance_at(place - vec3(0.0, step.y, 0.0)),
-                       distance_at(place + vec3(0.0, 0.0, step.z)) - distance_at(place - vec3(0.0, 0.0, step.z))) /
-                  step;
+  vec3 node = to_nodes(place);
+  vec3 before = max(node - 0.5, vec3(0.0));
+  vec3 after = min(node + 0.5, stored.last_node);
+  vec3 gradient = vec3(distance_at_node(vec3(after.x, node.yz)) - distance_at_node(vec3(before.x, node.yz)),
+                       distance_at_node(vec3(node.x, after.y, node.z)) - distance_at_node(vec3(node.x, before.y, node.z)),
+                       distance_at_node(vec3(node.xy, after.z)) - distance_at_node(vec3(node.xy, before.z))) *
+                  stored.nodes_a_unit / (after - before);
   return gradient * inversesqrt(max(dot(gradient, gradient), 1e-12));
 }
 

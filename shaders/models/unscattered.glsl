@@ -20,7 +20,8 @@ vec3 perpendicular(vec3 direction) {
 }
 
 #ifdef REFRACTION
-uniform sampler3D slopes;  // of `distances`, at its nodes: they are asked for often
+uniform sampler3D slopes;         // of `distances`, at its nodes: they are asked for often
+uniform sampler3D smooth_slopes;  // smoothed by their neighbours
 
 const float LEAST_WIDTH = 0.2;  // of a bundle of light, over what it was as it entered: a narrower one is seen by few places
 
@@ -28,10 +29,10 @@ const float LEAST_WIDTH = 0.2;  // of a bundle of light, over what it was as it 
 vec3 unit_vector(vec3 v) { return v * inversesqrt(max(dot(v, v), 1e-20)); }
 
 // What outwards_at says, with edges rounded off over a node to either side instead of a half.
-vec3 outwards_about(vec3 place) {
-  vec3 gradient = texture(slopes, (to_nodes(place) + 0.5) / (stored.last_node + 1.0)).xyz;
-  return gradient * inversesqrt(max(dot(gradient, gradient), 1e-12));
-}
+vec3 outwards_about(vec3 place) { return unit_vector(texture(slopes, (to_nodes(place) + 0.5) / (stored.last_node + 1.0)).xyz); }
+
+// And over two: so light enters, of whose ways in one is looked for.
+vec3 outwards_where_light_enters(vec3 place) { return unit_vector(texture(smooth_slopes, (to_nodes(place) + 0.5) / (stored.last_node + 1.0)).xyz); }
 
 // Towards where light comes from that was refracted at a surface of this normal; grazing light where the surface faces away.
 vec3 back_to_entry(vec3 to_light, vec3 normal) {
@@ -41,16 +42,19 @@ vec3 back_to_entry(vec3 to_light, vec3 normal) {
   return unit_vector(aside / stored.eta + refracted_cosine(max(cosine, 0.0), stored.eta) * normal);
 }
 
-// `back`: about where it comes from. The light that comes in at the other end of that line passes beside the place; how far, and how that changes
-// with where it comes in, tells where light comes in that does not (a step of Newton's method).
-Unscattered unscattered_at(vec3 place, vec3 to_light, vec3 back, int tries) {
+const int TRIES = 4;  // fewer stop before where light comes in at grazing angles: a third too much where g is 0.95
+
+// Light that comes in where a line from the place meets the surface passes beside the place; how far, and how that changes with where it comes in,
+// tells where light comes in that does not (a step of Newton's method).
+Unscattered unscattered_at(vec3 place, vec3 to_light) {
+  vec3 back = to_light;
   float way;
   vec3 entry;
   vec3 normal;
-  for (int i = 0; i < tries; ++i) {
+  for (int i = 0; i < TRIES; ++i) {
     way = way_through(place, back, FAR);
     entry = place + way * back;
-    normal = outwards_about(entry);
+    normal = outwards_where_light_enters(entry);
     back = back_to_entry(to_light, normal);
   }
   float refracted = max(dot(normal, back), 0.1);
@@ -59,8 +63,8 @@ Unscattered unscattered_at(vec3 place, vec3 to_light, vec3 back, int tries) {
   vec3 along_first = first - dot(normal, first) / refracted * back;
   vec3 along_second = second - dot(normal, second) / refracted * back;
   float aside = 0.5 * min(1.0 / stored.nodes_a_unit.x, min(1.0 / stored.nodes_a_unit.y, 1.0 / stored.nodes_a_unit.z));
-  vec3 normal_first = outwards_about(entry + aside * along_first);
-  vec3 normal_second = outwards_about(entry + aside * along_second);
+  vec3 normal_first = outwards_where_light_enters(entry + aside * along_first);
+  vec3 normal_second = outwards_where_light_enters(entry + aside * along_second);
   vec3 turn_first = (back_to_entry(to_light, normal_first) - back) / aside;
   vec3 turn_second = (back_to_entry(to_light, normal_second) - back) / aside;
   mat2 spread = mat2(1.0) - way * mat2(dot(turn_first, first), dot(turn_first, second), dot(turn_second, first), dot(turn_second, second));
@@ -103,5 +107,5 @@ float way_of_light(vec3 place, vec3 to_light) {
 }
 #endif
 
-Unscattered unscattered_at(vec3 place, vec3 to_light, vec3 back, int tries) { return Unscattered(to_light, way_of_light(place, to_light), 1.0); }
+Unscattered unscattered_at(vec3 place, vec3 to_light) { return Unscattered(to_light, way_of_light(place, to_light), 1.0); }
 #endif

@@ -13,7 +13,6 @@ layout(std430, binding = DISTANT_LIGHTS_BINDING) readonly buffer Lights { Distan
 
 layout(rgba32f, binding = 0) writeonly uniform image3D found;
 
-const int TRIES = 4;
 const float LEAST_COSINE = 0.1;
 
 void main() {
@@ -30,9 +29,9 @@ void main() {
   if (above < length(spacing)) {
     vec3 to_light = grain_to_body() * lights[light].to_light.xyz;
     vec3 inside = place - max(above, 0.0) * outwards_at(place);
-    Unscattered unscattered = unscattered_at(inside, to_light, to_light, TRIES);
+    Unscattered unscattered = unscattered_at(inside, to_light);
     // Out here the way is what it would be were the surface a plane where the light came in, so that it is right where it comes to the surface.
-    vec3 normal = outwards_about(inside + unscattered.way * unscattered.back);
+    vec3 normal = outwards_where_light_enters(inside + unscattered.way * unscattered.back);
     float way = unscattered.way + dot(inside - place, normal) / max(dot(unscattered.back, normal), LEAST_COSINE);
     value = vec4(unscattered.irradiance * unscattered.back, way);
     // Pixels about it read it as well.
