@@ -84,13 +84,18 @@ def test_one_coefficient_and_a_brightness_that_nobody_knows(tmp_path, picture):
     assert found.exposure == pytest.approx(2.0, rel=0.05)
 
 
-def test_g_is_found_with_the_rest(tmp_path):
+@pytest.mark.parametrize("shape, g, determined", [("cube", 0.5, True), ("cube", 0.8, True), ("sphere", 0.2, False)])
+def test_g_is_found_with_the_rest_or_said_not_to_be(tmp_path, shape, g, determined):
     medium = {"sigma_s": (4.0, 6.0, 2.0), "sigma_a": SIGMA_A}
-    found = matched(tmp_path, drawn(described(g=0.5, **medium)), described(g=0.1, **UNKNOWN),
+    found = matched(tmp_path, drawn(described(shape, g=g, **medium), samples=16), described(shape, g=0.1, **UNKNOWN),
                     parameters=("sigma_a", "sigma_s", "g"))
     assert found.coefficients["sigma_a"] == pytest.approx(medium["sigma_a"], rel=0.1)
     reduced = numpy.multiply(1.0 - found.coefficients["g"], found.coefficients["sigma_s"])
-    assert reduced == pytest.approx(numpy.multiply(0.5, medium["sigma_s"]), rel=0.1)
+    assert reduced == pytest.approx(numpy.multiply(1.0 - g, medium["sigma_s"]), rel=0.1)
+    stated, = found.intervals["g"]
+    assert stated["low"] <= g <= stated["high"] and stated["determined"] == determined, stated
+    if determined:
+        assert stated["high"] - stated["low"] < 0.3
 
 
 def test_what_a_picture_does_not_tell_is_said(tmp_path):

@@ -16,7 +16,7 @@ G_RANGE = 0.5
 """The same of g, as a difference."""
 
 
-def covariance(fit, pattern, tiles, even, noise, smooth):
+def covariance(fit, pattern, tiles, even, noise, smooth, unsteady=0.0):
     """(unknowns, unknowns): of the state of a least_squares.Fit, with the pattern that it was found with.
 
     The sum of four: what the residuals' size lets expect of independent errors (Gauss and Newton's); what the state
@@ -28,6 +28,7 @@ def covariance(fit, pattern, tiles, even, noise, smooth):
     its PATTERNS it is as large as in those that are left over. tiles: (n,), the part of each residual. even: (channels,
     n), the residuals of a picture twice as bright, less those of this one. noise: (channels, n), the mean square of
     each residual by noise alone. smooth: as fit.jacobian, of a model whose differences are no steps of a table.
+    unsteady: the sum of squares by which the model goes in steps, an error as any other of its.
     """
     total = numpy.zeros((pattern.shape[1],) * 2)
     for unknowns, channels in least_squares.parts(pattern):
@@ -35,15 +36,15 @@ def covariance(fit, pattern, tiles, even, noise, smooth):
         total[numpy.ix_(unknowns, unknowns)] = _covariance(
             rows, fit.residuals[channels], tiles, even[channels])
         total[numpy.ix_(unknowns, unknowns)] += _imitated(
-            smooth[channels][..., unknowns], fit.residuals[channels], noise[channels])
+            smooth[channels][..., unknowns], fit.residuals[channels], noise[channels], unsteady)
     return total
 
 
-def _imitated(jacobian, residuals, noise):
+def _imitated(jacobian, residuals, noise, unsteady):
     """Of the error of a model that leaves these residuals and such noise. jacobian: (channels, n, unknowns)."""
     channels, _, size = jacobian.shape
     rows = jacobian.reshape(-1, size)
-    left_over = max(numpy.sum(residuals**2) - numpy.sum(noise), 0.0) / max(PATTERNS * channels - size, 1)
+    left_over = (max(numpy.sum(residuals**2) - numpy.sum(noise), 0.0) + unsteady) / max(PATTERNS * channels - size, 1)
     return numpy.linalg.inv(rows.T @ rows / max(left_over, 1e-12) + numpy.eye(size) / UNKNOWING**2)
 
 

@@ -21,12 +21,15 @@ THICKEST = 50.0
 REACH = 8.0
 """How far the log of a single coefficient may go from where it starts: a factor of 3000."""
 MOST_G = 0.95
-STEP_G = 0.03
 STEP = 0.03
 """Of a difference quotient: large against what is left of noise, small against what bends."""
 NOISY_STEP = 0.4
 """The same where light goes from grain to grain: rays are drawn anew for each medium, and a block is off by that as
 much as a step of 0.03 changes it."""
+
+STEP_BESIDE_G = 0.3
+"""The same, of each unknown, where g is one of them: models look g up in tables, whose steps are as much as a step of
+0.03 changes a picture in the direction in which g and the other coefficients are hardly told apart."""
 
 
 class Medium:
@@ -59,10 +62,12 @@ class Medium:
     @property
     def steps(self):
         """Of the difference quotients."""
-        steps = numpy.full(self.size, self._step)
-        if "g" in self._shared:
-            steps[CHANNELS * len(self._each)] = STEP_G
-        return steps
+        return numpy.full(self.size, max(self._step, STEP_BESIDE_G) if "g" in self._shared else self._step)
+
+    @property
+    def place_of_g(self):
+        """Which unknown g is, or None."""
+        return CHANNELS * len(self._each) if "g" in self._shared else None
 
     def limits(self, start, size):
         """(least, most) of each unknown, for a search from `start` in grains of this size."""

@@ -276,7 +276,7 @@ class _Search:
         if self._corrections:
             noise *= 2.0  # Cycles' pictures of both have as much
         spread = certainty.covariance(fit, medium.pattern, blocks.tiles, blocks.means * blocks.weights, noise,
-                                      self._smooth_jacobian(fit))
+                                      self._smooth_jacobian(fit), self._unsteadiness(fit))
         intervals = {name: [certainty.interval(name, value, deviation) for value, deviation in channels]
                      for name, channels in medium.told(fit.state, spread).items()}
         return Found(
@@ -294,6 +294,17 @@ class _Search:
         medium = self._medium
         return least_squares.differences(residuals, fit.state, residuals(fit.state), medium.pattern, medium.steps,
                                          medium.limits(fit.state, self._size)[1])
+
+    def _unsteadiness(self, fit):
+        """The sum of squares by which a picture with g a little further is off from what the derivative says: what
+        steps of tables hide of g. 0 where g is not searched for."""
+        place = self._medium.place_of_g
+        if place is None:
+            return 0.0
+        moved = fit.state.copy()
+        moved[place] -= numpy.copysign(STEP, moved[place])
+        expected = fit.residuals + fit.jacobian[..., place] * (moved[place] - fit.state[place])
+        return float(numpy.sum((self._residuals(self._model)(moved) - expected) ** 2))
 
     def _off(self, residuals):
         """Relative L1 of means in blocks (docs/metrics.md)."""
