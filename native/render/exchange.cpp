@@ -146,10 +146,12 @@ void append_second_order(std::vector<glm::vec4>& numbers, const std::array<heap:
   for (std::size_t i = 0; i < open.size(); ++i) numbers.emplace_back(second[0][i], second[1][i], second[2][i], open[i]);
 }
 
-/// Whether any object may be a clear grain.
+/// Whether any object may be a clear grain, and its model knows of an other side.
 bool any_refracts(const Content& content) {
   return std::any_of(content.draws().begin(), content.draws().end(), [](const Draw& draw) {
-    return heap::optics_of(draw.look, draw.reach).surface == heap::Surface::dielectric;
+    const scene::ModelTraits& traits = scene::traits_of(draw.look.model);
+    return (traits.light_maps || traits.mesh) &&
+           heap::optics_of(draw.look, draw.reach).surface == heap::Surface::dielectric;
   });
 }
 

@@ -121,6 +121,7 @@ void expect_array_as_one_by_one(const scene::MeshPointer& mesh, scene::Model mod
   material.roughness = 0.3;
   const std::vector<scene::Light> lights = {sun({1.0, 0.3, 0.6}, 3.0), sun({-1.0, 0.3, -1.0}, 1.0)};
   scene::Scene one_by_one{{}, lights};
+  one_by_one.exchange = scene::Exchange::off;
   for (const glm::dmat4& place : eight_places()) one_by_one.instances.push_back({mesh, material, place});
   const scene::Scene array = array_of(mesh, material, eight_places(), lights);
   const scene::Camera camera = scene::Camera::look_at({0, 0, 16}, {0, 0, 0}, {0, 1, 0}, 30.0, 2.0);
@@ -250,9 +251,10 @@ TEST_F(HeapTest, AShadowHasTheSizeAndPlaceOfItsObject) {
   for (const bool translucent : {false, true}) {
     scene::Material of_ball = material;
     if (translucent) of_ball.model = scene::Model::model_2;
-    const scene::Scene scene{{{square(20.0F), material, glm::dmat4(1.0)},
-                              {ball, of_ball, glm::translate(glm::dmat4(1.0), glm::dvec3(8.0, 0.0, 8.0))}},
-                             {sun(to_light, pi)}};
+    scene::Scene scene{{{square(20.0F), material, glm::dmat4(1.0)},
+                        {ball, of_ball, glm::translate(glm::dmat4(1.0), glm::dvec3(8.0, 0.0, 8.0))}},
+                       {sun(to_light, pi)}};
+    scene.exchange = scene::Exchange::off;  // what crosses the ball would lighten its shadow
     // Looks at the plane's middle, where the shadow falls: an ellipse of half axes sqrt(2) and 1.
     const scene::Camera camera{glm::translate(glm::dmat4(1.0), glm::dvec3(0, 0, -4)),
                                glm::ortho(-2.0, 2.0, -2.0, 2.0, 0.1, 20.0)};
@@ -310,9 +312,13 @@ TEST_F(HeapTest, GrainsThatTouchDoNotShadeThemselves) {
     scene::Material material;
     material.model = model;
     material.specular = false;  // it does show its neighbours in what it mirrors
-    const std::vector<float> alone = picture({{{ball, material, here}}, lights}, camera, 64, 64, 16);
-    const std::vector<float> among = picture(
-        {{{ball, material, here}, {ball, material, beside}, {ball, material, below}}, lights}, camera, 64, 64, 16);
+    scene::Scene one{{{ball, material, here}}, lights};
+    one.exchange = scene::Exchange::off;
+    scene::Scene three = one;
+    three.instances.push_back({ball, material, beside});
+    three.instances.push_back({ball, material, below});
+    const std::vector<float> alone = picture(one, camera, 64, 64, 16);
+    const std::vector<float> among = picture(three, camera, 64, 64, 16);
     const Difference found = difference(among, alone, 64, 64);
     EXPECT_LT(found.blocks, 2e-3) << static_cast<int>(model);
   }
