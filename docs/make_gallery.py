@@ -141,12 +141,12 @@ HEAPS = (
     Heap("snow", "clumps of snow under a low sun", 3 * (("rounded_snow", "snow", {}),), 300, 6.0, (0.25, 0.25, 0.26),
          evening, 8),
     Heap("dry_sand", "the sand with its surface, under a thin cloud", 3 * (("sand", "sand", {}),), 400, 0.5,
-         (0.42, 0.36, 0.3), soft, 8),
+         (0.42, 0.36, 0.3), soft, 64),
     Heap("wet_sand", "wet quartz sand under a thin cloud", 3 * (("sand", "sand", WET),), 400, 0.5, (0.25, 0.21, 0.17),
-         soft, 8),
-    Heap("salt", "table salt under a thin cloud", 3 * (("salt", "salt", {}),), 400, 0.25, (0.1, 0.12, 0.16), soft, 8,
+         soft, 64),
+    Heap("salt", "table salt under a thin cloud", 3 * (("salt", "salt", {}),), 400, 0.25, (0.1, 0.12, 0.16), soft, 64,
          roundness=0.15),
-    Heap("sugar", "sugar by a window", 3 * (("sugar", "sugar", {}),), 300, 0.4, (0.2, 0.11, 0.06), window, 8),
+    Heap("sugar", "sugar by a window", 3 * (("sugar", "sugar", {}),), 300, 0.4, (0.2, 0.11, 0.06), window, 64),
 )
 
 
