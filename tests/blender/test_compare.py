@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 from cycles_scenes import REFEREE, depsgraph, make_sphere
 
-from mesograin import native_module
+from mesograin import compat, native_module
 from mesograin.cycles import kinds, nodes, reference, shot
 from mesograin.cycles.cache import Cache
 from mesograin.studies.comparison import ours, progress, results, run, significance
@@ -103,7 +103,7 @@ def test_a_thick_grain_agrees_with_both_walks_of_cycles(tmp_path):
 def add_ground(colour):
     bpy.ops.mesh.primitive_plane_add(size=40.0, location=(0.0, 0.0, -2.5))
     material = bpy.data.materials.new("Ground")
-    material.use_nodes = True
+    compat.use_nodes(material)
     material.node_tree.nodes.clear()
     diffuse = material.node_tree.nodes.new("ShaderNodeBsdfDiffuse")
     diffuse.inputs["Color"].default_value = (*colour, 1.0)
