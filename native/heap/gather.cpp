@@ -29,10 +29,9 @@ const float least_spread = 15.0F * std::numbers::pi_v<float> / 180.0F;
 constexpr float spread_of_alpha = 0.6F;
 
 /// But for what it scatters and absorbs.
-Optics glass(const Optics& optics) {
-  Optics clear = optics;
-  clear.sigma_t = glm::dvec3(0.0);
-  return clear;
+Optics glass(Optics optics) {
+  optics.sigma_t = glm::dvec3(0.0);
+  return optics;
 }
 
 /// What one direction of a light makes a walk send back: of all places that ask for it one is looked at, the likelier
@@ -224,17 +223,20 @@ void Gather::follow_look(SeenFacet seen, const Facets& facets, const Look& how, 
     const bool first = through == 0;
     const Grain& grain = space_.grains()[seen.grain];
     const Optics& optics = heap_.grains.kinds[grain.kind];
+    const bool asks_how_much = first && how.alone;
     glm::vec3 once_scattered(0.0F);
-    const std::optional<Passage> passage =
-        walk_facets(first && how.alone ? glass(optics) : optics, grain.radius, seen, facets,
-                    first ? how.scatterings : Scatterings::end, random, &once_scattered);
+    const auto walk = [&](const Optics& medium) {
+      return walk_facets(medium, grain.radius, seen, facets, first ? how.scatterings : Scatterings::end, random,
+                         &once_scattered);
+    };
+    const std::optional<Passage> passage = asks_how_much ? walk(glass(optics)) : walk(optics);
     // What lights and the world scatter in it is no other walk's to tell.
     if (first && how.whole && once_scattered != glm::vec3(0.0F)) {
       const ScatteredLight scattered = scattered_in(seen);
       sum.scattered += once_scattered * (scattered.all - scattered.of_others);
     }
     if (!passage) return;
-    crosses = crosses || (first && how.alone && passage->entered);
+    if (asks_how_much) crosses = passage->entered;
     glm::vec3& behind = crosses ? sum.lights : sum.others;
     weight *= passage->weight;
     if (passage->scattered && (!first || how.scatterings == Scatterings::end)) {
@@ -242,7 +244,7 @@ void Gather::follow_look(SeenFacet seen, const Facets& facets, const Look& how, 
       behind += weight * (first ? scattered.of_others : scattered.all);
       return;
     }
-    if (first && how.alone && passage->entered) {
+    if (asks_how_much && crosses) {
       const glm::vec3 passed = glm::exp(-glm::vec3(optics.sigma_t) * (passage->length / grain.radius));
       sum.others += glm::vec3(optics.albedo) * (1.0F - passed) * scattered_in(seen).of_others;
     }
