@@ -19,8 +19,7 @@ def start_endless_render(window, area):
     bpy.context.scene.mesograin.samples = 1 << 20
     bpy.context.scene.render.resolution_x = bpy.context.scene.render.resolution_y = 64
     status.clear()
-    with window.override(area):
-        assert bpy.ops.render.render("INVOKE_DEFAULT") == {"RUNNING_MODAL"}
+    assert (yield from window.press_f12(area)) == {"RUNNING_MODAL"}
     yield from window.until(lambda: bpy.app.is_job_running("RENDER"))
     yield from window.seconds(1.0)
     assert bpy.app.is_job_running("RENDER") and status.get(status.RENDER) is None

@@ -134,7 +134,6 @@ def check_a_heap_of_100000_plays_and_renders(window):
 
     scene.render.resolution_percentage, scene.mesograin.samples = 25, 1
     status.clear()
-    with window.override(area):
-        bpy.ops.render.render("INVOKE_DEFAULT")
+    yield from window.press_f12(area)
     yield from window.until(lambda: status.get(status.RENDER) is not None, PATIENT)
     assert status.get(status.RENDER).samples == 1

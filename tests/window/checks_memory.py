@@ -75,8 +75,7 @@ def check_switching_the_shading(window):
 
 def check_rendering(window):
     def work(window, area):
-        with window.override(area):
-            bpy.ops.render.render("INVOKE_DEFAULT")
+        yield from window.press_f12(area)
         yield from window.seconds(0.1)
         yield from window.until(lambda: not bpy.app.is_job_running("RENDER"))
     yield from over_and_over(window, work)

@@ -11,6 +11,7 @@ from mesograin.ui.bake_panel import session as baking
 from mesograin.ui.compare_panel import session as comparing
 
 ENDLESS = 1 << 16
+RENDERS = 40
 
 
 def settle(window, area):
@@ -121,6 +122,27 @@ def check_cancel_at_once(window):
     yield from settle(window, area)
 
 
+def check_renders_begin_and_end_while_an_animation_plays(window):
+    area = yield from window.open("sphere", samples=ENDLESS)
+    scene = bpy.context.scene
+    scene.render.resolution_x, scene.render.resolution_y, scene.mesograin.samples = 32, 32, 1
+    bpy.context.preferences.view.render_display_type = "NONE"
+    sphere = bpy.data.objects["Sphere"]
+    for frame, height in ((1, -0.2), (25, 0.2), (50, -0.2)):
+        sphere.location.z = height
+        sphere.keyframe_insert("location", frame=frame)
+    for number in range(RENDERS):
+        yield from window.do(area, bpy.ops.screen.animation_play)  # or it pauses
+        status.clear()
+        assert (yield from window.press_f12(area)) == {"RUNNING_MODAL"}
+        yield from window.do(area, lambda number=number: bpy.ops.ed.undo_push(message=f"Rendered {number}"))
+        yield from window.until(lambda: not bpy.app.is_job_running("RENDER"))
+        assert status.get(status.RENDER).samples == 1
+    if window._window().screen.is_animation_playing:
+        yield from window.do(area, bpy.ops.screen.animation_play)
+    yield from settle(window, area)
+
+
 def check_timers_may_write_after_a_render_that_began_amid_a_panels_drawing(window):
     area = yield from window.open("sphere")
     scene = bpy.context.scene
@@ -157,8 +179,7 @@ def check_timers_may_write_after_a_render_that_began_amid_a_panels_drawing(windo
     bpy.app.handlers.render_pre.append(before)
     try:
         yield from window.seconds(0.5)
-        with window.override(area):
-            bpy.ops.render.render("INVOKE_DEFAULT")
+        yield from window.press_f12(area)
         yield from window.until(drawn.is_set)
         yield from window.until(lambda: not bpy.app.is_job_running("RENDER"))
     finally:

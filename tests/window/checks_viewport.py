@@ -305,8 +305,7 @@ def check_final_render_runs_beside_the_viewport(window):
     yield from window.until(lambda: status.get(status.VIEWPORT) is not None)
     bpy.context.scene.mesograin.samples = 8
     bpy.context.preferences.view.render_display_type = "NONE"
-    with window.override(area):
-        bpy.ops.render.render("INVOKE_DEFAULT")
+    yield from window.press_f12(area)
     yield from window.until(lambda: status.get(status.RENDER) is not None and not bpy.app.is_job_running("RENDER"))
     assert status.get(status.RENDER).samples == 8
     yield from window.until(lambda: not writing.refused())  # Blender 4.3 refuses it until engine/writing.py has looked

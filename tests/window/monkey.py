@@ -8,6 +8,7 @@ import subprocess
 import time
 
 import bpy
+import hand
 import monkey_work
 import resident
 from mesograin import compat
@@ -29,6 +30,7 @@ class Monkey:
         self.folder = window.folder
         self.random = random.Random(seed)
         self.longest = (0.0, "")  # s in which Blender did not answer, and the operation
+        self.unanswered = 0  # times that Blender's window did not take the key for an operator
         self.took = collections.Counter()  # s that went to each operation, and to being at home
 
     # Choices
@@ -56,19 +58,28 @@ class Monkey:
     # Deeds
 
     def operator(self, group, name, *arguments, **settings):
-        """Calls an operator as its button would, if it can be; tells whether it was. Its refusals are no news."""
-        area = self.viewport() or self.areas()[0]
-        with self.window.override(area):
-            call = getattr(getattr(bpy.ops, group), name)
-            if not call.poll():
+        """Calls an operator as its key would, if it can be; tells whether it was. Its refusals are no news."""
+        def call():
+            operator = getattr(getattr(bpy.ops, group), name)
+            if not operator.poll():
                 return False
             try:
-                call(*arguments, **settings)
+                operator(*arguments, **settings)
             except RuntimeError as refusal:
                 if "Traceback" in str(refusal):
                     raise
                 return False
-        return True
+            return True
+
+        return (yield from self.at(self.viewport() or self.areas()[0], call))
+
+    def at(self, area, function):
+        """Calls function() with the mouse over an area; False where Blender's window did not take the key for it."""
+        try:
+            return (yield from self.window.do(area, function))
+        except hand.Unanswered:
+            self.unanswered += 1
+            return False
 
     def open(self, path, load_ui=False):
         bpy.ops.wm.open_mainfile(filepath=str(path), load_ui=load_ui)
@@ -88,20 +99,19 @@ class Monkey:
             return
         scene.frame_start, scene.frame_end = 1, 3
         scene.render.filepath = str(self.folder / "frame")
-        self.operator("render", "render", "INVOKE_DEFAULT", animation=animation)
+        yield from self.operator("render", "render", "INVOKE_DEFAULT", animation=animation)
         yield from self.window.seconds(0.1)
 
     def split_or_join(self):
         views = self.areas("VIEW_3D")
         if len(views) == 1:
-            self.operator("screen", "area_split", direction="VERTICAL", factor=0.5)
+            yield from self.operator("screen", "area_split", direction="VERTICAL", factor=0.5)
         elif len(views) > 1:
             # See Window.restore: Blender 3.4 must have come to rest before an area is closed.
             yield from self.window.seconds(1.5)
             views = self.areas("VIEW_3D")
             if len(views) > 1:
-                with self.window.override(min(views, key=lambda area: area.width * area.height)):
-                    bpy.ops.screen.area_close()
+                yield from self.at(min(views, key=lambda area: area.width * area.height), bpy.ops.screen.area_close)
         yield from self.window.seconds(0.2)
 
     def resize_window(self):
@@ -132,21 +142,20 @@ class Monkey:
     def home(self):
         """The sphere, alone in a file of its own, and nothing under way: where memory is compared."""
         if self.window._window().screen.show_fullscreen:
-            self.operator("screen", "back_to_previous")
+            yield from self.operator("screen", "back_to_previous")
         _send("windowsize", *map(str, SCREEN))
         while bpy.app.is_job_running("RENDER"):
             self.press_escape()
             yield from self.window.seconds(0.2)
         for job in ("bake", "compare"):
-            self.operator("mesograin", f"cancel_{job}")
+            yield from self.operator("mesograin", f"cancel_{job}")
         yield from self._open_once_drawn(self.window.blend_file("sphere"))
         yield from self.window.seconds(0.5)
         for area in self.areas("VIEW_3D"):  # whose four views, and what they show alone, outlive a file
-            with self.window.override(area):
-                if area.spaces.active.local_view is not None:
-                    bpy.ops.view3d.localview()
-                if area.spaces.active.region_quadviews:
-                    bpy.ops.screen.region_quadview()
+            if area.spaces.active.local_view is not None:
+                yield from self.at(area, bpy.ops.view3d.localview)
+            if area.spaces.active.region_quadviews:
+                yield from self.at(area, bpy.ops.screen.region_quadview)
         yield from self.window.seconds(0.5)
         bpy.ops.outliner.orphans_purge(do_recursive=True)
         yield from self.window.seconds(0.5)
@@ -189,7 +198,8 @@ class Monkey:
             yield from self.pause()
             assert self.window._take_gl_errors() == [], function.__name__
         yield from visit_home()
-        print(f"monkey: {self.longest[0]:.1f} s at most, for {self.longest[1]}", flush=True)
+        print(f"monkey: {self.longest[0]:.1f} s at most, for {self.longest[1]}; {self.unanswered} keys not taken",
+              flush=True)
         return memory
 
     def _do(self, function):
@@ -203,7 +213,7 @@ class Monkey:
                 raise
             worth_a_step = False
         if worth_a_step is not False:
-            self.operator("ed", "undo_push", message=function.__name__)
+            yield from self.operator("ed", "undo_push", message=function.__name__)
         yield 0.0  # Blender's own loop: redraws are what an edit costs
         took = time.monotonic() - started
         self.took[function.__name__] += took

@@ -95,7 +95,7 @@ def take_preset(m):
 
 @work(2)
 def let_advice_choose(m):
-    m.operator("mesograin", "choose_model")
+    yield from m.operator("mesograin", "choose_model")
 
 
 @work(3)
@@ -164,13 +164,13 @@ def select(m):
 @work(4)
 def duplicate(m):
     if _select(m) is not None and len(bpy.context.scene.objects) < MOST_OBJECTS:
-        m.operator("object", "duplicate", linked=m.random.random() < 0.5)
+        yield from m.operator("object", "duplicate", linked=m.random.random() < 0.5)
 
 
 @work(4)
 def delete(m):
     if _select(m) is not None and len(bpy.context.scene.objects) > 1:
-        m.operator("object", "delete", use_global=m.random.random() < 0.3)
+        yield from m.operator("object", "delete", use_global=m.random.random() < 0.3)
 
 
 @work(1)
@@ -183,20 +183,21 @@ def remove_mesh(m):
 def add_grain(m):
     if len(bpy.context.scene.objects) < MOST_OBJECTS:
         kind = m.random.choice(("sand", "salt", "rice", "bead"))
-        m.operator("mesograin", "add_grain", kind=kind, segments=8, seed=m.random.randrange(9))
+        yield from m.operator("mesograin", "add_grain", kind=kind, segments=8, seed=m.random.randrange(9))
 
 
 @work(2)
 def add_pile(m):
     if len(bpy.context.scene.objects) < MOST_OBJECTS:
-        m.operator("mesograin", "add_pile", count=m.random.choice((10, 80)), size=0.2, segments=4,
-                   place=m.random.choice(("HEAP", "BOX", "ACTIVE")))
+        yield from m.operator("mesograin", "add_pile", count=m.random.choice((10, 80)), size=0.2, segments=4,
+                              place=m.random.choice(("HEAP", "BOX", "ACTIVE")))
 
 
 @work(3)
 def add_light(m):
     if len(bpy.context.scene.objects) < MOST_OBJECTS:
-        m.operator("object", "light_add", type=m.random.choice(("SUN", "POINT", "SPOT", "AREA")), location=(2, 2, 2))
+        kind = m.random.choice(("SUN", "POINT", "SPOT", "AREA"))
+        yield from m.operator("object", "light_add", type=kind, location=(2, 2, 2))
 
 
 @work(4)
@@ -236,15 +237,15 @@ def add_or_remove_modifier(m):
 @work(3)
 def edit_mode(m):
     _select(m)
-    if m.operator("object", "editmode_toggle"):
+    if (yield from m.operator("object", "editmode_toggle")):
         yield from m.pause()
         if bpy.context.mode == "EDIT_MESH":
-            m.operator("mesh", "select_all", action="SELECT")
-            m.operator("transform", "resize", value=(1.0, m.random.choice((0.7, 1.4)), 1.0))
+            yield from m.operator("mesh", "select_all", action="SELECT")
+            yield from m.operator("transform", "resize", value=(1.0, m.random.choice((0.7, 1.4)), 1.0))
             yield from m.pause()
-            m.operator("ed", "undo_push", message="edit")
+            yield from m.operator("ed", "undo_push", message="edit")
         if m.random.random() < 0.7:
-            m.operator("object", "editmode_toggle")
+            yield from m.operator("object", "editmode_toggle")
 
 
 @work(2)
@@ -297,18 +298,18 @@ def change_frame(m):
 
 @work(2)
 def play(m):
-    m.operator("screen", "animation_play")
+    yield from m.operator("screen", "animation_play")
 
 
 @work(1)
 def new_or_other_scene(m):
     scenes = [scene for scene in bpy.data.scenes if scene != bpy.context.scene]
     if not scenes:
-        m.operator("scene", "new", type=m.random.choice(("LINK_COPY", "FULL_COPY")))
+        yield from m.operator("scene", "new", type=m.random.choice(("LINK_COPY", "FULL_COPY")))
     elif m.random.random() < 0.5:
         bpy.context.window_manager.windows[0].scene = scenes[0]
     else:
-        m.operator("scene", "delete")
+        yield from m.operator("scene", "delete")
 
 
 @work(1)
@@ -321,20 +322,20 @@ def purge(m):
 @work(12)
 def undo(m):
     for _ in range(m.random.choice((1, 1, 2, 4))):
-        m.operator("ed", "undo")
+        yield from m.operator("ed", "undo")
     return False
 
 
 @work(8)
 def redo(m):
     for _ in range(m.random.choice((1, 1, 2))):
-        m.operator("ed", "redo")
+        yield from m.operator("ed", "redo")
     return False
 
 
 @work(2)
 def save(m):
-    m.operator("wm", "save_as_mainfile", filepath=str(m.folder / "monkey.blend"), check_existing=False)
+    yield from m.operator("wm", "save_as_mainfile", filepath=str(m.folder / "monkey.blend"), check_existing=False)
     return False
 
 
@@ -388,7 +389,7 @@ def orbit_by_mouse(m):
 def look_through_camera(m):
     area = m.viewport()
     if area is not None:
-        m.operator("view3d", "view_camera")
+        yield from m.operator("view3d", "view_camera")
     return False
 
 
@@ -403,19 +404,19 @@ def change_overlays(m):
 
 @work(2)
 def local_view(m):
-    m.operator("view3d", "localview")
+    yield from m.operator("view3d", "localview")
     return False
 
 
 @work(3)
 def quad_view(m):
-    m.operator("screen", "region_quadview")
+    yield from m.operator("screen", "region_quadview")
     return False
 
 
 @work(3)
 def full_screen(m):
-    m.operator("screen", "screen_full_area", use_hide_panels=m.random.random() < 0.5)
+    yield from m.operator("screen", "screen_full_area", use_hide_panels=m.random.random() < 0.5)
     return False
 
 
@@ -479,13 +480,13 @@ def bake(m):
     asked.compare = False
     asked.out = str(m.folder / "baked.exr")
     if _select(m) is not None:
-        m.operator("mesograin", "bake")
+        yield from m.operator("mesograin", "bake")
 
 
 @work(2)
 def cancel_bake(m):
     if baking.session.running:
-        m.operator("mesograin", "cancel_bake")
+        yield from m.operator("mesograin", "cancel_bake")
     return False
 
 
@@ -493,11 +494,11 @@ def cancel_bake(m):
 def compare(m):
     asked = bpy.context.scene.mesograin_compare
     asked.models, asked.size_percent, asked.out = {"lambert"}, 2, str(m.folder / "compared")
-    m.operator("mesograin", "compare")
+    yield from m.operator("mesograin", "compare")
 
 
 @work(3)
 def cancel_compare(m):
     if comparing.session.running:
-        m.operator("mesograin", "cancel_compare")
+        yield from m.operator("mesograin", "cancel_compare")
     return False

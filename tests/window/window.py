@@ -6,6 +6,7 @@ import time
 import zlib
 
 import bpy
+import hand
 import numpy as np
 from mesograin import native_module
 from mesograin.engine import engine, status
@@ -135,6 +136,15 @@ class Window:
         yield from self.seconds(0.2)
         return properties
 
+    def do(self, area, function):
+        """Calls function() from where a key over this area would; gives what it returns. The way to whatever begins a
+        render, and to whatever is done beside one."""
+        return (yield from hand.do(self, area, function))
+
+    def press_f12(self, area):
+        """Gives the answer of the operator."""
+        return (yield from self.do(area, lambda: bpy.ops.render.render("INVOKE_DEFAULT")))
+
     def call(self, area, operator):
         """What a click on the button of `mesograin.<operator>` in this area does; gives the operator's answer."""
         with self.override(area):
@@ -158,8 +168,11 @@ class Window:
 
     @contextlib.contextmanager
     def override(self, area):
+        """Never where a render runs, nor to begin one: see hand.py."""
+        assert not bpy.app.is_job_running("RENDER"), "Blender may crash of an override beside a render: use `do`"
         with bpy.context.temp_override(window=self._window(), area=area, region=self.region(area)):
             yield
+            assert not bpy.app.is_job_running("RENDER"), "Blender may crash of a render begun so: use `press_f12`"
 
     @staticmethod
     def _window():
