@@ -9,7 +9,7 @@ from mesograin import compat
 from mesograin.engine import engine
 from mesograin.scene import export
 from mesograin.schema import models, parameters
-from mesograin.ui import panels
+from mesograin.ui import node_panels, panels
 from mesograin.ui.bake_panel import panel as bake_panel
 from mesograin.ui.compare_panel import panel as compare_panel
 from mesograin.ui.match_panel import panel as match_panel
@@ -25,16 +25,19 @@ HALF, WHOLE = 115, 180
 
 class Layout:
     """Takes whatever a panel draws. labels: what stands left of values. boxes: what stands right of boxes. menus: their
-    names. whole: properties as wide as the panel."""
+    names. whole: properties as wide as the panel. split: properties whose names stand left of them."""
 
     def __init__(self):
-        self.labels, self.boxes, self.menus, self.whole = [], [], [], []
+        self.labels, self.boxes, self.menus, self.whole, self.split = [], [], [], [], []
+        self.use_property_split = False
 
     def __getattr__(self, name):
         return lambda *_, **named: self if "heading" not in named else (self.labels.append(named["heading"]), self)[1]
 
     def prop(self, owner, name, text=None, **_):
         declared = owner.bl_rna.properties[name]
+        if self.use_property_split:
+            self.split.append(name)
         if text != "":
             (self.boxes if declared.type == "BOOLEAN" else self.labels).append(declared.name if text is None else text)
         if text == "":
@@ -102,6 +105,16 @@ def test_no_title_of_a_result_is_cut_off():
     titles = [title for title, _ in results._numbers(entry, ("Mesograin", "41 ms"))]
     assert len(titles) == 5 and all(width(title) < HALF for title in titles), titles
     assert compare_panel.results is results
+
+
+@pytest.mark.parametrize("kind, rest", [("worlds", "color"), ("materials", "diffuse_color")])
+def test_the_button_for_nodes_keeps_its_name(kind, rest):
+    datablock = getattr(bpy.data, kind).new("Plain")
+    if not compat.has_choice_of_nodes(datablock):
+        pytest.skip("this Blender has no such button")
+    layout = Layout()
+    node_panels.draw_surface(layout, datablock, rest)
+    assert layout.boxes == ["Use Nodes"] and layout.split == [rest]  # a button with an icon loses its name in a split
 
 
 def test_the_light_type_is_chosen_in_one_place():

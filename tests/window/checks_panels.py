@@ -79,6 +79,18 @@ def check_render_settings(window):
         yield from keep(window, properties, tab.lower())
 
 
+def check_a_final_render(window):
+    properties = yield from prepare(window)
+    scene = bpy.context.scene
+    scene.render.resolution_x, scene.render.resolution_y, scene.mesograin.samples = 96, 64, 4
+    bpy.context.preferences.view.render_display_type = "NONE"
+    status.clear()
+    show(properties, "RENDER")
+    yield from window.press_f12(properties)
+    yield from window.until(lambda: status.get(status.RENDER) is not None and not bpy.app.is_job_running("RENDER"))
+    yield from keep(window, properties, "render_done")
+
+
 def check_lights_and_camera(window):
     properties = yield from prepare(window)
     thing = bpy.data.objects.new("Light", bpy.data.lights.new("Light", "POINT"))

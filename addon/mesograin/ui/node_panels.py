@@ -8,10 +8,10 @@ from .panels import MesograinPanel
 
 def draw_surface(layout, datablock, without_nodes):
     """The tree behind the surface of a world's or material's output, or the property that stands for it."""
-    layout.use_property_split = True
     if compat.has_choice_of_nodes(datablock):
-        layout.prop(datablock, "use_nodes", icon="NODETREE")
+        layout.prop(datablock, "use_nodes", icon="NODETREE")  # split, a button with an icon would lose its name
         layout.separator()
+    layout.use_property_split = True
     if not compat.uses_nodes(datablock):
         layout.prop(datablock, without_nodes)
         return
