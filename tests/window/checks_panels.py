@@ -12,8 +12,18 @@ from mesograin.ui.compare_panel.session import session as comparing
 THEME = os.environ.get("MESOGRAIN_THEME", "dark")
 
 
+def open_panels():
+    """Has ours begin open, whatever a click would open: to be called before any is drawn."""
+    for panel in bpy.types.Panel.__subclasses__():
+        if panel.__module__.startswith("mesograin.") and "DEFAULT_CLOSED" in getattr(panel, "bl_options", ()):
+            bpy.utils.unregister_class(panel)
+            panel.bl_options = set(panel.bl_options) - {"DEFAULT_CLOSED"}
+            bpy.utils.register_class(panel)
+
+
 def prepare(window, viewport=False):
     """The sphere, active, beside a viewport or what is drawn faster; gives the Properties editor's area."""
+    open_panels()
     main = max(window._window().screen.areas, key=lambda area: area.width * area.height)
     main.type = "VIEW_3D"
     area = yield from window.open("sphere", samples=1)
