@@ -9,7 +9,7 @@ from mesograin import compat
 from mesograin.engine import engine
 from mesograin.scene import export
 from mesograin.schema import models, parameters
-from mesograin.ui import node_panels, panels
+from mesograin.ui import grain_colours, node_panels, panels
 from mesograin.ui.bake_panel import panel as bake_panel
 from mesograin.ui.compare_panel import panel as compare_panel
 from mesograin.ui.match_panel import panel as match_panel
@@ -83,6 +83,15 @@ def test_no_label_of_a_grain_is_cut_off(material, model):
     assert drawn.whole == ["model"] and len(drawn.whole + drawn.labels) >= 2
     assert cut_off(drawn) == {}
     assert width(models.CHOICES[model].label) < WHOLE
+
+
+@pytest.mark.parametrize("source", ["RANGE", "ATTRIBUTE"])
+@pytest.mark.parametrize("model", ["lambert", "model_2"])
+def test_no_label_of_grains_that_vary_is_cut_off(material, model, source):
+    material.mesograin.model, material.mesograin_colours.source = model, source
+    drawn = draw(grain_colours.MESOGRAIN_PT_colours, material=material)
+    assert len(drawn.labels) >= 2
+    assert cut_off(drawn) == {}
 
 
 def cut_off(drawn):

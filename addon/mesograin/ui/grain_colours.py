@@ -57,11 +57,11 @@ class MESOGRAIN_PT_colours(MesograinPanel, bpy.types.Panel):
             layout.operator(MESOGRAIN_OT_add_attribute_reader.bl_idname, icon="POINTCLOUD_DATA")
             return
         column = layout.column(align=True)
-        column.prop(settings, "colour_from", text=f"{colour} From")
+        column.prop(settings, "colour_from", text=colour)
         column.prop(settings, "colour_to", text="To")
         if "sigma_s" in takes:
             column = layout.column(align=True)
-            column.prop(settings, "scattering_from", text="Scattering From")
+            column.prop(settings, "scattering_from", text="Scattering")
             column.prop(settings, "scattering_to", text="To")
 
 
