@@ -6,7 +6,7 @@ import bpy
 import numpy as np
 import pytest
 from mesograin import compat
-from mesograin.engine import engine
+from mesograin.engine import engine, status
 from mesograin.scene import export
 from mesograin.schema import models, parameters
 from mesograin.ui import grain_colours, node_panels, panels
@@ -25,10 +25,10 @@ HALF, WHOLE = 115, 180
 
 class Layout:
     """Takes whatever a panel draws. labels: what stands left of values. boxes: what stands right of boxes. menus: their
-    names. whole: properties as wide as the panel. split: properties whose names stand left of them."""
+    names. whole: properties as wide as the panel. split: properties whose names stand left of them. said: texts."""
 
     def __init__(self):
-        self.labels, self.boxes, self.menus, self.whole, self.split = [], [], [], [], []
+        self.labels, self.boxes, self.menus, self.whole, self.split, self.said = [], [], [], [], [], []
         self.use_property_split = False
 
     def __getattr__(self, name):
@@ -46,8 +46,9 @@ class Layout:
     def menu(self, name, **_):
         self.menus.append(name)
 
-    def label(self, **_):
+    def label(self, text="", **_):
         """Of a column of its own."""
+        self.said.append(text)
 
 
 def draw(panel, **context):
@@ -124,6 +125,15 @@ def test_the_button_for_nodes_keeps_its_name(kind, rest):
     layout = Layout()
     node_panels.draw_surface(layout, datablock, rest)
     assert layout.boxes == ["Use Nodes"] and layout.split == [rest]  # a button with an icon loses its name in a split
+
+
+@pytest.mark.parametrize("samples, said", [(1, "1 sample"), (2, "2 samples")])
+def test_timings_are_told_in_words(samples, said):
+    status.clear()
+    status.put(status.RENDER, status.Status(samples, 40, 30, (("light_maps", 1.5),)))
+    drawn = draw(panels.MESOGRAIN_PT_statistics)
+    status.clear()
+    assert drawn.said[-2:] == [f"Last render: 40 x 30, {said}", "light maps: 1.50 ms"]
 
 
 def test_the_light_type_is_chosen_in_one_place():

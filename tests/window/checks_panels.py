@@ -13,13 +13,13 @@ THEME = os.environ.get("MESOGRAIN_THEME", "dark")
 
 
 def open_panels():
-    """Has ours begin open that a click would open: to be called before any is drawn."""
+    """Has ours begin open that a click would open: to be called before any is drawn. They come last then, and one that
+    shows Blender's own large curve would push others over the edge."""
     for panel in bpy.types.Panel.__subclasses__():
-        if panel.__module__.startswith("mesograin.") and "DEFAULT_CLOSED" in getattr(panel, "bl_options", ()):
+        if (panel.__module__.startswith("mesograin.") and "DEFAULT_CLOSED" in getattr(panel, "bl_options", ())
+                and panel.bl_label != "Motion Blur"):
             bpy.utils.unregister_class(panel)
             panel.bl_options = set(panel.bl_options) - {"DEFAULT_CLOSED"}
-            if panel.bl_label == "Device and Timings":
-                panel.bl_order = 1  # else the last, below the edge
             bpy.utils.register_class(panel)
 
 

@@ -298,9 +298,10 @@ class MESOGRAIN_PT_statistics(MesograinPanel, bpy.types.Panel):
 
     def _draw_picture(self, context, title, latest):
         column = self.layout.column(align=True)
-        column.label(text=f"{title}: {latest.width} x {latest.height}, {latest.samples} samples")
+        samples = "1 sample" if latest.samples == 1 else f"{latest.samples} samples"
+        column.label(text=f"{title}: {latest.width} x {latest.height}, {samples}")
         for name, milliseconds in latest.passes:
-            column.label(text=f"{name}: {milliseconds:.2f} ms", icon="BLANK1")
+            column.label(text=f"{name.replace('_', ' ')}: {milliseconds:.2f} ms", icon="BLANK1")
         if latest.exchange:
             for line in latest.exchange.lines():
                 column.label(text=line, icon="BLANK1")
