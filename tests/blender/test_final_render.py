@@ -4,6 +4,7 @@ import bpy
 import numpy as np
 import pytest
 from mesograin.engine import engine, status
+from mesograin.engine.pace import Pace
 from mesograin.scene import export, meshes
 
 
@@ -99,8 +100,29 @@ def test_resolution_percentage(render, blend_files):
     assert render().shape == (50, 75, 4)
 
 
-def test_time_left_is_said_as_panels_say_it():
-    assert engine._under_way(2, 64, 6.0) == "Sample 2/64, about 3 min 06 s left"
+def test_time_left_is_said_as_panels_say_it_and_goes_by_samples_alone():
+    pace = Pace(64)
+    pace.note(1, 50.0)  # s, in which programs were compiled
+    assert pace.line() == "Sample 1/64"
+    pace.note(2, 53.0)
+    assert pace.line() == "Sample 2/64, about 3 min 06 s left"
+
+
+def test_the_first_sample_tells_no_time_left(render, blend_files, monkeypatch):
+    bpy.ops.wm.open_mainfile(filepath=str(blend_files / "sphere.blend"))
+    bpy.context.scene.mesograin.samples, bpy.context.scene.render.resolution_percentage = 8, 10
+    said = []
+
+    class Told(Pace):
+        def line(self):
+            said.append(super().line())
+            return said[-1]
+
+    monkeypatch.setattr(engine, "SHOW_SECONDS", 0.0)
+    monkeypatch.setattr(engine, "Pace", Told)
+    render()
+    assert said[0] == "Sample 1/8" and len(said) > 1
+    assert all(line.endswith(" left") for line in said[1:]), said
 
 
 @pytest.mark.parametrize("crop", [False, True], ids=["in_place", "cropped"])

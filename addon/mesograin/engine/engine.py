@@ -11,6 +11,7 @@ from .. import compat, native_module
 from ..durations import duration
 from ..scene import export, lens
 from . import motion, passes, status, viewport, viewport_text
+from .pace import Pace
 
 # How long a final render may go without looking whether it was cancelled, and without showing how far it is.
 POLL_SECONDS = 0.05
@@ -108,7 +109,7 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
 
     def _render_samples(self, view, exposure, read_camera, target):
         """Renders until `target` samples or a cancel, and yields their number whenever it is time to show them."""
-        started = shown = time.perf_counter()
+        shown, pace = time.perf_counter(), Pace(target)
         chunk, reached, seen = 1, 0, exposure.values
         with contextlib.closing(exposure.moments(read_camera, target)) as moments:
             for values, camera, count in moments:
@@ -120,10 +121,11 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
                     chunk_started = time.perf_counter()
                     self._wait(view, view.start(min(chunk, reached - view.samples)))
                     now = time.perf_counter()
+                    pace.note(view.samples, now)
                     if now - chunk_started < POLL_SECONDS:
                         chunk *= 2
                     if now - shown > SHOW_SECONDS and view.samples < target:
-                        self.update_stats("", _under_way(view.samples, target, now - started))
+                        self.update_stats("", pace.line())
                         yield view.samples
                         shown = time.perf_counter()
                 if self.test_break():
@@ -250,12 +252,6 @@ def _preparing(share):
 def _set_pass(result, name, pixels):
     # Blender's rows begin at the bottom.
     compat.set_pass_pixels(result.layers[0].passes[name], np.ascontiguousarray(pixels[::-1]))
-
-
-def _under_way(samples, target, seconds):
-    """The text over a final render that has taken so long."""
-    left = seconds / max(samples, 1) * (target - samples)
-    return f"Sample {samples}/{target}, about {duration(left)} left"
 
 
 def _line(samples, target, warnings):
