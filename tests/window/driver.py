@@ -56,6 +56,7 @@ def main():
     import addon_utils
 
     addon_utils.enable("mesograin", default_set=True)
+    bpy.context.preferences.view.show_splash = False  # which would take the first keys for itself
     import window
 
     folder, screen, module, *wanted = sys.argv[sys.argv.index("--") + 1:]

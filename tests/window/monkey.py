@@ -183,6 +183,7 @@ class Monkey:
             self.took["home"] += time.monotonic() - started
             memory.append(resident.settled())
             print(f"monkey at home: {memory[-1] / 1e6:.0f} MB, {resident.holders()}, {self.window.native.sent()}, "
+                  f"{self.unanswered} keys not taken, "
                   f"s so far: {', '.join(f'{name} {took:.0f}' for name, took in self.took.most_common(MOST_TOLD))}",
                   flush=True)
 
@@ -198,8 +199,7 @@ class Monkey:
             yield from self.pause()
             assert self.window._take_gl_errors() == [], function.__name__
         yield from visit_home()
-        print(f"monkey: {self.longest[0]:.1f} s at most, for {self.longest[1]}; {self.unanswered} keys not taken",
-              flush=True)
+        print(f"monkey: {self.longest[0]:.1f} s at most, for {self.longest[1]}", flush=True)
         return memory
 
     def _do(self, function):
