@@ -121,7 +121,7 @@ void Program::reflect() {
     if (location < 0) continue;  // a member of a block
     GLuint unit = 0;
     if (type == GL_SAMPLER_2D || type == GL_SAMPLER_2D_ARRAY || type == GL_SAMPLER_3D ||
-        type == GL_UNSIGNED_INT_SAMPLER_2D) {
+        type == GL_UNSIGNED_INT_SAMPLER_2D || type == GL_UNSIGNED_INT_SAMPLER_3D) {
       unit = next_unit++;
       glProgramUniform1i(handle_.name(), location, static_cast<GLint>(unit));
     }
@@ -192,7 +192,7 @@ void Program::set(std::string_view sampler, const TextureArray& textures) const 
 }
 
 void Program::set(std::string_view sampler, const Volume& volume) const {
-  if (const Uniform* found = find(sampler, GL_SAMPLER_3D)) volume.bind(found->unit);
+  if (const Uniform* found = find(sampler, volume.sampler_type())) volume.bind(found->unit);
 }
 
 }  // namespace mesograin::gl

@@ -259,11 +259,12 @@ const gl::Program& DeviceCache::sum_program(const DeviceMaterial& material, bool
                         {{GL_COMPUTE_SHADER, gl::ShaderSource({"passes/sum_products.comp"}, defines)}});
 }
 
-const gl::Program& DeviceCache::unscattered_program(const DeviceMaterial& material) {
+const gl::Program& DeviceCache::tracing_program(const DeviceMaterial& material, bool together) {
   std::vector<std::string> defines = {"REFRACTION"};
   if (material.has("CONVEX")) defines.emplace_back("CONVEX");
-  return programs_.find(fmt::format("unscattered_light {}", fmt::join(defines, " ")),
-                        {{GL_COMPUTE_SHADER, gl::ShaderSource({"passes/unscattered_light.comp"}, defines)}});
+  if (together) defines.emplace_back("TOGETHER");
+  return programs_.find(fmt::format("trace_light {}", fmt::join(defines, " ")),
+                        {{GL_COMPUTE_SHADER, gl::ShaderSource({"passes/trace_light.comp"}, defines)}});
 }
 
 const gl::Program& DeviceCache::gathered_program(std::optional<Portion> portion) {

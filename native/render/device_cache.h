@@ -152,8 +152,8 @@ class DeviceCache {
   /// The program that sums what is stored of a material's prototype for each light, or for all together.
   const gl::Program& sum_program(const DeviceMaterial& material, bool together);
 
-  /// The program that finds how each light comes through it unscattered.
-  const gl::Program& unscattered_program(const DeviceMaterial& material);
+  /// The program that follows each light into it until it is scattered.
+  const gl::Program& tracing_program(const DeviceMaterial& material, bool together);
 
   /// The program that counts how many triangles cover each texel of an unwrapped mesh.
   const gl::Program& count_program();

@@ -1,10 +1,10 @@
 // Where a medium scatters forwards: a walk from the viewer into the grain with each sample, lit at each scattering by the light that nothing
-// has scattered yet, refracted as it enters. Walks grow coarser by and by, and the stored source function ends them.
+// has scattered yet, refracted as it enters and reflected inside. Walks grow coarser by and by, and the stored source function ends them.
 // The phase function's narrow peak is told apart: light that met nothing else is followed exactly; on the way of light that has also been
 // scattered widely the peak counts as unscattered (Iwabuchi and Suzuki, "Fast and accurate radiance calculations using truncation
 // approximation for anisotropic scattering phase functions", 2009), so that no rare walk finds as much light as thousands of others.
-// Not physical: what the surface reflected inside before its first scattering comes from a sun that is some degrees wide; light that has left
-// does not come back.
+// Not physical: light that has left does not come back; where light was not followed into the grain beforehand, what the surface reflected inside
+// before its first scattering comes from a sun that is some degrees wide.
 //
 // Pasted into transport.glsl, whose grid it reads.
 
@@ -47,20 +47,37 @@ float scattered_versine(float g, float one_minus_g, float random) {
 }
 
 #if defined(SUMMED) && defined(REFRACTION)
-uniform sampler3D unscattered_light;  // as passes/unscattered_light.comp leaves it: nodes of each light, behind one another
+#define TRACED  // light was followed into the grain beforehand, with its reflections (passes/trace_light.comp)
+#endif
 
-Unscattered unscattered_found(vec3 place) {
-  vec3 node = float(FINER) * to_nodes(place) + 0.5;
-  float behind = float(looked_up_light) * (float(FINER) * stored.last_node.z + 1.0);
-  vec4 value = texture(unscattered_light, vec3(node.xy, node.z + behind) / vec3(textureSize(unscattered_light, 0)));
-  float irradiance = length(value.xyz);
-  return Unscattered(value.xyz / max(irradiance, 1e-9), max(value.w, 0.0), irradiance);
+#ifdef TRACED
+uniform usampler3D tracks;
+uniform usampler3D drawn_rays;
+uniform sampler3D pieces;
+#ifdef TOGETHER
+vec3 colour_found;
+#endif
+
+// Of all the light in the place's cell, some at random.
+Unscattered unscattered_found(vec3 place, int light) {
+  ivec3 cell = cell_at(place);
+  ivec3 texel = cell_texel(cell, light);
+  uint count = texelFetch(tracks, texel, 0).r;
+  if (count == 0u) return Unscattered(vec3(0.0, 0.0, 1.0), 0.0, 0.0);
+  ivec3 piece = texel_of(texelFetch(drawn_rays, texel, 0).r);
+  vec4 begin = texelFetch(pieces, piece, 0);
+  vec3 direction = texelFetch(pieces, piece + ivec3(0, 0, 1), 0).xyz;
+#ifdef TOGETHER
+  colour_found = texelFetch(pieces, piece + ivec3(0, 0, 2), 0).rgb;
+#endif
+  float way = begin.w + max(dot(place - begin.xyz, direction), 0.0);
+  return Unscattered(-direction, way, float(count) / (TRACK_UNIT * share_inside(cell)) * exp(tracked_sigma_t() * way));
 }
 #endif
 
-Spectrum walked_radiance(vec3 place, vec3 direction, vec3 to_light, int light) {
+Radiance walked_radiance(vec3 place, vec3 direction, vec3 to_light, int light) {
   uvec4 seed = uvec4(uvec2(gl_FragCoord.xy), uint(sample_index), uint(light));
-  Spectrum sum = Spectrum(0.0);
+  Radiance sum = Radiance(0.0);
   Spectrum left = Spectrum(1.0);
   float g = forward.g;
   float one_minus_g = forward.one_minus_g;
@@ -102,8 +119,8 @@ Spectrum walked_radiance(vec3 place, vec3 direction, vec3 to_light, int light) {
         break;
       }
       mirrored = false;
-#if defined(SUMMED) && defined(REFRACTION)
-      Unscattered unscattered = unscattered_found(place);
+#ifdef TRACED
+      Unscattered unscattered = unscattered_found(place, light);
 #else
       Unscattered unscattered = unscattered_at(place, to_light);
 #endif
@@ -122,7 +139,12 @@ Spectrum walked_radiance(vec3 place, vec3 direction, vec3 to_light, int light) {
       } else if (whole) {
         lit /= 1.0 - forward.peak;
       }
+#ifdef TOGETHER
+      lit *= unscattered.irradiance;
+      sum += left * lit * colour_found;
+#else
       sum += left * (unscattered.irradiance * lit);
+#endif
 
       float turn = scattered_versine(g, one_minus_g, random.y * (narrow || !whole ? 1.0 : 1.0 - forward.peak));
       if (narrow) {
@@ -146,14 +168,18 @@ Spectrum walked_radiance(vec3 place, vec3 direction, vec3 to_light, int light) {
 #ifndef GREY
     left *= 3.0 * passed / (passed.r + passed.g + passed.b);
 #endif
-    vec3 normal = outwards_about(place);
+    vec3 normal = outwards_at(place);
     float cosine = dot(normal, direction);
     float again = fresnel_reflectance(min(cosine, 1.0), 1.0 / stored.eta);
+#ifdef TRACED
+    float followed = again;
+#else
     if (mirrored && !first_place && again < 1.0) {
       vec3 outside = refract(direction, -normal, stored.eta);
       sum += left * ((1.0 - again) * stored.eta * stored.eta * sharpness / (2.0 * PI) * exp(sharpness * (dot(outside, to_light) - 1.0)));
     }
     float followed = max(again, LEAST_FOLLOWED * largest(left));
+#endif
     if (cosine <= 0.0 || random.w >= followed) break;
     left *= again / followed;
     direction = direction - 2.0 * cosine * normal;

@@ -10,11 +10,12 @@
 //   MANY_TERMS           more of them: the grain is not of the thickest
 //   GREY                 red, green and blue are the same medium, of which one is stored
 //   SUMMED               the products were summed for each light beforehand (passes/sum_products.comp), and where light is refracted and walked,
-//                        what is unscattered was found (passes/unscattered_light.comp)
+//                        light was followed into the grain (passes/trace_light.comp)
 //   TOGETHER             and for all lights together, nothing standing in their way
 #include "heap/open_beyond.glsl"
 #include "models/dielectric.glsl"
 #include "models/interface.glsl"
+#include "models/light_tracks.glsl"
 #include "models/pixel_random.glsl"
 #include "models/portions.glsl"
 #include "models/stored_grid.glsl"
@@ -253,7 +254,13 @@ Outwards look_outwards(SurfacePoint point) {
 vec3 comes_out(Outwards outwards, vec3 inside) { return portion(SUBSURFACE_PORTION, outwards.transmittance / (stored.eta * stored.eta) * inside); }
 
 #ifdef TOGETHER
-vec3 together_lit(SurfacePoint point, Outwards outwards) { return comes_out(outwards, radiance_inside()); }
+vec3 together_lit(SurfacePoint point, Outwards outwards) {
+#ifdef WALKED
+  return comes_out(outwards, walked_radiance(place_below, direction_below, vec3(0.0), 0));
+#else
+  return comes_out(outwards, radiance_inside());
+#endif
+}
 #endif
 
 vec3 evaluate_model(SurfacePoint point, Outwards outwards, LightSample light) {

@@ -2,6 +2,7 @@
 // Not physical: where refraction gathers light from several places on the surface, one of them is found.
 //
 // What is chosen at compile time: REFRACTION, and CONVEX as in stored_grid.glsl.
+#include "models/slopes.glsl"
 #include "models/stored_grid.glsl"
 #include "physics/prelude.glsl"
 #include "physics/fresnel.glsl"
@@ -12,26 +13,12 @@ struct Unscattered {
   float irradiance;  // on a plane that faces it, were nothing lost on the way; of parallel light of irradiance 1
 };
 
-// Where it was found beforehand, for each light: nodes so many times nearer to one another than those of what is stored.
-const int FINER = 2;
-
-vec3 perpendicular(vec3 direction) {
-  return normalize(abs(direction.z) < 0.7 ? vec3(direction.y, -direction.x, 0.0) : vec3(0.0, direction.z, -direction.y));
-}
-
 #ifdef REFRACTION
-uniform sampler3D slopes;         // of `distances`, at its nodes: they are asked for often
-uniform sampler3D smooth_slopes;  // smoothed by their neighbours
+uniform sampler3D smooth_slopes;  // `slopes`, smoothed by their neighbours
 
 const float LEAST_WIDTH = 0.2;  // of a bundle of light, over what it was as it entered: a narrower one is seen by few places
 
-// Of unit length, unless it has none: where normals of opposite sides meet.
-vec3 unit_vector(vec3 v) { return v * inversesqrt(max(dot(v, v), 1e-20)); }
-
-// What outwards_at says, with edges rounded off over a node to either side instead of a half.
-vec3 outwards_about(vec3 place) { return unit_vector(texture(slopes, (to_nodes(place) + 0.5) / (stored.last_node + 1.0)).xyz); }
-
-// And over two: so light enters, of whose ways in one is looked for.
+// What outwards_about says, with edges rounded off over two nodes: so light enters, of whose ways in one is looked for.
 vec3 outwards_where_light_enters(vec3 place) { return unit_vector(texture(smooth_slopes, (to_nodes(place) + 0.5) / (stored.last_node + 1.0)).xyz); }
 
 // Towards where light comes from that was refracted at a surface of this normal; grazing light where the surface faces away.

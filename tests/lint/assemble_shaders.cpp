@@ -92,7 +92,7 @@ void write_sums(Writer& writer, const std::string& name, const std::vector<std::
     return more;
   };
   std::vector<std::vector<std::string>> summed = {{"SUMMED", "CONVEX"}};
-  if (has("REFRACTION") && !has("WALKED")) summed.push_back({"SUMMED", "TOGETHER"});
+  if (has("REFRACTION")) summed.push_back({"SUMMED", "TOGETHER"});
   for (const std::vector<std::string>& more : summed) {
     writer.write(fmt::format("{}+{}", name, fmt::join(more, "+")), ShaderSource({"passes/full_screen.vert"}, {}),
                  ShaderSource({"passes/shade.frag", "models/transport.glsl"}, with(more)));
@@ -100,9 +100,9 @@ void write_sums(Writer& writer, const std::string& name, const std::vector<std::
                        ShaderSource({"passes/sum_products.comp"}, with(more)));
   }
   if (!has("REFRACTION") || !has("WALKED")) return;
-  for (const std::string convex : {"", "CONVEX"})
-    writer.write_stage(fmt::format("unscattered_light_{}{}.comp", number, convex),
-                       ShaderSource({"passes/unscattered_light.comp"}, convex.empty() ? defines : with({convex})));
+  for (const std::vector<std::string>& more : summed)
+    writer.write_stage(fmt::format("trace_light_{}_{}.comp", number, more.back()),
+                       ShaderSource({"passes/trace_light.comp"}, with(more)));
 }
 
 void write_shading(Writer& writer) {

@@ -1,5 +1,5 @@
 // Stored transport under the very lights of a sample: what pixels would each sum anew is summed once at its nodes, and
-// how unscattered light comes in is looked for there.
+// where walks ask for light that nothing has scattered, it is followed into the grain once.
 #pragma once
 
 #include <glm/mat3x3.hpp>
@@ -14,6 +14,7 @@
 #include "render/device_cache.h"
 #include "render/draw.h"
 #include "render/lighting.h"
+#include "render/passes/light_tracks.h"
 
 namespace mesograin::render {
 
@@ -22,12 +23,13 @@ class ProductSums {
   /// Whether it costs less than what it spares a thing that so many pixels show.
   static bool pay(const DeviceMaterial& material, const std::vector<LightDirection>& lights, double pixels);
 
-  /// Whether pixels ask for nothing but the sums: then all lights may have one, where nothing stands in their way.
-  static bool can_be_together(const DeviceMaterial& material);
+  /// Whether pixels ask for nothing but sums and tracks: then all lights may share them, where nothing stands in their
+  /// way.
+  static bool can_be_together(const DeviceMaterial& material, std::size_t lights);
 
-  /// For a draw that they pay for, if it, its turn or a light is another than the last time. Binds textures of its own:
-  /// a program's come after.
-  void sum(DeviceCache& cache, const Draw& draw, const std::vector<LightDirection>& lights, bool together);
+  /// For a draw that they pay for, if it, its turn or a light is another than the last time; what is followed, anew in
+  /// every sample. Binds textures of its own: a program's come after.
+  void sum(DeviceCache& cache, const Draw& draw, const std::vector<LightDirection>& lights, bool together, int sample);
 
   /// To a program that is compiled for them.
   void bind(const gl::Program& program) const;
@@ -47,7 +49,8 @@ class ProductSums {
   Of of_;
   std::optional<gl::Buffer> directions_;
   std::optional<gl::Volume> sums_;
-  std::optional<gl::Volume> unscattered_;
+  bool tracked_ = false;
+  LightTracks tracks_;
 };
 
 }  // namespace mesograin::render

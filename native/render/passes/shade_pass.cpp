@@ -198,8 +198,10 @@ const gl::Program& ShadePass::prepare(const Sample& sample, std::size_t unit, Sh
   const Draw* draw = sample.content.draw(unit);
   shading.summed = draw != nullptr && !shading.mirrored && !sample.lighting.any_local() &&
                    ProductSums::pay(material, sample.lights.distant, pixels_of(sample, *draw));
-  shading.together = shading.summed && shading.shadows == Shadows::none && ProductSums::can_be_together(material);
-  if (shading.summed) sums_.sum(sample.cache, *draw, sample.lights.distant, shading.together);
+  shading.together = shading.summed && shading.shadows == Shadows::none &&
+                     ProductSums::can_be_together(material, sample.lights.distant.size());
+  if (shading.summed)
+    sums_.sum(sample.cache, *draw, sample.lights.distant, shading.together, static_cast<int>(sample.index));
   const gl::Program& program = sample.cache.shading(material, shading);
   material.bind(program);
   if (shading.summed) sums_.bind(program);
