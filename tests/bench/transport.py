@@ -2,9 +2,9 @@
 
     transport.py BUILD_FOLDER [--radius R] [--mesh FILE]
 
-Seconds of processor time, of all threads, until there is a coarse answer and until there is the final one, and how far
-the coarse picture is from the final one: sum|coarse - final| / sum final in blocks of 8x8 pixels. Nothing that a run
-before has left is used.
+Seconds of processor time, of all threads, until there is a coarse answer, until there is one within 5 % of the final
+one, and until there is the final one; and how far the coarse picture is from it: sum|coarse - final| / sum final in
+blocks of 8x8 pixels. Nothing that a run before has left is used.
 """
 import argparse
 import importlib
@@ -20,6 +20,8 @@ import shapes
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 CAMERA = {"position": [0, 0, 6.5], "look_at": [0, 0, 0], "up": [0, 1, 0], "fov_degrees": 45}
 LIGHT = {"type": "distant", "direction_to_light": [0.8, 0.6, 0], "irradiance_linear_rgb": 1}
+
+NEAR = 0.05  # of the final picture: an answer that is no farther off serves
 
 
 def answers(native, view, mesh, sigma_s, sigma_a):
@@ -67,7 +69,10 @@ def main():
             final = drawn[-1][1]
             told = [f"{seconds:.2f} s ({100 * numpy.abs(picture - final).sum() / final.sum():.1f} %)"
                     for seconds, picture in drawn[:-1]]
-            print(f"{name}: coarse {', '.join(told) or '-'}; final {drawn[-1][0]:.2f} s", flush=True)
+            near = next(seconds for seconds, picture in drawn
+                        if numpy.abs(picture - final).sum() <= NEAR * final.sum())
+            print(f"{name}: coarse {', '.join(told) or '-'}; within {100 * NEAR:.0f} % {near:.2f} s; "
+                  f"final {drawn[-1][0]:.2f} s", flush=True)
 
 
 if __name__ == "__main__":
