@@ -300,14 +300,14 @@ def take(heap, folder):
 
 
 def write_lines(heap, lines):
-    """In place of those that docs/gallery.md has of a Heap, or at the end of its table."""
+    """In place of those that docs/gallery.md has of a Heap, or below the others."""
     page = DOCS / "gallery.md"
     kept = page.read_text(encoding="utf-8").splitlines(keepends=True)
     old = next((row for row, line in enumerate(kept) if f"images/gallery_{heap.name}.jpg" in line), None)
     if old is not None:
         kept[old - 1:old + 1] = [lines]
     else:
-        last = max(row for row, line in enumerate(kept) if line.startswith("|"))
+        last = max(row for row, line in enumerate(kept) if "images/gallery_" in line)
         kept.insert(last + 1, lines)
     page.write_text("".join(kept), encoding="utf-8")
 

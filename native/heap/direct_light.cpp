@@ -92,7 +92,7 @@ bool touched(const Moves& moves, const std::vector<Look>& looks) {
 
 void find_direct_light(const Space& space, const Heap& heap, const Rays& rays, const Moves* moves, Lit& lit,
                        const transport::Effort& effort) {
-  const std::vector<Draw> draws = draws_of(heap);
+  const std::vector<Draw> draws = draws_of(heap, image_of(heap));
   const std::size_t count = space.size();
   if (draws.empty()) return;
   constexpr std::size_t grains_a_piece = 64;

@@ -1,20 +1,20 @@
 // A light at a time.
 #include "heap/draws.h"
 
-#include <memory>
-
-#include "lights/world_light.h"
-
 namespace mesograin::heap {
 
-std::vector<Draw> draws_of(const Heap& heap) {
+std::shared_ptr<const lights::WorldLight> image_of(const Heap& heap) {
+  const bool shines = heap.world.image && heap.world.shines();
+  return shines ? std::make_shared<const lights::WorldLight>(heap.world) : nullptr;
+}
+
+std::vector<Draw> draws_of(const Heap& heap, const std::shared_ptr<const lights::WorldLight>& image) {
   std::vector<Draw> draws;
   for (const scene::Light& light : heap.lights)
     draws.emplace_back(
         [&light](const glm::dvec3& place, const glm::dvec2& random) { return lights::sample(light, place, random); });
-  if (heap.world.image && heap.world.shines())
-    draws.emplace_back([world = std::make_shared<const lights::WorldLight>(heap.world)](
-                           const glm::dvec3& /*place*/, const glm::dvec2& random) { return world->draw(random); });
+  if (image)
+    draws.emplace_back([image](const glm::dvec3& /*place*/, const glm::dvec2& random) { return image->draw(random); });
   return draws;
 }
 

@@ -90,7 +90,7 @@ bool enters(const glm::vec3& normal, float alpha, double eta, glm::vec3& travell
 }  // namespace
 
 std::optional<Passage> walk_facets(const Optics& optics, float radius, const SeenFacet& seen, const Facets& facets,
-                                   Scatterings scatterings, Random& random, glm::vec3* first) {
+                                   Scatterings scatterings, Random& random) {
   const glm::vec3 place = seen.place;
   glm::vec3 direction = -seen.towards;
   const float alpha = facets.finish(seen.grain).roughness;
@@ -107,7 +107,6 @@ std::optional<Passage> walk_facets(const Optics& optics, float radius, const See
     passage.weight = flights.weight();
     passage.length += std::min(flight, chord);
     if (flight < chord) {
-      if (!passage.scattered && first != nullptr) *first = flights.weight();
       passage.scattered = true;
       passage.place += flight * passage.direction;
       if (scatterings == Scatterings::end) return passage;

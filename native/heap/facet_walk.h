@@ -64,9 +64,8 @@ enum class Scatterings {
 };
 
 /// Follows a view ray; lengths in `optics` are in `radius`. Where no facet is met, light goes straight on. Nothing,
-/// where all was absorbed or it does not come out. `first`: becomes the weight after the first scattering, if there is
-/// any.
+/// where all was absorbed or it does not come out.
 std::optional<Passage> walk_facets(const Optics& optics, float radius, const SeenFacet& seen, const Facets& facets,
-                                   Scatterings scatterings, transport::Random& random, glm::vec3* first = nullptr);
+                                   Scatterings scatterings, transport::Random& random);
 
 }  // namespace mesograin::heap

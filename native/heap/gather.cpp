@@ -25,6 +25,15 @@ constexpr int most_looked_into = 12;
 // regularization for holistic and robust light transport", 2013, section 4).
 const float least_spread = 15.0F * std::numbers::pi_v<float> / 180.0F;
 
+// The same of light that is scattered on its way, which tells less yet of where it came in.
+const float spread_of_scattered = 40.0F * std::numbers::pi_v<float> / 180.0F;
+
+// What is so many times as bright as the world's image is on average is such a light, too.
+constexpr double glaring = 16.0;
+
+// Facets this rough, GGX alpha, show a glaring place as a highlight; smoother ones as it is.
+constexpr float rough = 0.05F;
+
 // The same through rough facets of a grain alone, over their alpha: about what two of them spread it by.
 constexpr float spread_of_alpha = 0.6F;
 
@@ -102,7 +111,8 @@ Gather::Gather(Heap heap, std::shared_ptr<const Found> found)
       found_(std::move(found)),
       light_(found_->light),
       space_(found_->space),
-      draws_(draws_of(heap_)) {
+      image_(image_of(heap_)),
+      draws_(draws_of(heap_, image_)) {
   lights_.reserve(heap_.lights.size());
   for (const scene::Light& light : heap_.lights) lights_.push_back(lights::pack(light, heap_.anchor));
 }
@@ -224,22 +234,14 @@ void Gather::follow_look(SeenFacet seen, const Facets& facets, const Look& how, 
     const Grain& grain = space_.grains()[seen.grain];
     const Optics& optics = heap_.grains.kinds[grain.kind];
     const bool asks_how_much = first && how.alone;
-    glm::vec3 once_scattered(0.0F);
-    const auto walk = [&](const Optics& medium) {
-      return walk_facets(medium, grain.radius, seen, facets, first ? how.scatterings : Scatterings::end, random,
-                         &once_scattered);
-    };
-    const std::optional<Passage> passage = asks_how_much ? walk(glass(optics)) : walk(optics);
-    // What lights and the world scatter in it is no other walk's to tell.
-    if (first && how.whole && once_scattered != glm::vec3(0.0F)) {
-      const ScatteredLight scattered = scattered_in(seen);
-      sum.scattered += once_scattered * (scattered.all - scattered.of_others);
-    }
+    const Scatterings scatterings = first ? how.scatterings : Scatterings::end;
+    const std::optional<Passage> passage =
+        walk_facets(asks_how_much ? glass(optics) : optics, grain.radius, seen, facets, scatterings, random);
     if (!passage) return;
     if (asks_how_much) crosses = passage->entered;
     glm::vec3& behind = crosses ? sum.lights : sum.others;
     weight *= passage->weight;
-    if (passage->scattered && (!first || how.scatterings == Scatterings::end)) {
+    if (passage->scattered && scatterings == Scatterings::end) {
       const ScatteredLight scattered = scattered_in(seen);
       behind += weight * (first ? scattered.of_others : scattered.all);
       return;
@@ -250,20 +252,26 @@ void Gather::follow_look(SeenFacet seen, const Facets& facets, const Look& how, 
     }
     // What else the grain that is seen makes of the lights is its model's, or highlights().
     const bool straight = passage->entered && !passage->scattered;
-    if (!passage->wall && (!first || straight)) {
-      const float spread = how.alone ? spread_of_alpha * facets.finish(seen.grain).roughness : least_spread;
-      sum.lights += weight * lights_along(seen.grain, *passage, spread, facets, random);
+    if (!passage->wall && (!first || straight || (passage->scattered && how.whole))) {
+      const float spread = spread_of(seen.grain, *passage, how, facets);
+      glm::vec3 found = lights_along(seen.grain, *passage, spread, facets, random);
+      if (!how.alone) found += glare_along(seen.grain, *passage, spread, facets, random);
+      (passage->scattered ? sum.scattered : sum.lights) += weight * found;
     }
     const std::optional<Meeting> meeting =
         passage->wall ? passage->wall : facets.beyond(seen.grain, passage->place, passage->direction);
     if (!meeting) {
-      if (first && passage->scattered) return;
-      if (first && !passage->entered && !(how.whole && facets.finish(seen.grain).shown)) return;
-      const glm::vec3 world(lights::radiance(heap_.world, glm::dvec3(passage->direction)));
-      (first && !passage->entered ? sum.mirrored : sum.lights) += weight * world;
+      const bool shown = !first || straight || (how.whole && (passage->scattered || facets.finish(seen.grain).shown));
+      if (!shown) return;
+      const bool mirrors = first && !passage->entered;
+      const bool as_it_is = how.alone || (mirrors && facets.finish(seen.grain).roughness < rough);
+      const glm::vec3 world = world_along(passage->direction, as_it_is);
+      (passage->scattered ? sum.scattered : mirrors ? sum.mirrored : sum.lights) += weight * world;
       return;
     }
-    if (meeting->wall || !sees_into(meeting->number) || through + 1 == most_looked_into) {
+    // What is scattered shows no longer where others are clear.
+    const bool ends = passage->scattered || through + 1 == most_looked_into;
+    if (meeting->wall || !sees_into(meeting->number) || ends) {
       Ray ray{passage->place, passage->direction, weight};
       if (const std::optional<Source> source = space_.source(*meeting, ray, random))
         behind += ray.weight / source->met *
@@ -274,31 +282,54 @@ void Gather::follow_look(SeenFacet seen, const Facets& facets, const Look& how, 
   }
 }
 
+float Gather::spread_of(std::uint32_t grain, const Passage& passage, const Look& how, const Facets& facets) const {
+  if (how.alone) return spread_of_alpha * facets.finish(grain).roughness;
+  return passage.scattered ? spread_of_scattered : least_spread;
+}
+
+glm::vec3 Gather::world_along(const glm::vec3& direction, bool as_it_is) const {
+  const glm::dvec3 along(direction);
+  const double seen = as_it_is || !image_ ? 1.0 : 1.0 - image_->glare(along, glaring);
+  return glm::vec3(seen * lights::radiance(heap_.world, along));
+}
+
+lights::LightDraw Gather::glare(transport::Random& random) const {
+  lights::LightDraw light = image_->draw({random.uniform(), random.uniform()});
+  light.irradiance *= image_->glare(light.to_light, glaring);
+  return light;
+}
+
 glm::vec3 Gather::highlights(const SeenFacet& seen, const Facets& facets, transport::Random& random) const {
   glm::vec3 sum(0.0F);
-  const Finish finish = facets.finish(seen.grain);
-  if (!finish.shown) return sum;
-  const Optics& optics = heap_.grains.kinds[space_.grains()[seen.grain].kind];
-  const double mu_o = std::max(glm::dot(seen.normal, seen.towards), 1e-4F);
+  if (!facets.finish(seen.grain).shown) return sum;
   for (std::size_t i = 0; i < heap_.lights.size(); ++i) {
     const lights::LightDraw light =
         draws_[i](heap_.anchor + glm::dvec3(seen.place), {random.uniform(), random.uniform()});
-    const glm::vec3 to_light(light.to_light);
-    const double mu_i = glm::dot(seen.normal, to_light);
-    // As shaders/models/dielectric.glsl has it.
-    const double alpha = physics::dielectric_alpha(finish.roughness, lights::light_angle(lights_[i], light.reach));
-    if (!(mu_i > 0.0) || !(alpha > 0.0)) continue;
-    constexpr double smallest_alpha = 1e-3;
-    const double reflected =
-        physics::dielectric_reflection(glm::dvec3(seen.normal), glm::dvec3(to_light), mu_i, glm::dvec3(seen.towards),
-                                       mu_o, optics.eta, std::max(alpha, smallest_alpha), finish.correlated);
-    const glm::vec3 shown(mu_i * reflected * light.irradiance);
-    constexpr float least_shown = 1e-4F;
-    if (std::max({shown.r, shown.g, shown.b}) < least_shown) continue;
-    const auto reach = static_cast<float>(std::min(light.reach, 1e30));
-    sum += shown * passed_towards(seen.grain, seen.place, to_light, reach, facets);
+    sum += highlight(seen, facets, light, lights::light_angle(lights_[i], light.reach));
   }
+  if (image_ && facets.finish(seen.grain).roughness >= rough) sum += highlight(seen, facets, glare(random), 0.0);
   return sum;
+}
+
+glm::vec3 Gather::highlight(const SeenFacet& seen, const Facets& facets, const lights::LightDraw& light,
+                            double angle) const {
+  const Finish finish = facets.finish(seen.grain);
+  const Optics& optics = heap_.grains.kinds[space_.grains()[seen.grain].kind];
+  const double mu_o = std::max(glm::dot(seen.normal, seen.towards), 1e-4F);
+  const glm::vec3 to_light(light.to_light);
+  const double mu_i = glm::dot(seen.normal, to_light);
+  // As shaders/models/dielectric.glsl has it.
+  const double alpha = physics::dielectric_alpha(finish.roughness, angle);
+  if (!(mu_i > 0.0) || !(alpha > 0.0)) return glm::vec3(0.0F);
+  constexpr double smallest_alpha = 1e-3;
+  const double reflected =
+      physics::dielectric_reflection(glm::dvec3(seen.normal), glm::dvec3(to_light), mu_i, glm::dvec3(seen.towards),
+                                     mu_o, optics.eta, std::max(alpha, smallest_alpha), finish.correlated);
+  const glm::vec3 shown(mu_i * reflected * light.irradiance);
+  constexpr float least_shown = 1e-4F;
+  if (!(std::max({shown.r, shown.g, shown.b}) >= least_shown)) return glm::vec3(0.0F);
+  return shown *
+         passed_towards(seen.grain, seen.place, to_light, static_cast<float>(std::min(light.reach, 1e30)), facets);
 }
 
 glm::vec3 Gather::passed_towards(std::uint32_t grain, const glm::vec3& place, const glm::vec3& to_light, float reach,
@@ -330,6 +361,17 @@ glm::vec3 Gather::lights_along(std::uint32_t grain, const Passage& passage, floa
     sum += glm::vec3(light.irradiance) * passed / (2.0F * std::numbers::pi_v<float> * (1.0F - edge));
   }
   return sum;
+}
+
+glm::vec3 Gather::glare_along(std::uint32_t grain, const Passage& passage, float spread, const Facets& facets,
+                              transport::Random& random) const {
+  if (!image_) return glm::vec3(0.0F);
+  const lights::LightDraw light = glare(random);
+  const glm::vec3 to_light(light.to_light);
+  const float edge = std::cos(spread);
+  if (!(light.irradiance != glm::dvec3(0.0)) || glm::dot(to_light, passage.direction) < edge) return glm::vec3(0.0F);
+  return glm::vec3(light.irradiance) * passed_towards(grain, passage.place, to_light, 1e30F, facets) /
+         (2.0F * std::numbers::pi_v<float> * (1.0F - edge));
 }
 
 Ray Gather::ray_through(std::uint32_t grain, const glm::vec3& normal, const glm::vec3& towards) const {

@@ -80,7 +80,7 @@ class Gather {
 
   /// How a clear grain is looked into.
   struct Look {
-    Scatterings scatterings;  ///< of others' light in this grain; where they end, its numbers tell it
+    Scatterings scatterings;  ///< in this grain; where they end, its numbers tell what others make of them
     bool whole;               ///< no model tells what lights and the world do in it and at its surface
     bool alone = false;       ///< its model tells how much crosses it, and the look of what
   };
@@ -101,9 +101,20 @@ class Gather {
     glm::vec3 of_others;  ///< that grains and walls have sent
   };
   ScatteredLight scattered_in(const SeenFacet& seen) const;
+  /// In how wide a cone lights are seen where a look leaves a grain, at the least: its half angle.
+  float spread_of(std::uint32_t grain, const Passage& passage, const Look& how, const Facets& facets) const;
   /// `spread`: the least half angle of the cone in which a light is seen.
   glm::vec3 lights_along(std::uint32_t grain, const Passage& passage, float spread, const Facets& facets,
                          transport::Random& random) const;
+  /// The same of what the world's image has of them.
+  glm::vec3 glare_along(std::uint32_t grain, const Passage& passage, float spread, const Facets& facets,
+                        transport::Random& random) const;
+  /// What the world sends to the end of a look; but for what glares in its image, unless that is seen `as_it_is`.
+  glm::vec3 world_along(const glm::vec3& direction, bool as_it_is) const;
+  /// One direction in which the world's image is so bright, as a light of the scene; no light elsewhere.
+  lights::LightDraw glare(transport::Random& random) const;
+  /// What a clear grain's surface reflects of a light that comes from where it seems `angle` wide.
+  glm::vec3 highlight(const SeenFacet& seen, const Facets& facets, const lights::LightDraw& light, double angle) const;
   /// What is left of a light on its way to a grain's surface.
   glm::vec3 passed_towards(std::uint32_t grain, const glm::vec3& place, const glm::vec3& to_light, float reach,
                            const Facets& facets) const;
@@ -118,8 +129,9 @@ class Gather {
 
   Heap heap_;
   std::shared_ptr<const Found> found_;
-  const std::shared_ptr<const HeapLight>& light_;  // of found_
-  const Space& space_;                             // of found_
+  const std::shared_ptr<const HeapLight>& light_;    // of found_
+  const Space& space_;                               // of found_
+  std::shared_ptr<const lights::WorldLight> image_;  // the world, or null
   std::vector<Draw> draws_;
   std::vector<lights::DeviceLight> lights_;  // of the heap, its places from the anchor
 };

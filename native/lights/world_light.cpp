@@ -93,4 +93,10 @@ double WorldLight::density(const glm::dvec3& direction) const {
   return world_.image ? density() * luminance(radiance(world_, direction)) : density();
 }
 
+double WorldLight::glare(const glm::dvec3& direction, double times) const {
+  if (!world_.image || !(density() > 0.0)) return 0.0;
+  const double mean = 1.0 / (4.0 * PI * density());
+  return 1.0 - std::min(times * mean / std::max(luminance(radiance(world_, direction)), 1e-300), 1.0);
+}
+
 }  // namespace mesograin::lights

@@ -28,6 +28,10 @@ class WorldLight {
   /// Of that direction (unit length).
   double density(const glm::dvec3& direction) const;
 
+  /// The share of what comes from a direction (unit length) that is more than `times` the mean luminance of all: what
+  /// comes from so small a place that next to no walk happens upon it.
+  double glare(const glm::dvec3& direction, double times) const;
+
  private:
   scene::World world_;
   std::vector<double> rows_;    ///< cumulative, of each row

@@ -78,7 +78,7 @@ bool GatherPass::run(const Sample& sample, const ArrayVisibility& arrays, Surfac
       const glm::vec3 normal(facing);
       if (clear && gather->sees_into(*grain)) {
         const bool all_told = sample.gathers_all_of(number);
-        const heap::Gather::Look how{all ? heap::Scatterings::followed : heap::Scatterings::end, all_told,
+        const heap::Gather::Look how{all || all_told ? heap::Scatterings::followed : heap::Scatterings::end, all_told,
                                      !all_told && number >= instances};
         const heap::Gather::Through into =
             into_clear({*grain, place, normal, towards}, pixel_rays, pixel_at(i), *gather, *clear,
