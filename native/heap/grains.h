@@ -16,7 +16,11 @@ namespace mesograin::heap {
 struct Grain {
   glm::vec3 middle;  ///< from a place amid the heap
   float radius;
-  std::uint32_t kind;  ///< which of Grains::kinds
+  std::uint32_t kind;      ///< which of Grains::kinds
+  float thickness = 1.0F;  ///< its radius over the one that its kind is for
+
+  /// In which the kind's lengths are told.
+  float radius_of_kind() const { return radius / thickness; }
 
   bool operator==(const Grain&) const = default;
 };
