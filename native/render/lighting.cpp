@@ -92,9 +92,9 @@ std::vector<ShadowEye> Lighting::eyes(const SampledLights& sampled, const glm::d
   return eyes;
 }
 
-bool Lighting::any_near(const glm::dvec3& middle, double within, double radius) const {
+bool Lighting::any_near(const glm::dvec3& middle, double within, double radius, bool inside) const {
   return std::any_of(local_.begin(), local_.end(), [&](const scene::Light& light) {
-    return lights::nearness(lights::pack(light, middle), glm::dvec3(0.0), within, radius) > 0.0;
+    return lights::nearness(lights::pack(light, middle), glm::dvec3(0.0), within, radius, inside) > 0.0;
   });
 }
 

@@ -46,7 +46,7 @@ class Lighting {
 
   /// Whether any of them is near one of some grains, no larger than `radius`, whose middles are as far as `within` from
   /// `middle` at most: shaders/lights/near.glsl.
-  bool any_near(const glm::dvec3& middle, double within, double radius) const;
+  bool any_near(const glm::dvec3& middle, double within, double radius, bool inside) const;
 
   /// Whether a surface of this radiance, within a ball, is an area light as well: its light on others is the light's.
   bool is_light(const glm::dvec3& middle, double radius, const glm::dvec3& radiance) const;

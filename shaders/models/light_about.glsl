@@ -87,7 +87,7 @@ vec3 worth(Found found, vec3 brightest, vec3 own) {
 // `lamp` as seen from `middle`, where grain space begins; `lamp_random`: which point of it; `to_middle`: from there to the lamp.
 // Instances are shown from directions nearby instead, whose mean is told.
 void look_about(DeviceLight lamp, vec3 middle, vec2 lamp_random, SurfacePoint point, vec3 to_middle, inout LightSample light) {
-  float near = nearness(lamp, middle, 0.0, ball.radius * grain_unit);
+  float near = nearness(lamp, middle, 0.0, ball.radius * grain_unit, false);
   if (near == 0.0) return;
   float mu = clamp(dot(point.normal, point.to_viewer), 0.0, 1.0);
   vec3 inwards = (mu * point.normal - point.to_viewer) / ball.eta - refracted_cosine(mu, ball.eta) * point.normal;

@@ -15,6 +15,7 @@
 #include "heap/open_beyond.glsl"
 #include "models/dielectric.glsl"
 #include "models/interface.glsl"
+#include "models/lamp_in_grain.glsl"
 #include "models/light_tracks.glsl"
 #include "models/pixel_random.glsl"
 #include "models/portions.glsl"
@@ -35,9 +36,9 @@
 #endif
 
 vec3 looked_up;  // the direction towards the light whose source function is told
+int looked_up_light;
 #ifdef SUMMED
 uniform sampler3D summed;  // the source function of each light, blocks of nodes behind one another
-int looked_up_light;
 
 #else
 vec4 lobe[LOBE_TEXELS];
@@ -45,9 +46,8 @@ vec4 lobe[LOBE_TEXELS];
 
 void look_up(vec3 to_light, int light) {
   looked_up = to_light;
-#ifdef SUMMED
   looked_up_light = light;
-#else
+#ifndef SUMMED
   for (int i = 0; i < LOBE_TEXELS; ++i) lobe[i] = lobe_texel(to_light, i);
 #endif
 }
@@ -88,6 +88,9 @@ Radiance source_at(vec3 place) {
 #else
   sum *= vec3(scattered_share_below(stored.sigma_t.r * depth), scattered_share_below(stored.sigma_t.g * depth),
               scattered_share_below(stored.sigma_t.b * depth));
+#endif
+#ifdef LAMP_IN_GRAIN
+  if (light_about == looked_up_light) return about.parallel * sum + lamp_scattered_once(place);
 #endif
   // Light that nothing has scattered comes straight. Its shadows are too sharp for few products: they would be blotches.
   sum += SPECTRUM(stored.albedo) / (4.0 * PI) * exp(-SPECTRUM(stored.sigma_t) * way_of_light(place, looked_up));
@@ -266,7 +269,7 @@ vec3 together_lit(SurfacePoint point, Outwards outwards) {
 vec3 evaluate_model(SurfacePoint point, Outwards outwards, LightSample light) {
   vec3 radiance = vec3(0.0);
 #ifndef TOGETHER
-  vec3 to_light = grain_to_body() * light.to_light;
+  vec3 to_light = grain_to_body() * light.entering_from;
   look_up(to_light, light.index);
 #ifdef WALKED
   Spectrum inside = walked_radiance(place_below, direction_below, to_light, light.index);

@@ -5,7 +5,8 @@
 //   LIGHTS_AT_PLACE      the place that is shaded draws its own directions of the lights that have a place themselves: an opaque surface at
 //                        each point, a translucent instance for all of it
 //   NEAR_LIGHTS          lights have a place: the light map of each shows the grain from one direction, but each point has its light from where it is
-//   LIGHTS_ABOUT         one of them is so near that it matters where its light comes in
+//   LIGHTS_ABOUT         one of them is so near that it matters where its light comes in; the model looks about itself if it knows the grain inside
+//                        and light goes straight there (LAMP_IN_GRAIN)
 //   CLEAR, WORLD         the model knows what crosses the grain unscattered, and there is a world to be seen through it
 //   GATHERED             what is behind some was gathered
 //   TOGETHER             what the model makes of all lights but for mirroring was summed, and nothing stands in their way
@@ -22,13 +23,17 @@
 #include "render/bindings.glsl"
 #include "render/distant_light.glsl"
 #include "lights/light.glsl"
+#include "lights/near.glsl"
 #include "models/interface.glsl"
 #include "models/mirrored_world.glsl"
 #include "models/portions.glsl"
 #include "scene/grain.glsl"
 #include "scene/shadows.glsl"
 #include "models/entries.glsl"
-#ifdef LIGHTS_ABOUT
+#if defined(LIGHTS_ABOUT) && defined(WHOLE_GRAIN) && !defined(REFRACTION) && !defined(WALKED)
+#define LAMP_IN_GRAIN
+void look_about(DeviceLight lamp, vec3 middle, vec2 lamp_random, SurfacePoint point, vec3 to_middle, inout LightSample light);
+#elif defined(LIGHTS_ABOUT)
 #include "models/light_about.glsl"
 #endif
 #include "heap/light_from_grains.glsl"
@@ -117,6 +122,7 @@ void move_to_point(inout LightSample light, vec3 to_middle, SurfacePoint point) 
   light.to_light = normalize(drawn.to_light + light.to_light - to_middle);
   light.irradiance = drawn.irradiance;
   light.entering = drawn.irradiance;
+  light.entering_from = light.to_light;
 #ifdef LIGHTS_ABOUT
   look_about(local_lights[number], middle_of_grain(), local_randoms[number], point, to_middle, light);
 #endif

@@ -17,13 +17,14 @@ AXIS = -LAMP / 2.0
 EDGE, BLEND = math.cos(0.5), 0.4  # of the cone
 INTENSITY = 3.0
 SIDE, BLOCK = 48, 6
+HALF_AXES = numpy.array((1.0, 0.6, 0.8))  # of an ellipsoid
 LIGHTS = {"point": native.PointLight(LAMP, (INTENSITY,) * 3),
           "spot": native.SpotLight(LAMP, AXIS, (INTENSITY,) * 3, angle=1.0, blend=BLEND)}
 
 
-def irradiance(kind, places):
+def irradiance(kind, places, lamp=LAMP):
     """On planes that face the lamp, and the direction to it."""
-    to_lamp = LAMP - places
+    to_lamp = lamp - places
     squared = (to_lamp ** 2).sum(axis=1)
     to_lamp /= numpy.sqrt(squared)[:, None]
     share = 1.0
@@ -33,9 +34,11 @@ def irradiance(kind, places):
     return INTENSITY * share / squared, to_lamp
 
 
-def way_out(places, directions):
-    along = (places * directions).sum(axis=1)
-    return numpy.sqrt(numpy.maximum(along ** 2 + 1.0 - (places ** 2).sum(axis=1), 0.0)) - along
+def way_out(places, directions, half_axes=1.0):
+    places, directions = places / half_axes, directions / half_axes
+    squared = (directions ** 2).sum(axis=1)
+    along = (places * directions).sum(axis=1) / squared
+    return numpy.sqrt(numpy.maximum(along ** 2 + (1.0 - (places ** 2).sum(axis=1)) / squared, 0.0)) - along
 
 
 def isotropic(random, count):
@@ -43,16 +46,17 @@ def isotropic(random, count):
     return directions / numpy.sqrt((directions ** 2).sum(axis=1))[:, None]
 
 
-def truth(kind, boundary, walks=3000):
-    """Radiance of an isotropically scattering sphere from far above, mean in blocks (8, 8): light crosses its surface
-    straight, or comes in and leaves by a cosine lobe."""
+def truth(kind, boundary, walks=3000, half_axes=numpy.ones(3), lamp=LAMP):
+    """Radiance of an isotropically scattering sphere, or ellipsoid, from far above, mean in blocks (8, 8): light
+    crosses its surface straight, or, a sphere's, comes in and leaves by a cosine lobe."""
     random = numpy.random.default_rng(1)
     blocks = numpy.repeat(numpy.arange((SIDE // BLOCK) ** 2), walks)
     width = 2.0 / (SIDE // BLOCK)
     across = (random.random((blocks.size, 2)) + numpy.stack((blocks % 8, blocks // 8), axis=1)) * width - 1.0
-    inside = (across ** 2).sum(axis=1) < 1.0
+    inside = ((across / half_axes[:2]) ** 2).sum(axis=1) < 1.0
     blocks, across = blocks[inside], across[inside] * (1.0, -1.0)  # row 0 is at the top
-    places = numpy.column_stack((across, numpy.sqrt(1.0 - (across ** 2).sum(axis=1))))
+    heights = half_axes[2] * numpy.sqrt(1.0 - ((across / half_axes[:2]) ** 2).sum(axis=1))
+    places = numpy.column_stack((across, heights))
     by_cosine = boundary == "lambert_lambert"
     directions = numpy.broadcast_to((0.0, 0.0, -1.0), places.shape)
     if by_cosine:
@@ -62,7 +66,7 @@ def truth(kind, boundary, walks=3000):
     left = 1.0
     while left > 0.01 and blocks.size:
         flights = random.exponential(1.0 / SIGMA_T, blocks.size)
-        ways = way_out(places, directions)
+        ways = way_out(places, directions, half_axes)
         stays = flights < ways
         if by_cosine:
             ends = (places + ways[:, None] * directions)[~stays]
@@ -72,8 +76,8 @@ def truth(kind, boundary, walks=3000):
         blocks, places = blocks[stays], (places + flights[:, None] * directions)[stays]
         left *= ALBEDO
         if not by_cosine:
-            reached, to_lamp = irradiance(kind, places)
-            share = left / (4.0 * math.pi) * numpy.exp(-SIGMA_T * way_out(places, to_lamp))
+            reached, to_lamp = irradiance(kind, places, lamp)
+            share = left / (4.0 * math.pi) * numpy.exp(-SIGMA_T * way_out(places, to_lamp, half_axes))
             numpy.add.at(sums, blocks, share * reached)
         directions = isotropic(random, blocks.size)
     return sums.reshape(8, 8) / walks
@@ -85,6 +89,26 @@ def truths():
             for boundary in ("index_matched", "lambert_lambert")}
 
 
+def mesh(half_axes=numpy.ones(3)):
+    positions, normals, triangles = sphere_mesh.sphere(96, 48)
+    positions[numpy.abs(positions) < 1e-6] = 0.0  # one pole each: transport asks for a closed mesh
+    normals = normals / half_axes
+    normals /= numpy.sqrt((normals ** 2).sum(axis=1))[:, None]
+    return native.Mesh(positions * half_axes, normals, triangles)
+
+
+def view_from_above():
+    view = native.View(SIDE, SIDE)
+    far = 1000.0
+    view.set_camera(native.Camera.look_at((0, 0, far), (0, 0, 0), (0, 1, 0), math.degrees(2.0 * math.atan(1.0 / far))))
+    return view
+
+
+def how_far(view, expected):
+    picture = view.read()[..., 1].reshape(8, BLOCK, 8, BLOCK).mean(axis=(1, 3))
+    return numpy.abs(picture - expected).sum() / expected.sum()
+
+
 # Measured 3, 6 and 6 percent, the walks' noise in them; with the irradiance where light leaves, 16 to 45 percent.
 # Between cosine lobes 2.8 percent under the point and 3.5 under the spot.
 @pytest.mark.parametrize("model, boundary, most", [
@@ -93,17 +117,30 @@ def truths():
 def test_light_leaves_a_grain_by_where_it_came_in(truths, model, boundary, most):
     medium = native.Material(model=model, sigma_s=(SIGMA_T * ALBEDO,) * 3, sigma_a=(SIGMA_T * (1.0 - ALBEDO),) * 3,
                              boundary=boundary)
-    positions, normals, triangles = sphere_mesh.sphere(96, 48)
-    positions[numpy.abs(positions) < 1e-6] = 0.0  # one pole each: transport asks for a closed mesh
-    grain = native.Instance(native.Mesh(positions, normals, triangles), medium)
-    view = native.View(SIDE, SIDE)
-    far = 1000.0
-    view.set_camera(native.Camera.look_at((0, 0, far), (0, 0, 0), (0, 1, 0), math.degrees(2.0 * math.atan(1.0 / far))))
+    view = view_from_above()
+    grain = native.Instance(mesh(), medium)
     for kind, expected in truths[boundary].items():
         view.set_scene(native.Scene(instances=[grain], lights=[LIGHTS[kind]]))
         view.render(64)
         assert not view.warnings
-        picture = view.read()[..., 1].reshape(8, BLOCK, 8, BLOCK).mean(axis=(1, 3))
-        error = numpy.abs(picture - expected).sum() / expected.sum()
+        error = how_far(view, expected)
         print(kind, model, f"{error:.4f}")
         assert error < most
+
+
+# Measured 2.2 and 2.4 percent; walks in a ball leave 3.2 and 2.6.
+@pytest.mark.parametrize("times", [1.0, 4.0])
+@pytest.mark.parametrize("model, most", [("transport", 0.025)])
+def test_a_grain_that_is_no_ball(model, most, times):
+    lamp = LAMP * times
+    expected = truth("point", "index_matched", 12000, half_axes=HALF_AXES, lamp=lamp)
+    medium = native.Material(model=model, sigma_s=(SIGMA_T * ALBEDO,) * 3, sigma_a=(SIGMA_T * (1.0 - ALBEDO),) * 3,
+                             boundary="index_matched")
+    view = view_from_above()
+    view.set_scene(native.Scene(instances=[native.Instance(mesh(HALF_AXES), medium)],
+                                lights=[native.PointLight(lamp, (INTENSITY,) * 3)]))
+    view.render(64)
+    assert not view.warnings
+    error = how_far(view, expected)
+    print(model, times, f"{error:.4f}")
+    assert error < most

@@ -23,14 +23,15 @@ glm::vec4 Sample::viewer(const glm::dvec3& origin) const {
 
 bool Sample::lights_about(std::size_t unit) const {
   const DeviceMaterial& material = content.material(unit);
-  if (!material.light_maps() && !scene::traits_of(material.model()).mesh) return false;
-  if (const Draw* draw = content.draw(unit)) return lighting.any_near(draw->centre, 0.0, draw->reach);
+  const bool inside = scene::traits_of(material.model()).mesh;
+  if (!material.light_maps() && !inside) return false;
+  if (const Draw* draw = content.draw(unit)) return lighting.any_near(draw->centre, 0.0, draw->reach, inside);
   const Instances& instances = *content.instances();
   const InstanceGroup& group = instances.groups()[unit];
   const Bounds& bounds = instances.bounds();
   return lighting.any_near(
       content.anchor() + 0.5 * (bounds.lower + bounds.upper), 0.5 * glm::distance(bounds.lower, bounds.upper),
-      largest_of_typical * group.typical_scale * instances.prototypes()[group.prototype].mesh->reach());
+      largest_of_typical * group.typical_scale * instances.prototypes()[group.prototype].mesh->reach(), inside);
 }
 
 bool Sample::gathers_all_of(std::size_t number) const { return gathers && exchange.gathers_all_of(number, traced); }
