@@ -45,7 +45,7 @@ class Lighting {
   bool any_local() const { return !local_.empty(); }
 
   /// Whether any of them is near one of some grains, no larger than `radius`, whose middles are as far as `within` from
-  /// `middle` at most: shaders/lights/near.glsl.
+  /// `middle` at most: shaders/lights/near.glsl. `inside`: their model knows the grain inside.
   bool any_near(const glm::dvec3& middle, double within, double radius, bool inside) const;
 
   /// Whether a surface of this radiance, within a ball, is an area light as well: its light on others is the light's.

@@ -1,6 +1,6 @@
 // A lamp near a grain of stored transport that light enters and leaves straight. What the lamp gives is another irradiance from another direction at
 // each place inside: light that was scattered once is told at each place as it is there. Of light that was scattered more often what is stored tells
-// that of a parallel light, and walks in the grain how much more, or less, the lamp's is: a difference, of which few walks are no worse than noisy.
+// that of a parallel light, and walks in the grain how many times as much the lamp's is.
 //
 // All is told over the lamp's strength, which has its colour.
 #include "lights/light.glsl"
