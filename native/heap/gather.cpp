@@ -23,13 +23,13 @@ constexpr int most_looked_into = 12;
 // Light that comes from a lamp or a sun through several grains is found by no look along one line, or seldom: it is
 // told as if each of them spread it over a cone of this half angle (Kaplanyan and Dachsbacher, "Path space
 // regularization for holistic and robust light transport", 2013, section 4).
-const float first_spread = 15.0F * std::numbers::pi_v<float> / 180.0F;
+const float least_spread = 15.0F * std::numbers::pi_v<float> / 180.0F;
 
 // The same of light that is scattered on its way, which tells less yet of where it came in.
 const float spread_of_scattered = 40.0F * std::numbers::pi_v<float> / 180.0F;
 
 // What is so many times as bright as the world's image is on average is such a light, too.
-constexpr double glaring = 4.0;
+constexpr double glaring = 16.0;
 
 // Facets this rough, GGX alpha, show a glaring place as a highlight; smoother ones as it is.
 constexpr float rough = 0.05F;
@@ -201,10 +201,6 @@ Gather::All Gather::look_at_all(std::uint32_t grain, const glm::vec3& place, con
   return all;
 }
 
-float Gather::spread_at(std::uint32_t sample) {
-  return first_spread * std::pow(1.0F + static_cast<float>(sample), -1.0F / 6.0F);
-}
-
 bool Gather::sees_into(std::uint32_t grain) const {
   return sees_into_any() && space_.kind(grain).from_light->is_clear();
 }
@@ -288,7 +284,7 @@ void Gather::follow_look(SeenFacet seen, const Facets& facets, const Look& how, 
 
 float Gather::spread_of(std::uint32_t grain, const Passage& passage, const Look& how, const Facets& facets) const {
   if (how.alone) return spread_of_alpha * facets.finish(grain).roughness;
-  return passage.scattered ? spread_of_scattered : how.spread;
+  return passage.scattered ? spread_of_scattered : least_spread;
 }
 
 glm::vec3 Gather::world_along(const glm::vec3& direction, bool as_it_is) const {

@@ -80,14 +80,10 @@ class Gather {
 
   /// How a clear grain is looked into.
   struct Look {
-    Scatterings scatterings;      ///< in this grain; where they end, its numbers tell what others make of them
-    bool whole;                   ///< no model tells what lights and the world do in it and at its surface
-    bool alone = false;           ///< its model tells how much crosses it, and the look of what
-    float spread = spread_at(0);  ///< of lights behind a grain of an array: half the angle of a cone, at the least
+    Scatterings scatterings;  ///< in this grain; where they end, its numbers tell what others make of them
+    bool whole;               ///< no model tells what lights and the world do in it and at its surface
+    bool alone = false;       ///< its model tells how much crosses it, and the look of what
   };
-
-  /// Narrower with every sample, so that what the cone leaves of an error goes as noise does, though more slowly.
-  static float spread_at(std::uint32_t sample);
 
   /// What look() shows, through the grain's own facets and other clear grains that stand behind it, and the world and
   /// the lights that are seen so.

@@ -53,10 +53,8 @@ Shape shape_of(const scene::Mesh& mesh) {
 // the other.
 constexpr double radii_an_octave = 8.0;
 
-/// `first`: a size that is told as it is.
-double rounded(double radius, double first) {
-  const double octaves = std::log2(std::max(radius, 1e-300) / first);
-  return first * std::exp2(std::round(octaves * radii_an_octave) / radii_an_octave);
+double rounded(double radius) {
+  return std::exp2(std::round(std::log2(std::max(radius, 1e-300)) * radii_an_octave) / radii_an_octave);
 }
 
 // A plain object that is so many times as large as most grains sends out another light at each place: a ground that is
@@ -118,9 +116,7 @@ class Gatherer {
     if (!shape(*mesh).grain || !(radius > 0.0)) return;
     balls = balls && shape(*mesh).roundness > roundness_of_balls;
     roles.back().grain = static_cast<std::uint32_t>(grains.grains.size());
-    // Grains of one size are no thicker or thinner than they are.
-    if (!(first_ > 0.0)) first_ = radius;
-    const double of_kind = rounded(radius, first_);
+    const double of_kind = rounded(radius);
     heap::Optics optics = heap::optics_of(material, of_kind);
     optics.lens = shape(*mesh).roundness > roundness_of_lenses;
     grains.grains.push_back(
@@ -133,11 +129,10 @@ class Gatherer {
     roles.back().wall = static_cast<std::uint32_t>(grains.walls.size());
     glm::dmat4 to_heap = draw.object_to_world;
     to_heap[3] -= glm::dvec4(anchor, 0.0);
-    grains.walls.push_back({draw.source, to_heap, grains.kind(heap::optics_of(draw.look, rounded(draw.reach, 1.0)))});
+    grains.walls.push_back({draw.source, to_heap, grains.kind(heap::optics_of(draw.look, rounded(draw.reach)))});
   }
 
   std::map<const scene::Mesh*, Shape> shapes_;
-  double first_ = 0.0;  // grain's radius
 };
 
 void append(std::vector<glm::vec4>& numbers, const heap::Coefficients& coefficients) {
