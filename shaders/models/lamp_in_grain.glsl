@@ -44,14 +44,6 @@ Spectrum lamp_scattered_once(vec3 place) {
   return scattered_once(place, irradiance, to_lamp);
 }
 
-float largest_of(Spectrum value) {
-#ifdef GREY
-  return value;
-#else
-  return max(value.r, max(value.g, value.b));
-#endif
-}
-
 vec3 any_direction(vec2 random) {
   float height = 1.0 - 2.0 * random.x;
   float ring = sqrt(max(1.0 - height * height, 0.0));
@@ -107,7 +99,7 @@ Spectrum worth_of_lamp(vec3 start, vec3 inwards, vec3 to_light, int collisions, 
       of_parallel += left * scattered_once(place, 1.0, to_light);
     }
     direction = any_direction(random.yz);
-    begins = largest_of(left) < LEAST_LEFT;
+    begins = largest(left) < LEAST_LEFT;
   }
 #ifdef GREY
   return of_parallel > 1e-30 ? min(of_lamp / of_parallel, brightest) : otherwise;

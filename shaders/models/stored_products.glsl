@@ -35,6 +35,14 @@ const int CHANNELS = 1;
 const int CHANNELS = 3;
 #endif
 
+float largest(Spectrum value) {
+#ifdef GREY
+  return value;
+#else
+  return max(value.r, max(value.g, value.b));
+#endif
+}
+
 // Terms of the source function, four a texel, channel by channel: of the place, blocks of nodes behind one another; of the light's direction,
 // octahedral maps with frames below one another.
 uniform sampler3D sources;

@@ -163,14 +163,6 @@ vec3 march(vec3 place, vec3 direction, float way, int taps) {
 }
 #endif
 
-float largest(Spectrum value) {
-#ifdef GREY
-  return value;
-#else
-  return max(value.r, max(value.g, value.b));
-#endif
-}
-
 // What leaves the grain is followed until so little of it is left.
 const float LEAST_PASSED = 0.004;
 #ifdef CLEAR
