@@ -243,7 +243,8 @@ def test_a_lost_file_is_said(paint, tmp_path):
     values = read_scene()
     assert dict(values.instances[0].material.values)["reflectance"] == pytest.approx((0.1, 0.4, 0.7))
     [sentence] = values.warnings
-    assert "Material 'Paint'" in sentence and "'Lost' cannot be loaded" in sentence
+    assert "Material 'Paint'" in sentence and "its image 'Lost' cannot be loaded" in sentence
+    assert "knows no" not in sentence, "an image texture is known well"
 
 
 PATTERNS = {

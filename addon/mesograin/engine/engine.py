@@ -182,8 +182,16 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
             self._view_draw(context, depsgraph)
         except _sentences() as error:
             self._complain(status.VIEWPORT, status.Status(error=str(error)))
-        if self._error and viewport_text.is_hidden(context.space_data):
-            viewport_text.draw(context.region, self._error)
+        if self._error:
+            self._write_error(context)
+
+    def _write_error(self, context):
+        """Over the picture, where Blender's text line is hidden or too short."""
+        hidden = viewport_text.is_hidden(context.space_data)
+        if not hidden and len(self._error) <= viewport_text.columns(context):
+            return
+        self.update_stats("", "")
+        viewport_text.draw(context, self._error, below=not hidden)
 
     def _view_draw(self, context, depsgraph):
         session, region, scene = self._session, context.region, depsgraph.scene
@@ -193,7 +201,7 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
             if pixels is None and self._texture is not None and scene.render.film_transparent != self._transparent:
                 pixels = session.picture()  # at rest nothing new would come
             if pixels is not None:
-                self._take(pixels, region, scene)
+                self._take(pixels, context, scene)
             elif session.seconds_behind > BEHIND_SECONDS:
                 self.update_stats("", f"Drawing, {duration(session.seconds_behind)}")
             if pixels is not None or (session.busy and not session.waits):
@@ -203,7 +211,7 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
         if self._texture is not None:
             self._draw_texture(scene, region)
 
-    def _take(self, pixels, region, scene):
+    def _take(self, pixels, context, scene):
         self._transparent = scene.render.film_transparent
         if not self._transparent:
             pixels[..., 3] = 1.0
@@ -211,9 +219,9 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
         session = self._session
         self._error = ""
         warnings = (*self._warnings, *session.warnings)
-        line = _line(session.samples, scene.mesograin.viewport_samples, warnings)
-        share = session.preparing
-        self.update_stats("", line if share is None else f"{_preparing(share)} | {line}")
+        self.update_stats("", _line(session, scene.mesograin.viewport_samples, warnings,
+                                    viewport_text.columns(context)))
+        region = context.region
         if status.put(status.VIEWPORT, status.Status(session.samples, region.width, region.height, session.timings,
                                                      warnings, exchange=session.exchange)):
             _redraw_panels()
@@ -254,12 +262,14 @@ def _set_pass(result, name, pixels):
     compat.set_pass_pixels(result.layers[0].passes[name], np.ascontiguousarray(pixels[::-1]))
 
 
-def _line(samples, target, warnings):
+def _line(session, target, warnings, columns):
     """The text over a viewport: how far it is, and what the artist has to know of it."""
-    if not warnings:
-        return f"Sample {samples}/{target}"
-    more = f" (and {len(warnings) - 1} more: Render Properties > Sampling)" if len(warnings) > 1 else ""
-    return f"Sample {samples}/{target} | {warnings[0]}{more}"
+    share = session.preparing
+    parts = [] if share is None else [_preparing(share)]
+    parts.append(f"Sample {session.samples}/{target}")
+    if warnings:
+        parts.append(viewport_text.line(warnings, columns - len(" | ".join((*parts, "")))))
+    return " | ".join(parts)
 
 
 def _look():

@@ -1,11 +1,16 @@
-# A sentence drawn over a viewport's picture, for where Blender's own text line is hidden.
+# What is said over a viewport's picture: how much of it fits, and sentences that Blender's own text line cannot hold.
 import textwrap
 
 import bpy
 
 # At a UI scale of 1, in pixels.
 SIZE, LINE, MARGIN = 11, 17, 12
+CHARACTER = 6.0  # of Blender's own text line, on average
+NAVIGATION = 90  # what the gizmo that turns the view takes of the right end
+FEWEST = 24  # characters that a sentence is worth
 FONT = 0  # the interface's
+PLACE = "Render Properties > Sampling"
+"""Where every sentence is read in full."""
 
 
 def is_hidden(space):
@@ -13,18 +18,52 @@ def is_hidden(space):
     return not (space.overlay.show_overlays and space.overlay.show_text)
 
 
-def draw(region, sentence):
-    """From a draw callback: wraps the sentence to the region's width, at its upper left corner below the header."""
+def columns(context):
+    """How many characters of Blender's text line are seen beside the toolbar, the sidebar and the navigation gizmo."""
+    space = context.space_data
+    left, right = _free(context)
+    if space.show_gizmo and space.show_gizmo_navigate:
+        right -= NAVIGATION * context.preferences.system.ui_scale
+    return int((right - left) / (CHARACTER * context.preferences.system.ui_scale))
+
+
+def line(sentences, fitting):
+    """The first of sentences and how many more there are, in as many characters as fit."""
+    first, *others = sentences
+    more = f" (and {len(others)} more: {PLACE})" if others else ""
+    if len(first) + len(more) <= fitting:
+        return first + more
+    more = more or f" ({PLACE})"
+    return textwrap.shorten(first, max(fitting - len(more), FEWEST), placeholder=" …") + more
+
+
+def draw(context, sentence, below=False):
+    """From a draw callback: wraps the sentence to what is free of the region, at its upper left corner below the
+    header, or below all that Blender writes there."""
     import blf
 
-    scale = bpy.context.preferences.system.ui_scale
+    region, scale = context.region, context.preferences.system.ui_scale
     blf.size(FONT, SIZE * scale)
     blf.color(FONT, 1.0, 1.0, 1.0, 1.0)
     blf.enable(FONT, blf.SHADOW)
     blf.shadow(FONT, 3, 0.0, 0.0, 0.0, 1.0)
-    character = blf.dimensions(FONT, "n")[0]
-    columns = max(16, int((region.width - 2 * MARGIN * scale) / character))
-    for number, line in enumerate(textwrap.wrap(sentence, columns), 1):
-        blf.position(FONT, MARGIN * scale, region.height - (2 * MARGIN + LINE * (1 + number)) * scale, 0.0)
-        blf.draw(FONT, line)
+    left, right = _free(context)
+    fitting = max(16, int((right - left - 2 * MARGIN * scale) / blf.dimensions(FONT, "n")[0]))
+    top = region.height // 2 if below else region.height - (2 * MARGIN + LINE) * scale
+    for number, text in enumerate(textwrap.wrap(sentence, fitting), 1):
+        blf.position(FONT, left + MARGIN * scale, top - LINE * number * scale, 0.0)
+        blf.draw(FONT, text)
     blf.disable(FONT, blf.SHADOW)
+
+
+def _free(context):
+    """(left, right) of a region, in its pixels, between what lies over its sides."""
+    region = context.region
+    left, right = region.x, region.x + region.width
+    for other in context.area.regions:
+        if other.type in ("TOOLS", "UI") and other.width > 1 and other.x < right and other.x + other.width > left:
+            if other.alignment == "RIGHT":
+                right = min(right, other.x)
+            else:
+                left = max(left, other.x + other.width)
+    return left - region.x, max(left, right) - region.x

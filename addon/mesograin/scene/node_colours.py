@@ -10,6 +10,19 @@ from . import images, instance_attributes
 class Unknown(Exception):
     """A node that is not followed; its name."""
 
+    @property
+    def reason(self):
+        """A clause."""
+        return f"Mesograin knows no {self}"
+
+
+class Lost(Unknown):
+    """An image that cannot be loaded; its name."""
+
+    @property
+    def reason(self):
+        return f"its image '{self}' cannot be loaded"
+
 
 @dataclasses.dataclass
 class Places:
@@ -292,7 +305,7 @@ def _image(node, socket, places):
         raise Unknown(node.name)
     texels = images.texels(node.image)
     if texels is None:
-        raise Unknown(f"{node.name}: {node.image.name}")
+        raise Lost(node.image.name)
     at = vector(node.inputs["Vector"], places, "UV")
     looked_up = _looked_up(texels, at[:, :2], node.extension, node.interpolation != "Closest")
     if socket.name == "Alpha":
@@ -305,7 +318,7 @@ def _environment(node, _socket, places):
         raise Unknown(node.name)
     texels = images.texels(node.image)
     if texels is None:
-        raise Unknown(f"{node.name}: {node.image.name}")
+        raise Lost(node.image.name)
     towards = vector(node.inputs["Vector"], places, "generated")
     towards = towards / np.maximum(np.linalg.norm(towards, axis=1, keepdims=True), 1e-30)
     x, y, z = towards.T

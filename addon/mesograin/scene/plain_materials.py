@@ -109,7 +109,7 @@ class Reading:
             found = textures.read(socket, self._box, numbers, self._side, self._mesh)
         except node_colours.Unknown as unknown:
             stands = "" if numbers else ", for which its viewport colour stands"
-            self.leave_out(f"the texture of its {socket.name.lower()}{stands} (it knows no {unknown})")
+            self.leave_out(f"the texture of its {socket.name.lower()}{stands} ({unknown.reason})")
             return None
         self._maps[of] = found
         return found.mean

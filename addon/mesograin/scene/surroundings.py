@@ -77,9 +77,10 @@ def _painted(world, socket, side):
         pixels, suns = node_colours.remembered((node_colours.fingerprint(socket), side),
                                                lambda: (_paint(socket, side), node_skies.suns(socket)))
     except node_colours.Unknown as unknown:
+        advice = ("" if isinstance(unknown, node_colours.Lost) else
+                  ": use colours, gradients, patterns, skies, mixes or environment images")
         return WorldValues(tuple(world.color)), (
-            f"World '{world.name}' is drawn in its viewport colour, for Mesograin knows no {unknown}: use colours, "
-            "gradients, patterns, skies, mixes or environment images.",)
+            f"World '{world.name}' is drawn in its viewport colour, for {unknown.reason}{advice}.",)
     surroundings = _made(pixels)
     _paintings[surroundings] = pixels
     suns = tuple(lights.SunValues(world.name, tuple(towards.tolist()), tuple(irradiance.tolist()), angle)
