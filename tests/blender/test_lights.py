@@ -107,6 +107,23 @@ def test_emission_of_nodes_counts_and_textures_are_told(ground, render):
     assert_as_in_cycles(ground, render)
 
 
+@pytest.mark.parametrize("kind", ["SUN", "SPOT", "AREA"])
+@pytest.mark.parametrize("axes", [(0.0, 0.0, 0.0), (1.0, 1.0, 0.0), (1.0, 0.0, 1.0)])
+def test_a_light_without_a_direction_is_left_out_and_said(ground, render, kind, axes):
+    # A sun needs its own axis alone, and a sheet of light is one that has no thickness.
+    alone = render()
+    add_light("POINT", (0.0, 0.0, 1.0))
+    with_a_lamp = render()
+    assert with_a_lamp.sum() > alone.sum()
+    flat = add_light(kind, (0.0, 0.0, 1.0), turned=(math.pi, 0.0, 0.0), scale=axes, energy=0.0)
+    there = [flat.name] if {"SUN": axes[2], "SPOT": min(axes), "AREA": min(axes[:2])}[kind] else []
+    values = read_scene()
+    assert [light.name for light in values.lights if light.name == flat.name] == there
+    sentences = [sentence for sentence in values.warnings if flat.name in sentence]
+    assert sentences == ([] if there else [f"Light '{flat.name}' is scaled to nothing, so it is left out."])
+    assert np.array_equal(render(), with_a_lamp), "the other lights are as they were"
+
+
 def make_world(scene, colour, strength):
     scene.world = bpy.data.worlds.new("World")
     compat.use_nodes(scene.world)

@@ -1,8 +1,6 @@
 # What is said over a viewport's picture: how much of it fits, and sentences that Blender's own text line cannot hold.
 import textwrap
 
-import bpy
-
 # At a UI scale of 1, in pixels.
 SIZE, LINE, MARGIN = 11, 17, 12
 CHARACTER = 6.0  # of Blender's own text line, on average

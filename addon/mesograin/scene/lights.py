@@ -39,6 +39,9 @@ def _made(name, native, kind, **values):
 def read(evaluated_object, matrix_world):
     """(SunValues or PlacedLightValues or None, sentences about what is left out) of an object that is a light."""
     light, name = evaluated_object.data, evaluated_object.name
+    axes = [axis.normalized().length for axis in matrix_world.to_3x3().col]
+    if not all(axes[number] > 0.5 for number in _AXES[light.type]):
+        return None, (f"Light '{name}' is scaled to nothing, so it is left out.",)
     factor, sentences = _emission_of_nodes(light, name)
     power = [own * node for own, node in zip(_power(light), factor)]
     return _READERS[light.type](light, name, power, matrix_world), sentences
@@ -149,3 +152,5 @@ def _area(light, name, power, matrix_world):
 
 
 _READERS = {"SUN": _sun, "POINT": _point, "SPOT": _spot, "AREA": _area}
+_AXES = {"SUN": (2,), "POINT": (), "SPOT": (0, 1, 2), "AREA": (0, 1)}
+"""Which of an object's axes tell where a light of a kind shines: they must have a length."""
