@@ -79,6 +79,7 @@ class Monkey:
             return (yield from self.window.do(area, function))
         except hand.Unanswered:
             self.unanswered += 1
+            self.press_escape()  # what a render complains of stands in a dialog that takes all keys
             return False
 
     def open(self, path, load_ui=False):
