@@ -109,6 +109,16 @@ def test_no_label_of_the_render_settings_is_cut_off(panel):
     assert cut_off(drawn) == {}
 
 
+def test_the_size_of_a_comparison_is_not_cut_off():
+    scene, layout = bpy.context.scene, Layout()
+    scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = 1920, 1080, 100
+    scene.mesograin_compare.size_percent = 100
+    compare_panel.draw_settings(layout, types.SimpleNamespace(
+        scene=scene, region=None, preferences=types.SimpleNamespace(system=types.SimpleNamespace(ui_scale=1.0))))
+    [said] = [text for text in layout.said if "1920" in text]
+    assert "1080" in said and width(said) < BESIDE_BOX
+
+
 def test_no_title_of_a_result_is_cut_off():
     entry = {"metrics": {"relative_l1": 0.01, "relative_l1_blocks": 0.01, "relative_l1_blocks_corrected": None},
              "noise_floor": {"relative_l1": 0.01}, "reference_seconds": 185.0}

@@ -18,7 +18,7 @@ def draw_settings(layout, context):
     width, height = properties.size(scene)
     row = layout.row()
     row.prop(settings, "size_percent")
-    row.label(text=f"{width} x {height} pixels")
+    row.label(text=f"{width} x {height} px")
     layout.prop(settings, "out", text="")
     if settings.out.startswith("//") and not bpy.data.filepath:
         panels.draw_sentence(layout, context, "The file is not saved: results last until Blender quits.", icon="INFO")
