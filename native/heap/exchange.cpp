@@ -44,6 +44,15 @@ Quality coarse_for(std::size_t grains) {
   return quality;
 }
 
+HeapLight light_alone(const Heap& heap, const transport::Effort& effort) {
+  // What goes straight through a grain asks for no walks.
+  constexpr int walks = GrainTable::outcomes;
+  HeapLight light;
+  light.kinds = kinds_of(heap.grains, walks, effort);
+  light.seats = std::make_shared<const Seats>(heap.grains.grains.size());
+  return light;
+}
+
 HeapLight solve_exchange(const Heap& heap, const Quality& quality, const Field& before,
                          const transport::Effort& effort) {
   return Solver(before).solve(heap, quality, effort);

@@ -79,6 +79,10 @@ struct HeapLight {
   Parts parts;  ///< since its solver began
 };
 
+/// Of a heap that exchanges none: what rays must know of its grains, and nothing that any sends. Throws
+/// transport::Stopped.
+HeapLight light_alone(const Heap& heap, const transport::Effort& effort);
+
 /// `before` may be a solution for other lights, materials or places. Throws transport::Stopped.
 HeapLight solve_exchange(const Heap& heap, const Quality& quality, const Field& before,
                          const transport::Effort& effort);

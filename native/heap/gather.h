@@ -50,6 +50,10 @@ class Gather {
   All look_at_all(std::uint32_t grain, const glm::vec3& place, const glm::vec3& normal, const glm::vec3& towards,
                   int rays, transport::Random& random) const;
 
+  /// Of a heap that exchanges no light: what lights do in the grain that is seen straight through this one.
+  glm::vec3 lit_behind(std::uint32_t grain, const glm::vec3& normal, const glm::vec3& towards,
+                       transport::Random& random) const;
+
   /// Whether so much crosses this grain, whose surface refracts, that look_into() shows more of it.
   bool sees_into(std::uint32_t grain) const;
 

@@ -22,6 +22,7 @@ struct Heap {
   glm::dvec3 anchor{0.0};  ///< where the grains' places are told from
   std::vector<scene::Light> lights;
   scene::World world;
+  bool exchanges = true;  ///< else no grain answers what another sends
 
   bool operator==(const Heap&) const = default;
 };

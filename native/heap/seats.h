@@ -56,8 +56,9 @@ class Seats {
   /// What is told of a grain, or of what comes after all.
   Coefficients of(const Field& told, std::uint32_t number) const;
 
-  /// The same at a normal, to order 1 where it is shared.
+  /// The same at a normal, to order 1 where it is shared; where nothing is told, nothing.
   glm::vec3 light_at(const Field& told, std::uint32_t number, const glm::vec3& normal, bool fine) const {
+    if (told.empty()) return glm::vec3(0.0F);
     if (number < grains_ && shares(number)) return shared_light_at(told, number, normal);
     const Coefficients& own = told[seat(number)];
     return fine ? own.at(normal) : own.first_at(normal);

@@ -13,6 +13,7 @@ constexpr double quick_share = 0.1;
 
 /// Whether one may be shown in the light of the other: grains are told by their numbers.
 bool alike(const Heap& a, const Heap& b) {
+  if (a.exchanges != b.exchanges) return false;
   return std::max(a.grains.grains.size(), b.grains.grains.size()) <=
          2 * std::min(a.grains.grains.size(), b.grains.grains.size());
 }
@@ -107,6 +108,10 @@ void Solvers::work(const std::weak_ptr<Solving>& of, const std::stop_token& stop
     if (!wanted || stop.stop_requested()) given_up = true;
   };
   try {
+    if (!heap->exchanges) {
+      tell(of, *line, {++told_, std::make_shared<const HeapLight>(light_alone(*heap, effort)), heap, true});
+      return;
+    }
     solve(coarse_for(heap->grains.grains.size()), transport::part_of(effort, 0.0, quick_share), false);
     if (of.expired()) return;
     solve(quality_for(heap->grains.grains.size()), transport::part_of(effort, quick_share, 1.0), true);

@@ -157,6 +157,16 @@ bool any_refracts(const Content& content) {
   });
 }
 
+/// Whether light is followed into any grains of arrays.
+bool any_followed(const Content& content) {
+  const Instances* instances = content.instances();
+  if (instances == nullptr) return false;
+  const std::vector<InstanceGroup>& groups = instances->groups();
+  return std::any_of(groups.begin(), groups.end(), [](const InstanceGroup& group) {
+    return heap::optics_of(group.source, 1.0).transparent();
+  });
+}
+
 /// Whether there is anything that could be seen through a clear grain.
 bool shows_through(const heap::Grains& grains, const scene::Scene& scene) {
   if (grains.grains.size() + grains.walls.size() > 1 || scene.world.shines()) return true;
@@ -172,8 +182,10 @@ void Exchange::set(const Content& content, const scene::Scene& scene) {
   Gatherer gathered;
   const bool arrays = content.instances() != nullptr;
   const bool heaps = scene.exchange == scene::Exchange::heaps;
-  if (scene.exchange != scene::Exchange::off && (!heaps || arrays || any_refracts(content))) gathered.add(content);
+  const bool exchanges = scene.exchange != scene::Exchange::off;
+  if (exchanges ? !heaps || arrays || any_refracts(content) : any_followed(content)) gathered.add(content);
   const bool clear =
+      exchanges &&
       std::any_of(gathered.grains.kinds.begin(), gathered.grains.kinds.end(), std::mem_fn(&heap::Optics::clear));
   // A grain alone is its model's, but for what is seen through it.
   if (heaps && !arrays && !(clear && shows_through(gathered.grains, scene))) gathered = {};
@@ -182,7 +194,10 @@ void Exchange::set(const Content& content, const scene::Scene& scene) {
     for (const InstanceGroup& group : instances->groups()) alike_.emplace_back(group.first, group.first + group.count);
   const heap::Grains& grains = gathered.grains;
   const bool heaped = arrays && grains.grains.size() > 1;
-  if (grains.grains.empty() || (!heaped && !clear && grains.walls.empty())) {
+  follows_ = (heaps || !exchanges) && arrays;
+  const bool follows = follows_ && std::any_of(grains.kinds.begin(), grains.kinds.end(), is_followed);
+  const bool lit = exchanges ? heaped || clear || !grains.walls.empty() : heaped && follows;
+  if (grains.grains.empty() || !lit) {
     solving_.reset();
     known_.reset();
     device_.reset();
@@ -191,11 +206,11 @@ void Exchange::set(const Content& content, const scene::Scene& scene) {
     return;
   }
   gathers_ = scene.exchange == scene::Exchange::gathered;
-  follows_ = heaps && arrays;
-  shows_more_ = std::any_of(grains.kinds.begin(), grains.kinds.end(),
-                            [&](const heap::Optics& kind) { return kind.clear() || (follows_ && is_followed(kind)); });
-  heap::Heap heap{std::move(gathered.grains), content.anchor(), scene.lights, scene.world};
-  const bool regrouped = !solving_ || roles_ != gathered.roles;
+  shows_more_ = clear || follows;
+  heap::Heap heap{std::move(gathered.grains), content.anchor(), scene.lights, scene.world, exchanges};
+  const bool switched = solving_ && solving_->heap().exchanges != exchanges;
+  if (switched) known_.reset();
+  const bool regrouped = !solving_ || switched || roles_ != gathered.roles;
   if (!regrouped && solving_->heap() == heap) {
     find_gather();
     return;
@@ -319,6 +334,7 @@ ExchangeStatistics Exchange::statistics() const {
 }
 
 void Exchange::send() {
+  if (!any()) return;
   std::vector<glm::vec4> numbers;
   numbers.reserve(roles_.size() * object_numbers);
   const std::size_t kinds_begin = roles_.size() * object_numbers;

@@ -54,12 +54,12 @@ class Exchange {
   void set(const Content& content, const scene::Scene& scene);
 
   /// Whether any light goes from grain to grain.
-  bool any() const { return solving_ != nullptr; }
+  bool any() const { return solving_ != nullptr && solving_->heap().exchanges; }
 
   /// Takes in what has become known since. Returns whether anything has.
   bool take_news();
 
-  /// What a picture waits for; null where no light goes from grain to grain.
+  /// What a picture waits for; null where no light goes from grain to grain, and none is followed into them.
   std::shared_ptr<const heap::Solving> solving() const { return solving_; }
 
   ExchangeStatistics statistics() const;
@@ -106,7 +106,7 @@ class Exchange {
   bool balls_ = true;
   std::vector<Role> roles_;
   bool gathers_ = false;
-  bool follows_ = false;     // light through what is seen of an array's grains, where that is cheap
+  bool follows_ = false;     // light into what is seen of an array's grains, where that is cheap
   bool shows_more_ = false;  // gathering, of some grains
   std::unique_ptr<const heap::Gather> gather_;
   std::vector<std::pair<std::size_t, std::size_t>> alike_;  // objects of one unit: the first, and after the last

@@ -7,8 +7,9 @@ lights.
 The truth is traced beside it (mesograin-referee heap): so many paths a pixel, and its own noise in blocks is told.
 Errors are relative L1 in blocks of 8 x 8 pixels of a picture of 96 x 96, over all channels. A sun that balls with a
 refracting surface are lit by is 20 degrees wide: a point's light no path finds. What is drawn with the exchange off is
-also told, in green, beside the share of the truth that met no other ball or went through others unscattered. Writes
-heap_light.json and heap_light.html, and prints a line for each.
+also told, in green, beside the share of the truth that was scattered in one ball alone and went through all others
+unscattered; its noise is not told, and about that of the truth. Writes heap_light.json and heap_light.html, and prints
+a line for each.
 """
 import argparse
 import json
@@ -55,7 +56,7 @@ def light_of(name, material):
 
 
 def truth(native, referee, material, light, paths, folder):
-    """(picture, its noise in blocks over the mean, its share in green that met no other ball, (h, w, 1))."""
+    """(picture, its noise in blocks over the mean, its share in green of one ball alone, (h, w, 1))."""
     case, picture = folder / "heap.json", folder / "truth.exr"
     case.write_text(json.dumps({"spheres": str(DATA / "spheres.csv"), "camera": MANIFEST["camera"], "resolution": SIZE,
                                 "material": material, "light": light}))
@@ -64,7 +65,7 @@ def truth(native, referee, material, light, paths, folder):
     channel = dict(zip(names, numpy.moveaxis(pixels, -1, 0)))
     noise = numpy.sqrt(blocks((channel["noise.G"] ** 2)[..., None])) / 8.0
     colours = numpy.stack([channel[name] for name in "RGB"], -1)
-    return colours, float(noise.mean() / channel["G"].mean()), (channel["direct.G"] + channel["crossed.G"])[..., None]
+    return colours, float(noise.mean() / channel["G"].mean()), sum(channel[f"{name}.G"] for name in ("direct", "crossed", "behind"))[..., None]
 
 
 def blocks(picture):

@@ -41,41 +41,59 @@ TEST(Solvers, GiveUpWhatNobodyWaitsForAnyMore) {
   std::shared_ptr<const Solving> solving = solvers.ask(lit(20, 0.99), nullptr);
   while (!solving->news().light) solving->wait(1ms);
   // By now many rays are being traced.
-  const auto asked = std::chrono::steady_clock::now();
   const Parts before = solving->news().light->parts;
   solving = solvers.ask(lit(20, 0.98), solving);
-  EXPECT_LT(std::chrono::steady_clock::now() - asked, 50ms);
+  EXPECT_FALSE(solving->lit()) << "who asks waited for it";
   while (!solving->lit()) solving->wait(1ms);
   const Parts after = solving->news().light->parts;
   EXPECT_EQ(after.links, before.links) << "the finest rays were traced to their end";
   EXPECT_EQ(after.solutions, before.solutions + 1);
 }
 
-// A slider that moves on every few milliseconds is as one that stands still but for what is under way.
+// A slider that moves on as soon as its heap is being solved is as one that stands still but for what is under way.
 TEST(Solvers, ShowWhatChangesFasterThanItIsSolvedInTheLightOfAMomentAgo) {
   Solvers solvers;
   std::shared_ptr<const Solving> solving = solvers.ask(lit(16, 0.9), nullptr);
-  solving->wait(1ms);
-  const auto started = std::chrono::steady_clock::now();
-  auto longest_asked = 0ns;
+  const auto begun = [&] {
+    while (solving->progress() == 0.0) solving->wait(1ms);
+  };
+  begun();
   News shown;
-  int lights = 0;
-  for (int step = 1; lights < 5 && std::chrono::steady_clock::now() - started < 60s; ++step) {
-    Heap next = lit(16, 0.9 + 1e-5 * step);
-    const auto asked = std::chrono::steady_clock::now();
-    solving = solvers.ask(std::move(next), solving);
-    longest_asked = std::max<std::chrono::nanoseconds>(longest_asked, std::chrono::steady_clock::now() - asked);
-    EXPECT_FALSE(solving->wait(2ms)) << "solved within two milliseconds: a larger heap would tell more";
+  // Steps that were asked for while the light before was shown still, and then had another that was not their own. Where
+  // a machine is busy a step may come so late that its heap has light of its own: of many steps some do not.
+  int handed_on = 0;
+  for (int step = 1; handed_on < 5 && step <= 50; ++step) {
+    solving = solvers.ask(lit(16, 0.9 + 1e-5 * step), solving);
+    const bool waited_for_nothing = solving->news().number == shown.number;
+    begun();
     const News news = solving->news();
     if (!news.light || news.number == shown.number) continue;
     EXPECT_TRUE(!shown.light || albedo(news) > albedo(shown)) << "older light than what was shown";
     shown = news;
-    ++lights;
+    if (waited_for_nothing && news.heap.get() != &solving->heap()) ++handed_on;
   }
-  EXPECT_EQ(lights, 5) << "the slider moved and the light stood still";
-  EXPECT_LT(longest_asked, 1s) << "who asks waits for nothing";
+  EXPECT_EQ(handed_on, 5) << "the slider moved and the light stood still, or who asked waited for it";
   ASSERT_TRUE(solving->wait(60s));
   EXPECT_TRUE(solving->lit());
+}
+
+TEST(Solvers, ShowNoLightBetweenGrainsWhereThereIsToBeNone) {
+  Solvers solvers;
+  const std::shared_ptr<const Solving> first = solvers.ask(lit(4, 0.9), nullptr);
+  ASSERT_TRUE(first->wait(60s));
+  Heap alone = lit(4, 0.9);
+  alone.exchanges = false;
+  const std::shared_ptr<const Solving> second = solvers.ask(std::move(alone), first);
+  ASSERT_TRUE(second->wait(60s));
+  ASSERT_TRUE(second->news().light);
+  EXPECT_TRUE(second->lit());
+  const HeapLight& light = *second->news().light;
+  for (std::uint32_t grain = 0; grain < 64; ++grain)
+    EXPECT_EQ(light.seats->light_at(light.sent, grain, {0.0F, 0.0F, 1.0F}, true), glm::vec3(0.0F));
+  const std::shared_ptr<const Solving> third = solvers.ask(lit(4, 0.8), second);
+  const News news = third->news();
+  EXPECT_TRUE(!news.light || third->lit()) << "the light of grains that answer none";
+  ASSERT_TRUE(third->wait(60s));
 }
 
 TEST(Solvers, HandALightOnThatNobodyHasTakenYet) {

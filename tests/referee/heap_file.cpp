@@ -95,16 +95,16 @@ std::vector<HeapCase> heap_cases(const std::filesystem::path& path) {
 void write_heap(const std::filesystem::path& path, const std::vector<HeapCase>& cases,
                 const std::vector<HeapPicture>& pictures) {
   const HeapCase& setup = cases.front();
-  image::Image pixels{.width = setup.width, .height = setup.height, .channels = 7, .pixels = {}};
+  image::Image pixels{.width = setup.width, .height = setup.height, .channels = 8, .pixels = {}};
   const std::size_t green = pictures.size() / 2;
   for (std::size_t pixel = 0; pixel < pictures[green].radiance.size(); ++pixel) {
     const HeapRadiance& of = pictures[green].radiance[pixel];
     for (std::size_t channel = 0; channel < 3; ++channel)
       pixels.pixels.push_back(static_cast<float>(pictures[std::min(channel, pictures.size() - 1)].radiance[pixel].all));
-    for (const double value : {of.direct, of.crossed, of.alone, pictures[green].noise[pixel]})
+    for (const double value : {of.direct, of.crossed, of.behind, of.alone, pictures[green].noise[pixel]})
       pixels.pixels.push_back(static_cast<float>(value));
   }
-  io::write_exr(path, pixels.view(), {"R", "G", "B", "direct.G", "crossed.G", "alone.G", "noise.G"},
+  io::write_exr(path, pixels.view(), {"R", "G", "B", "direct.G", "crossed.G", "behind.G", "alone.G", "noise.G"},
                 {{"mesograin:version", MESOGRAIN_VERSION},
                  {"mesograin:method", "path tracing of balls; light scattered, reflected or refracted at least once"},
                  {"mesograin:samples", std::to_string(setup.samples)},

@@ -48,7 +48,10 @@ class Path {
     if (!changed_) return;
     const double light = weight_ * seen_light(direction);
     found_.all += light;
-    if (!elsewhere_) (crossed_ ? found_.crossed : found_.direct) += light;
+    if (!elsewhere_)
+      (crossed_ ? found_.crossed : found_.direct) += light;
+    else if (is_behind())
+      found_.behind += light;
   }
 
  private:
@@ -70,16 +73,23 @@ class Path {
     if (first) found_.alone += light;
     const double passed = material_.diffuse ? (way > 1e-9 ? 0 : 1) : std::exp(-sigma_t_ * way);
     found_.all += light * passed;
-    if (elsewhere_) return;
+    if (elsewhere_) {
+      if (is_behind()) found_.behind += light * passed;
+      return;
+    }
     // A way through a ball that merely touches is none.
     const bool free = !crossed_ && way < 1e-9;
     (free ? found_.direct : found_.crossed) += light * passed;
   }
 
   void scattered_in(std::uint32_t number) {
+    if (!changed_) scatterer_ = number;
+    if (number != scatterer_) between_ = true;
     changed_ = true;
     if (number != seen_) elsewhere_ = true;
   }
+
+  bool is_behind() const { return surface_.matched() && !between_ && scatterer_ != seen_; }
 
   bool survives() {
     constexpr double least = 0.05;
@@ -171,6 +181,8 @@ class Path {
   bool crossed_ = false;    // it has met another ball than the one that is seen
   bool elsewhere_ = false;  // and was scattered there
   bool left_ = false;       // it has left the ball that is seen
+  std::uint32_t scatterer_ = 0;  // where it was scattered first
+  bool between_ = false;         // and then in another
 };
 
 }  // namespace
@@ -196,7 +208,7 @@ HeapPicture trace_heap(const HeapCase& setup) {
         Path(setup, grid, rng, sum).follow(origin, camera.direction);
         squares += (sum.all - before) * (sum.all - before);
       }
-      for (double* value : {&sum.all, &sum.direct, &sum.crossed, &sum.alone}) *value /= setup.samples;
+      for (double* value : {&sum.all, &sum.direct, &sum.crossed, &sum.behind, &sum.alone}) *value /= setup.samples;
       picture.noise[row * static_cast<std::size_t>(setup.width) + static_cast<std::size_t>(column)] =
           std::sqrt(std::max(squares / setup.samples - sum.all * sum.all, 0.0) / setup.samples);
     }

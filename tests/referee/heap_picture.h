@@ -54,6 +54,7 @@ struct HeapRadiance {
   double all = 0;
   double direct = 0;   ///< met the ball that is seen and no other
   double crossed = 0;  ///< scattered in the ball that is seen alone, after it has gone through others unscattered
+  double behind = 0;   ///< seen through that ball unscattered, and scattered in one other alone
   double alone = 0;    ///< of the ball that is seen, were the others not there
 };
 

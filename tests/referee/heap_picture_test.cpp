@@ -63,6 +63,27 @@ TEST(HeapPicture, IsThatOfAnotherPathTracer) {
   }
 }
 
+// Of two balls in a row, lit from aside, the second is seen through the first as far as light goes straight through.
+TEST(HeapPicture, ShowsWhatIsBehind) {
+  HeapCase setup;
+  setup.balls = {{{0, 0, 5}, 1}};
+  setup.material = {.sigma_s = 0.5, .sigma_a = 0.5};
+  setup.light.direction = {1, 0, 0};
+  setup.camera = {{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {0, 1, 0}, 0.01, 0.01};
+  setup.width = setup.height = 8;
+  setup.samples = 4096;
+  const auto mean_of = [&](double HeapRadiance::*part) {
+    double sum = 0;
+    for (const HeapRadiance& of : trace_heap(setup).radiance) sum += of.*part / 64;
+    return sum;
+  };
+  const double alone = mean_of(&HeapRadiance::direct);
+  EXPECT_EQ(mean_of(&HeapRadiance::behind), 0);
+  setup.balls.push_back({{0, 0, 0}, 1});
+  EXPECT_NEAR(mean_of(&HeapRadiance::direct), alone, 0.01 * alone);
+  EXPECT_NEAR(mean_of(&HeapRadiance::behind), std::exp(-2.0) * alone, 0.02 * std::exp(-2.0) * alone);
+}
+
 // A white grain in white light is invisible, whatever its surface is.
 TEST(HeapPicture, LosesNoLight) {
   HeapCase setup;

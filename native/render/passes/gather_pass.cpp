@@ -47,6 +47,7 @@ heap::Gather::Through into_clear(const heap::SeenFacet& seen, const PixelRays& r
 bool GatherPass::run(const Sample& sample, const ArrayVisibility& arrays, SurfacePass& surfaces) {
   const heap::Gather* gather = sample.exchange.gather();
   const bool all = sample.exchange.gathers_all();
+  const bool alone = !sample.exchange.any();
   ran_ = sample.gathers;
   if (!ran_) return true;
   const auto start = std::chrono::steady_clock::now();
@@ -95,6 +96,7 @@ bool GatherPass::run(const Sample& sample, const ArrayVisibility& arrays, Surfac
         others_[i] = glm::vec4(found.others, 1.0F);
         lights_[i] = glm::vec4(found.world, 0.0F);
         scattered_[i] = glm::vec4(found.scattered, 0.0F);
+        if (alone) lights_[i] += glm::vec4(gather->lit_behind(*grain, normal, towards, random), 0.0F);
       } else if (all) {
         others_[i] = glm::vec4(gather->look(*grain, normal, towards, rays_a_sample, random), 1.0F);
       }

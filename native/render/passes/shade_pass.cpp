@@ -108,7 +108,7 @@ void ShadePass::shade_seen(const Sample& sample, const ShadowPass& shadows, cons
         prepare(sample, unit,
                 {.instanced = sample.content.draw(unit) == nullptr,
                  .shadows = sample.portion == Portion::normal ? Shadows::none : shadows.kind(sample.content),
-                 .gathered = gathered.ran(),
+                 .gathered = gathered.ran() && sample.exchange.any(),
                  .mirrors_world = sample.mirrors != Mirrors::none && sample.portion != Portion::normal,
                  .portion = sample.portion});
     shadows.bind(program);
