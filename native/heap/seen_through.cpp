@@ -22,8 +22,7 @@ glm::vec3 Gather::lit_behind(std::uint32_t grain, const glm::vec3& normal, const
   const glm::vec3 met = 1.0F - space_.kind(source->number).from_light->crossing(cosine);
   // What does not go straight through it is in the ray's weight as in the walk's.
   const glm::vec3 weight = ray.weight / glm::max(met, 1e-6F);
-  return weight *
-         look_at_all(source->number, behind.radius * facing, facing, -ray.direction, 1, random).scattered;
+  return weight * look_at_all(source->number, behind.radius * facing, facing, -ray.direction, 1, random).scattered;
 }
 
 }  // namespace mesograin::heap

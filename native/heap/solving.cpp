@@ -99,12 +99,13 @@ void Solvers::work(const std::weak_ptr<Solving>& of, const std::stop_token& stop
     auto light = std::make_shared<const HeapLight>(line->solver.solve(*heap, quality, part));
     tell(of, *line, {++told_, std::move(light), heap, final});
   };
+  bool coarse = true;  // what is found now
   transport::Effort effort;
   effort.stop = &given_up;
   effort.progress = [&](double share) {
     const std::shared_ptr<Solving> solving = of.lock();
     if (solving) solving->progress_ = share;
-    const bool wanted = solving || (share < quick_share && has_heir(*line, *heap));
+    const bool wanted = solving || (coarse && has_heir(*line, *heap));
     if (!wanted || stop.stop_requested()) given_up = true;
   };
   try {
@@ -114,6 +115,7 @@ void Solvers::work(const std::weak_ptr<Solving>& of, const std::stop_token& stop
     }
     solve(coarse_for(heap->grains.grains.size()), transport::part_of(effort, 0.0, quick_share), false);
     if (of.expired()) return;
+    coarse = false;
     solve(quality_for(heap->grains.grains.size()), transport::part_of(effort, quick_share, 1.0), true);
   } catch (const transport::Stopped&) {
     return;

@@ -162,9 +162,8 @@ bool any_followed(const Content& content) {
   const Instances* instances = content.instances();
   if (instances == nullptr) return false;
   const std::vector<InstanceGroup>& groups = instances->groups();
-  return std::any_of(groups.begin(), groups.end(), [](const InstanceGroup& group) {
-    return heap::optics_of(group.source, 1.0).transparent();
-  });
+  return std::any_of(groups.begin(), groups.end(),
+                     [](const InstanceGroup& group) { return heap::optics_of(group.source, 1.0).transparent(); });
 }
 
 /// Whether there is anything that could be seen through a clear grain.
@@ -184,9 +183,8 @@ void Exchange::set(const Content& content, const scene::Scene& scene) {
   const bool heaps = scene.exchange == scene::Exchange::heaps;
   const bool exchanges = scene.exchange != scene::Exchange::off;
   if (exchanges ? !heaps || arrays || any_refracts(content) : any_followed(content)) gathered.add(content);
-  const bool clear =
-      exchanges &&
-      std::any_of(gathered.grains.kinds.begin(), gathered.grains.kinds.end(), std::mem_fn(&heap::Optics::clear));
+  const bool clear = exchanges && std::any_of(gathered.grains.kinds.begin(), gathered.grains.kinds.end(),
+                                              std::mem_fn(&heap::Optics::clear));
   // A grain alone is its model's, but for what is seen through it.
   if (heaps && !arrays && !(clear && shows_through(gathered.grains, scene))) gathered = {};
   alike_.clear();

@@ -59,8 +59,8 @@ TEST(Solvers, ShowWhatChangesFasterThanItIsSolvedInTheLightOfAMomentAgo) {
   };
   begun();
   News shown;
-  // Steps that were asked for while the light before was shown still, and then had another that was not their own. Where
-  // a machine is busy a step may come so late that its heap has light of its own: of many steps some do not.
+  // Steps that were asked for while the light before was shown still, and then had another that was not their own.
+  // Where a machine is busy a step may come so late that its heap has light of its own: of many steps some do not.
   int handed_on = 0;
   for (int step = 1; handed_on < 5 && step <= 50; ++step) {
     solving = solvers.ask(lit(16, 0.9 + 1e-5 * step), solving);

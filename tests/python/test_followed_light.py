@@ -30,6 +30,26 @@ def test_no_light_maps_are_made_for_them():
     assert {"light_maps", "gather"} & passes(rendered(scene, "heaps")) == {"gather"}
 
 
+def test_they_are_followed_where_no_light_goes_between_them():
+    view = rendered(lit(heap(white())), "off")
+    assert {"light_maps", "gather"} & passes(view) == {"gather"}
+    assert view.statistics()["exchange"] is None
+
+
+def test_light_between_them_goes_and_comes():
+    view = native.View(96, 96, patient=False)
+    view.set_visibility("cast")
+    view.set_camera(camera())
+    scenes = {exchange: native.Scene(arrays=scene.arrays, lights=scene.lights, exchange=exchange)
+              for scene in [lit(heap(white()))] for exchange in ("heaps", "off")}
+    right = {exchange: patiently(scene) for exchange, scene in scenes.items()}
+    assert right["off"].sum() < 0.8 * right["heaps"].sum()
+    for exchange in ("heaps", "off", "heaps"):
+        view.set_scene(scenes[exchange])
+        *_, last = each_news(view)
+        assert apart(last, right[exchange]) < 1e-3
+
+
 def test_they_are_seen_as_where_all_is_gathered():
     scene = lit(heap(white()))
     numpy.testing.assert_array_equal(rendered(scene, "heaps", 2).read(), rendered(scene, "gathered", 2).read())

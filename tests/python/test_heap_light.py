@@ -94,13 +94,15 @@ def test_a_heap_is_as_bright_as_it_is(file, model, exchange, total, error):
     assert numpy.abs(blocks(found) - blocks(truth)).sum() < error * blocks(truth).sum()
 
 
-# What met one ball alone, as mesograin-referee heap has it from 256 paths; measured: .998, 5.2 %; .943, 6.1 %.
-@pytest.mark.parametrize("model, total, error", [("model_2", 0.02, 0.06), ("model_3", 0.07, 0.07)])
-def test_light_that_meets_one_grain_alone(model, total, error):
-    truth = numpy.loadtxt(DATA / "M9_3_s45_own.csv", delimiter=",")
-    found = blocks(picture(IMAGES["M9_3_s45.exr"], model, "off"))
-    assert found.sum() == pytest.approx(truth.sum(), rel=total)
-    assert numpy.abs(found - truth).sum() < error * truth.sum()
+# What was scattered in one ball alone, and went straight through all others, as mesograin-referee heap has it from 512
+# paths. The bounds are what is asked for.
+@pytest.mark.parametrize("name, model", [("M9_3_s45", "model_2"), ("M9_3_s45", "model_3"), ("M9_1_low", "model_2"),
+                                         ("M999_3_sky", "model_2")])
+def test_light_that_meets_one_grain_alone(name, model):
+    truth = numpy.loadtxt(DATA / f"{name}_own.csv", delimiter=",")
+    found = blocks(picture(IMAGES[f"{name}.exr"], model, "off"))
+    assert found.sum() == pytest.approx(truth.sum(), rel=0.02)
+    assert numpy.abs(found - truth).sum() < 0.04 * truth.sum()
 
 
 # Balls that refract, eta 1.5 at .2 mean free paths to the radius and 1.3 at 3, albedo .999, under a sun of 20 degrees

@@ -177,10 +177,10 @@ class Path {
   const bool asks_;
   std::uint32_t seen_ = 0;
   double weight_ = 1;
-  bool changed_ = false;    // it is not the light itself that would be seen
-  bool crossed_ = false;    // it has met another ball than the one that is seen
-  bool elsewhere_ = false;  // and was scattered there
-  bool left_ = false;       // it has left the ball that is seen
+  bool changed_ = false;         // it is not the light itself that would be seen
+  bool crossed_ = false;         // it has met another ball than the one that is seen
+  bool elsewhere_ = false;       // and was scattered there
+  bool left_ = false;            // it has left the ball that is seen
   std::uint32_t scatterer_ = 0;  // where it was scattered first
   bool between_ = false;         // and then in another
 };
