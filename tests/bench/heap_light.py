@@ -65,7 +65,8 @@ def truth(native, referee, material, light, paths, folder):
     channel = dict(zip(names, numpy.moveaxis(pixels, -1, 0)))
     noise = numpy.sqrt(blocks((channel["noise.G"] ** 2)[..., None])) / 8.0
     colours = numpy.stack([channel[name] for name in "RGB"], -1)
-    return colours, float(noise.mean() / channel["G"].mean()), sum(channel[f"{name}.G"] for name in ("direct", "crossed", "behind"))[..., None]
+    own = sum(channel[f"{name}.G"] for name in ("direct", "crossed", "behind"))
+    return colours, float(noise.mean() / channel["G"].mean()), own[..., None]
 
 
 def blocks(picture):
