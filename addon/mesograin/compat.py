@@ -136,6 +136,12 @@ def refuses_writing(error):
     return any(part in str(error) for part in ("Writing to ID classes in this context", "can't modify blend data"))
 
 
+def casts_shadows(light):
+    """As Cycles has it: by a choice of its own, or, where it has none any more, by Blender's."""
+    own = getattr(light, "cycles", None)
+    return own.cast_shadow if hasattr(own, "cast_shadow") else light.use_shadow
+
+
 def has_even_lights():
     """Whether Cycles takes an area light's watts for those of a Lambertian emitter, and a spot for a point light in a
     cone. Before Blender 4.0 an area light had pi / 4 of that, and a spot weakened with the cosine from its axis."""

@@ -221,6 +221,56 @@ def test_sun_with_nodes(scene, render):
     assert_one_sentence(sentence, "Light 'Sun'", "strength", "left out")
 
 
+def test_a_picture_that_was_not_chosen(scene, render):
+    cube = bpy.data.objects["Cube"]
+    cube.active_material = paint = bpy.data.materials.new("Paint")
+    compat.use_nodes(paint)
+    shader = next(node for node in paint.node_tree.nodes if node.type == "BSDF_PRINCIPLED")
+    texture = paint.node_tree.nodes.new("ShaderNodeTexImage")
+    paint.node_tree.links.new(texture.outputs["Color"], shader.inputs["Base Color"])
+    [sentence] = warnings_of_render(render)[1]
+    assert_one_sentence(sentence, "Material 'Paint'", f"its node '{texture.name}' has no image")
+
+
+def test_a_volume_of_the_world_is_said(scene, render):
+    scene.world = bpy.data.worlds.new("Fog")
+    compat.use_nodes(scene.world)
+    tree = scene.world.node_tree
+    output = next(node for node in tree.nodes if node.type == "OUTPUT_WORLD")
+    scatter = tree.nodes.new("ShaderNodeVolumeScatter")
+    link = tree.links.new(scatter.outputs[0], output.inputs["Volume"])
+    [sentence] = warnings_of_render(render)[1]
+    assert_one_sentence(sentence, "World 'Fog'", "volume", "left out")
+    tree.links.remove(link)
+    assert warnings_of_render(render)[1] == ()
+
+
+@pytest.mark.parametrize("ask, words", [
+    (lambda cube: setattr(cube, "is_holdout", True), ("a holdout",)),
+    (lambda cube: setattr(cube, "is_shadow_catcher", True), ("a shadow catcher",)),
+    (lambda cube: (setattr(cube, "visible_camera", False), setattr(cube, "visible_shadow", False)),
+     ("hidden from camera and shadow rays",)),
+    (lambda cube: cube.modifiers.new("Fur", "PARTICLE_SYSTEM").particle_system.settings.__setattr__("type", "HAIR"),
+     ("hair 'Fur'", "convert it to a mesh")),
+])
+def test_what_an_object_asks_for_in_vain_is_said(scene, render, ask, words):
+    cube = bpy.data.objects["Cube"]
+    assert warnings_of_render(render)[1] == ()
+    ask(cube)
+    [sentence] = warnings_of_render(render)[1]
+    assert_one_sentence(sentence, "Object 'Cube'", "left out", *words)
+
+
+def test_a_light_without_shadows_is_said(scene, render):
+    light = bpy.data.lights["Sun"]
+    if hasattr(light.cycles, "cast_shadow"):
+        light.cycles.cast_shadow = False
+    else:
+        light.use_shadow = False
+    [sentence] = warnings_of_render(render)[1]
+    assert_one_sentence(sentence, "Light 'Sun'", "casts shadows")
+
+
 def test_empty_mesh(scene, render):
     add_mesh_object("Dust", [], [])
     add_mesh_object("Wire", [(0, 0, 0), (1, 0, 0)], [])

@@ -81,6 +81,10 @@ class Monkey:
             self.unanswered += 1
             self.press_escape()  # what a render complains of stands in a dialog that takes all keys
             return False
+        except RuntimeError as refusal:
+            if "poll()" not in str(refusal):
+                raise
+            return False  # Blender took the mouse to be elsewhere, amid a change of its areas
 
     def open(self, path, load_ui=False):
         bpy.ops.wm.open_mainfile(filepath=str(path), load_ui=load_ui)

@@ -9,8 +9,8 @@ import numpy as np
 
 from .. import compat, native_module
 from ..schema import models, parameters
-from . import (automatic, colours, heaps, instance_attributes, lens, lights, mesh_lights, meshes, node_colours,
-               plain_materials, properties, scattered, surroundings, textures)
+from . import (automatic, colours, heaps, instance_attributes, left_out, lens, lights, mesh_lights, meshes,
+               node_colours, plain_materials, properties, scattered, surroundings, textures)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -434,9 +434,9 @@ class _Reader:
         """Few placings become instances, which can be chosen one by one; many become heaps."""
         found = []
         for group in self._groups:
-            values, left_out = group.values()
-            if left_out:
-                self._warn(f"{left_out} instances of '{group.name}' are scaled to nothing or have a place that is no "
+            values, lost = group.values()
+            if lost:
+                self._warn(f"{lost} instances of '{group.name}' are scaled to nothing or have a place that is no "
                            "number, so they are not drawn.")
             for heap in values:
                 if len(heap) >= heaps.MANY:
@@ -487,6 +487,8 @@ class _Reader:
         if not meshes.has_extent(matrix_world):
             self._warn(f"Object '{evaluated_object.name}' is scaled to nothing, so it is not drawn.")
             return
+        for sentence in left_out.sentences(evaluated_object):
+            self._warn(sentence)
         for part in parts:
             material = self._material(evaluated_object, part.slot)
             self._instances.append(InstanceValues(evaluated_object.name, part.mesh, material, to_world,

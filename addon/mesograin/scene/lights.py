@@ -43,6 +43,8 @@ def read(evaluated_object, matrix_world):
     if not all(axes[number] > 0.5 for number in _AXES[light.type]):
         return None, (f"Light '{name}' is scaled to nothing, so it is left out.",)
     factor, sentences = _emission_of_nodes(light, name)
+    if not compat.casts_shadows(light):
+        sentences = (*sentences, f"Light '{name}' casts shadows, though it should not.")
     power = [own * node for own, node in zip(_power(light), factor)]
     return _READERS[light.type](light, name, power, matrix_world), sentences
 

@@ -17,11 +17,16 @@ class Unknown(Exception):
 
 
 class Lost(Unknown):
-    """An image that cannot be loaded; its name."""
+    """A picture that is not there; a clause on it."""
 
     @property
     def reason(self):
-        return f"its image '{self}' cannot be loaded"
+        return str(self)
+
+
+def cannot_load(image):
+    """Lost, to be raised."""
+    return Lost(f"its image '{image.name}' cannot be loaded")
 
 
 @dataclasses.dataclass
@@ -301,11 +306,13 @@ def _euler(angles):
 
 
 def _image(node, socket, places):
-    if node.image is None or node.projection != "FLAT" or node.image.source in ("TILED", "MOVIE", "SEQUENCE"):
+    if node.image is None:
+        raise Lost(f"its node '{node.name}' has no image")
+    if node.projection != "FLAT" or node.image.source in ("TILED", "MOVIE", "SEQUENCE"):
         raise Unknown(node.name)
     texels = images.texels(node.image)
     if texels is None:
-        raise Lost(node.image.name)
+        raise cannot_load(node.image)
     at = vector(node.inputs["Vector"], places, "UV")
     looked_up = _looked_up(texels, at[:, :2], node.extension, node.interpolation != "Closest")
     if socket.name == "Alpha":
@@ -314,11 +321,13 @@ def _image(node, socket, places):
 
 
 def _environment(node, _socket, places):
-    if node.image is None or node.image.source in ("TILED", "MOVIE", "SEQUENCE"):
+    if node.image is None:
+        raise Lost(f"its node '{node.name}' has no image")
+    if node.image.source in ("TILED", "MOVIE", "SEQUENCE"):
         raise Unknown(node.name)
     texels = images.texels(node.image)
     if texels is None:
-        raise Lost(node.image.name)
+        raise cannot_load(node.image)
     towards = vector(node.inputs["Vector"], places, "generated")
     towards = towards / np.maximum(np.linalg.norm(towards, axis=1, keepdims=True), 1e-30)
     x, y, z = towards.T

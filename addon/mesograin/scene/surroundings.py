@@ -45,8 +45,15 @@ def read(scene, side=SIDE):
     if world is None:
         return WorldValues(), ()
     values, sentences = _read(world, side)
+    if _has_volume(world):
+        sentences = (*sentences, f"World '{world.name}' has a volume, which is left out.")
     # Where nothing shines the picture is black, whether the world is drawn or not.
     return dataclasses.replace(values, seen=values.shines and not scene.render.film_transparent), sentences
+
+
+def _has_volume(world):
+    output = world.node_tree.get_output_node("CYCLES") if compat.uses_nodes(world) else None
+    return output is not None and output.inputs["Volume"].is_linked
 
 
 def _read(world, side):

@@ -85,7 +85,7 @@ def _image(node, box):
         return None
     picture = images.picture(node.image)
     if picture is None:
-        raise node_colours.Lost(node.image.name)
+        raise node_colours.cannot_load(node.image)
     # An affine map is known from where it takes the origin and the ends of the axes.
     probes = np.array(((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)))
     places = node_colours.Places({"UV": probes * (1.0, 1.0, 0.0), "object": probes, "generated": box.generated(probes)})
