@@ -50,6 +50,14 @@ bool on_main_thread() {
   return threading.attr("current_thread")().is(threading.attr("main_thread")());
 }
 
+/// Whether it is ready after so long; nothing: at last.
+template <typename Result>
+bool wait_for(const std::shared_future<Result>& future, std::optional<double> seconds) {
+  if (seconds) return future.wait_for(std::chrono::duration<double>(*seconds)) == std::future_status::ready;
+  future.wait();
+  return true;
+}
+
 // Waits without the GIL, but looks for Ctrl-C often enough that it seems immediate. On another thread it does not look:
 // each look is Python running beside Blender's main thread, which Blender before Python 3.12 does not always survive.
 void render(render::View& view, int samples) {
@@ -76,19 +84,26 @@ void render(render::View& view, int samples) {
   done.get();
 }
 
+// A scene that is being taken, for a caller who has something else to do.
+class Taking {
+ public:
+  Taking(render::View& view, scene::Scene scene) : done_(view.start_scene(std::move(scene))) {}
+
+  bool wait(std::optional<double> seconds) const { return wait_for(done_, seconds); }
+  bool done() const { return wait(0.0); }
+  void result() const { done_.get(); }
+
+ private:
+  std::shared_future<void> done_;
+};
+
 // Samples under way, for a caller who has something else to do. The work is the device thread's: no thread of Python's
 // waits for it.
 class Rendering {
  public:
   Rendering(render::View& view, int samples) : seconds_(view.start(samples)) {}
 
-  bool wait(std::optional<double> seconds) const {
-    if (!seconds) {
-      seconds_.wait();
-      return true;
-    }
-    return seconds_.wait_for(std::chrono::duration<double>(*seconds)) == std::future_status::ready;
-  }
+  bool wait(std::optional<double> seconds) const { return wait_for(seconds_, seconds); }
   bool done() const { return wait(0.0); }
   double result() const { return seconds_.get(); }
 
@@ -296,6 +311,11 @@ void bind_view(py::module_& module) {
            "Waits for their end, if `seconds` is given at most so long; whether it has come.")
       .def("result", &Rendering::result, Release(),
            "Waits for their end; the seconds that they took. Raises Error as View.render() does.");
+  py::class_<Taking>(module, "Taking", "A scene that View.start_scene() gave the view.")
+      .def_property_readonly("done", &Taking::done, "Whether the view has it, or it has failed.")
+      .def("wait", &Taking::wait, py::arg("seconds") = py::none(), Release(),
+           "Waits for that, if `seconds` is given at most so long; whether it has come.")
+      .def("result", &Taking::result, Release(), "Waits for that. Raises Error as View.set_scene() does.");
   py::class_<render::View>(
       module, "View",
       "An image of a scene, through a camera or unwrapped, that gets better with every sample (box pixel filter, "
@@ -309,6 +329,11 @@ void bind_view(py::module_& module) {
            "Reallocates the targets and nothing else.")
       .def("set_scene", &render::View::set_scene, py::arg("scene"), Release(),
            "Restarts the accumulation. Meshes and materials already on the device are not sent again.")
+      .def(
+          "start_scene", [](render::View& view, scene::Scene scene) { return Taking(view, std::move(scene)); },
+          py::arg("scene"), Release(),
+          "As set_scene(), without waiting: gives the Taking under way. Whatever else is asked of the view waits for "
+          "it.")
       .def("set_taps", &render::View::set_taps, py::arg("taps"), Release(),
            "Sets how many light map samples model 3 takes for one pixel and sample, over all lights (default 16), and "
            "restarts the\n"

@@ -35,9 +35,14 @@ std::uint64_t next_id() {
 
 }  // namespace
 
+void View::wait_for_scene() const {
+  if (taking_.valid()) taking_.wait();
+}
+
 // After the samples that were asked for before.
 template <typename Change>
 auto View::change(Change&& work) {
+  wait_for_scene();
   if (under_way_.valid()) under_way_.wait();
   return gl::ContextThread::instance().run(std::forward<Change>(work));
 }
@@ -66,14 +71,20 @@ void View::resize(int width, int height) {
   height_ = height;
 }
 
-void View::set_scene(scene::Scene scene) {
+void View::set_scene(scene::Scene scene) { start_scene(std::move(scene)).get(); }
+
+std::shared_future<void> View::start_scene(scene::Scene scene) {
   validate(scene);
-  change([&] {
+  wait_for_scene();
+  if (under_way_.valid()) under_way_.wait();
+  auto take = [this, scene = std::move(scene)]() mutable {
     frame(id_).set_scene(std::move(scene));
     computations_ = frame(id_).computations();
     solving_ = frame(id_).solving();
-  });
-  *samples_ = 0;
+    *samples_ = 0;
+  };
+  taking_ = gl::ContextThread::instance().post(std::move(take)).share();
+  return taking_;
 }
 
 void View::set_camera(const scene::Camera& camera) {
@@ -122,6 +133,7 @@ bool View::take_news() {
 }
 
 std::optional<double> View::preparing() const {
+  wait_for_scene();
   double sum = 0.0;
   bool final = true;
   for (const auto& computation : computations_) {
@@ -136,6 +148,7 @@ std::optional<double> View::preparing() const {
 }
 
 std::vector<std::string> View::warnings() const {
+  wait_for_scene();
   std::vector<std::string> sentences;
   for (const auto& computation : computations_) {
     const std::string unsuitable = computation->news().unsuitable;
@@ -157,6 +170,7 @@ void View::render(int samples) { start(samples).get(); }
 
 std::shared_future<double> View::start(int samples) {
   if (samples < 1) throw Error("A view needs at least one sample to render; got {}.", samples);
+  wait_for_scene();
   const auto cancelled = [up_to = cancelled_, number = ++started_] { return *up_to >= number; };
   const auto go_on = [cancelled] { return !cancelled(); };
   std::function<std::optional<double>()> add_sample = [id = id_, done = samples_, go_on, news = patient_,

@@ -35,6 +35,10 @@ class View {
   /// Restarts the accumulation. Meshes and materials already on the device are not sent again.
   void set_scene(scene::Scene scene);
 
+  /// As set_scene(), without waiting; the future is ready when the view has it. Whatever else is asked of the view
+  /// until then waits for that, but for cancel() and samples().
+  std::shared_future<void> start_scene(scene::Scene scene);
+
   /// Restarts the accumulation and sends nothing.
   void set_camera(const scene::Camera& camera);
 
@@ -123,8 +127,10 @@ class View {
   int width_;
   int height_;
   bool patient_;
+  // The thread's until a scene that is being taken is.
   std::vector<std::shared_ptr<const transport::Computation>> computations_;
   std::shared_ptr<const heap::Solving> solving_;  // null where no light goes from grain to grain
+  std::shared_future<void> taking_;               // a scene; not valid before the first
   std::shared_ptr<std::atomic<int>> samples_ = std::make_shared<std::atomic<int>>(0);
   std::shared_future<double> under_way_;  // what was started last; not valid before
   std::atomic<std::uint64_t> started_ = 0;
@@ -133,6 +139,7 @@ class View {
 
   template <typename Change>
   auto change(Change&& work);
+  void wait_for_scene() const;
 };
 
 }  // namespace mesograin::render

@@ -50,6 +50,31 @@ class Withheld:
         return self.told and self._view.take_news()
 
 
+class Taken:
+    """A native.View that has taken a scene once `open` is set: as one of very many instances."""
+
+    class Taking:
+        def __init__(self, taking, is_open):
+            self._taking, self._open = taking, is_open
+
+        def wait(self, seconds=None):
+            return self._open.wait(seconds) and self._taking.wait(seconds)
+
+        def result(self):
+            assert self._open.is_set()
+            return self._taking.result()
+
+    def __init__(self, view):
+        self._view, self.open = view, threading.Event()
+
+    def __getattr__(self, name):
+        assert self.open.is_set() or name in ("width", "height", "cancel"), f"{name} waits for the scene"
+        return getattr(self._view, name)
+
+    def start_scene(self, scene):
+        return Taken.Taking(self._view.start_scene(scene), self.open)
+
+
 @pytest.fixture
 def drag(native, blend_files, monkeypatch):
     """drag(sample_seconds, redraw_seconds): a new reflectance for each redraw, which takes as long, or with None as
@@ -142,6 +167,30 @@ def test_it_is_known_how_long_a_change_waits_for_its_picture(drag):
         assert time.monotonic() < deadline
         session.advance(2)
     assert session.seconds_behind == 0.0
+
+
+def test_no_redraw_waits_for_a_scene_to_be_taken(drag, native):
+    _, session = drag(sample_seconds=0.0, redraw_seconds=0.0)
+    while session.busy or session.samples < 2:
+        session.advance(2)
+    grain = bpy.data.materials["Translucent"].mesograin
+    view = session._view = Taken(session._view)
+    for step in range(3):  # a change that comes meanwhile is another
+        grain.reflectance = (0.9 - 0.1 * step,) * 3
+        session.set_scene(export.read_scene(bpy.context.evaluated_depsgraph_get(), meshes.MeshCache()))
+        session.set_camera(native.Camera.look_at((0.0, 0.0, 9.0 + step), (0.0, 0.0, 0.0), (0.0, 1.0, 0.0), 45.0), *SIZE)
+        assert session.advance(2) is None and session.busy and not session.waits
+        assert session.picture() is None and session.preparing == 0.0 and session.warnings == ()
+    view.open.set()
+    pictures = []
+    while session.busy or session.samples < 2:
+        picture = session.advance(2)
+        pictures += [] if picture is None else [picture.copy()]
+    right = native.View(*SIZE)
+    right.set_scene(export.scene_from_depsgraph(bpy.context.evaluated_depsgraph_get())[0])
+    right.set_camera(native.Camera.look_at((0.0, 0.0, 11.0), (0.0, 0.0, 0.0), (0.0, 1.0, 0.0), 45.0))
+    right.render(2)
+    np.testing.assert_allclose(pictures[-1], right.read(), atol=1e-5)
 
 
 def test_an_error_of_what_was_shown_before_is_not_that_of_what_is_shown(drag, native, monkeypatch):

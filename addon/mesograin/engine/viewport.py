@@ -30,6 +30,7 @@ class Session:
         self._values = None  # of the scene that was last asked for
         self._camera = None
         self._next_scene = self._next_camera = None  # asked for, and not yet the view's
+        self._taking = None  # a scene that the view is being given
         self._view = None
         self._pixels = None
         self._kept = None  # (picture, samples) that is finished, and not yet returned
@@ -81,7 +82,10 @@ class Session:
         float32 with row 0 at the top, when it is new, else None."""
         self._target = target
         self._keep_busy()
-        if self._task is not None:
+        if self._taking is not None:
+            if self._taking.wait(PATIENCE_SECONDS):
+                self._apply()
+        elif self._task is not None:
             if self._task.wait(PATIENCE_SECONDS):
                 self._finish()
         elif self._fade:
@@ -95,16 +99,17 @@ class Session:
 
     def picture(self):
         """The picture as it is, as `advance` returns it; waits for samples under way. None before the first."""
-        return self._read() if self._seen else None
+        return self._read() if self._seen and self._taking is None else None
 
     @property
     def busy(self):
-        return self._task is not None or self._preparing or self._fade is not None
+        return self._taking is not None or self._task is not None or self._preparing or self._fade is not None
 
     @property
     def waits(self):
         """Whether redraws would show nothing new until more is known of what the view draws: `look` tells when."""
-        return self._preparing and self._task is None and self._fade is None and self._kept is None
+        return (self._preparing and self._taking is None and self._task is None and self._fade is None
+                and self._kept is None)
 
     def look(self):
         """Whether a session that waits has a reason for a redraw. Starts samples of what has become known."""
@@ -119,12 +124,12 @@ class Session:
     @property
     def preparing(self):
         """The share that is done of what will make the picture better; None if there is nothing."""
-        return self._view.preparing
+        return self._view.preparing if self._taking is None else 0.0
 
     @property
     def warnings(self):
         """Sentences on what is not drawn by the model asked for."""
-        return tuple(self._view.warnings)
+        return tuple(self._view.warnings) if self._taking is None else ()
 
     def __del__(self):
         # Blender lets go of an engine, and so of its session, without a call that could be relied upon.
@@ -134,7 +139,7 @@ class Session:
         """Ends the work under way and frees the view; the session cannot be used afterwards."""
         self._interrupt()
         self._preparing = False
-        self._view = self._values = self._next_scene = self._next_camera = self._kept = None
+        self._view = self._taking = self._values = self._next_scene = self._next_camera = self._kept = None
         self.cache.forget()
         self.stopped = True
 
@@ -153,20 +158,39 @@ class Session:
         self._apply()
 
     def _apply(self):
-        """Makes what was asked for the view's, if no samples are under way, and goes on."""
-        if self._task is not None:
+        """Makes what was asked for the view's, if no samples are under way, and goes on. A scene of very many instances
+        takes the view a while, which no redraw waits for."""
+        if self._task is not None or not self._take_scene():
             return
-        if self._next_scene is not None or self._next_camera is not None:
-            if self._next_scene is not None:
-                self._view.set_scene(self._next_scene)
-            if self._next_camera is not None:
-                self._view.set_camera(self._next_camera)
-            self._next_scene = self._next_camera = None
-            self._preparing = True
-            self._restart()
+        if self._next_camera is not None:
+            self._view.set_camera(self._next_camera)
+            self._next_camera = None
+            self._begin()
         self._keep_busy()
 
+    def _take_scene(self):
+        """Whether the view has the scene that was asked for last. Raises native.Error as View.set_scene."""
+        while self._taking is not None or self._next_scene is not None:
+            if self._taking is None:
+                self._taking, self._next_scene = self._view.start_scene(self._next_scene), None
+            if not self._taking.wait(PATIENCE_SECONDS):
+                return False
+            taking, self._taking = self._taking, None
+            try:
+                taking.result()
+            except native_module.get().Error:
+                self._values = None  # the next update takes nothing for shown
+                raise
+            self._begin()
+        return True
+
+    def _begin(self):
+        self._preparing = True
+        self._restart()
+
     def _keep_busy(self):
+        if self._taking is not None:
+            return
         if self._task is None and self._preparing:
             self._preparing = self._view.preparing is not None  # asked first, so that the last news is not missed
             if self._view.take_news():
