@@ -30,9 +30,15 @@ Instances::Instances(DeviceCache& cache, const std::vector<scene::InstanceArray>
   std::size_t count = 0;
   for (const scene::InstanceArray& array : arrays) count += array.object_to_world().size();
   rows_.reserve(3 * count);
-  balls_.reserve(count);
+  radii_.reserve(count);
   members_.reserve(count);
-  for (const scene::InstanceArray& array : arrays) add(cache, array, anchor);
+  bool ordered = true;
+  for (const scene::InstanceArray& array : arrays) {
+    const std::size_t begin = members_.size();
+    add(cache, array, anchor);
+    for (std::size_t i = begin; i < members_.size() && ordered; ++i) ordered = members_[i] == i - begin;
+  }
+  if (ordered) members_ = {};
 }
 
 std::size_t Instances::prototype(DeviceCache& cache, const scene::MeshPointer& mesh) {
@@ -62,14 +68,14 @@ void Instances::add(DeviceCache& cache, const scene::InstanceArray& array, const
         array.material.scale * (array.material.sigma_a + (1.0 - array.material.g) * array.material.sigma_s);
     group.mean_free_paths_across =
         2.0 * mesh.reach() * group.typical_scale * std::max({reduced.r, reduced.g, reduced.b});
-    group.first = static_cast<std::uint32_t>(balls_.size());
+    group.first = static_cast<std::uint32_t>(radii_.size());
     group.count = static_cast<std::uint32_t>(alike.members.size());
     groups_.push_back(std::move(group));
     for (const std::size_t member : alike.members) {
       members_.push_back(static_cast<std::uint32_t>(member));
       rows_.resize(rows_.size() + 3);
-      balls_.emplace_back();
-      place(balls_.size() - 1, mesh, array.object_to_world()[member], anchor);
+      radii_.emplace_back();
+      place(radii_.size() - 1, mesh, array.object_to_world()[member], anchor);
     }
   }
 }
@@ -82,8 +88,8 @@ void Instances::place(std::size_t instance, const scene::Mesh& mesh, const glm::
   for (int row = 0; row < 3; ++row)
     rows_[3 * instance + static_cast<std::size_t>(row)] =
         glm::vec4(linear[0][row], linear[1][row], linear[2][row], place[row]);
-  balls_[instance] = glm::vec4(glm::vec3(place), static_cast<float>(mesh.reach() * largest_stretch(linear)));
-  bounds_.include(glm::dvec3(balls_[instance]), balls_[instance].w);
+  radii_[instance] = static_cast<float>(mesh.reach() * largest_stretch(linear));
+  bounds_.include(glm::dvec3(ball(instance)), radii_[instance]);
 }
 
 void Instances::place(const std::vector<scene::InstanceArray>& arrays, const glm::dvec3& anchor) {
@@ -91,9 +97,12 @@ void Instances::place(const std::vector<scene::InstanceArray>& arrays, const glm
   tree_.reset();
   device_.reset();
   std::size_t instance = 0;
-  for (const scene::InstanceArray& array : arrays)
-    for (const std::size_t end = instance + array.object_to_world().size(); instance < end; ++instance)
-      place(instance, *array.mesh, array.object_to_world()[members_[instance]], anchor);
+  for (const scene::InstanceArray& array : arrays) {
+    const std::size_t begin = instance;
+    for (const std::size_t end = begin + array.object_to_world().size(); instance < end; ++instance)
+      place(instance, *array.mesh, array.object_to_world()[members_.empty() ? instance - begin : members_[instance]],
+            anchor);
+  }
 }
 
 void Instances::take_places(Instances& before) {
@@ -171,7 +180,7 @@ Selection Instances::select(const glm::dmat4& anchor_to_clip, int width, int hei
     const Details& details = *prototypes_[group.prototype].details;
     by_level.assign(details.count(), {});
     for (std::uint32_t i = group.first; i < group.first + group.count; ++i) {
-      const glm::vec4& ball = balls_[i];
+      const glm::vec4 ball = this->ball(i);
       const glm::vec4 place(glm::vec3(ball), 1.0F);
       bool seen = true;
       for (int plane = 0; plane < 6 && seen; ++plane) seen = glm::dot(planes[plane], place) > -ball.w * lengths[plane];

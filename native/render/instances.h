@@ -81,10 +81,13 @@ class Instances {
   const std::vector<InstanceGroup>& groups() const { return groups_; }
   std::vector<Prototype>& prototypes() { return prototypes_; }
   const std::vector<Prototype>& prototypes() const { return prototypes_; }
-  std::size_t count() const { return balls_.size(); }
+  std::size_t count() const { return radii_.size(); }
 
   /// The ball that holds an instance: xyz its middle, from the anchor; w its radius.
-  const glm::vec4& ball(std::size_t instance) const { return balls_[instance]; }
+  glm::vec4 ball(std::size_t instance) const {
+    const glm::vec4* of = rows(instance);
+    return {of[0].w, of[1].w, of[2].w, radii_[instance]};
+  }
 
   /// Three rows of its transform: object to anchor's space, the middle of the bounds at the origin.
   const glm::vec4* rows(std::size_t instance) const { return &rows_[3 * instance]; }
@@ -120,9 +123,9 @@ class Instances {
 
   std::vector<Prototype> prototypes_;
   std::vector<InstanceGroup> groups_;
-  std::vector<glm::vec4> rows_;  // three an instance
-  std::vector<glm::vec4> balls_;
-  std::vector<std::uint32_t> members_;  // of each instance, which it is of its array
+  std::vector<glm::vec4> rows_;         // three an instance
+  std::vector<float> radii_;            // of the balls
+  std::vector<std::uint32_t> members_;  // of each instance, which it is of its array; empty where they are in order
   Bounds bounds_;
   std::unique_ptr<casting::PlacedTree> tree_;
   mutable std::optional<gl::Buffer> device_;  // the rows, sent on first use
