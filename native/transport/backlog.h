@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <chrono>
 #include <condition_variable>
 #include <functional>
 #include <mutex>
@@ -19,7 +20,15 @@ class Backlog {
   /// Called on the thread, a job at a time. Asked to stop, it is waited for.
   using Work = std::function<void(const Job&, const std::stop_token&)>;
 
-  explicit Backlog(Work work) : work_(std::move(work)) {}
+  /// Called on the thread once there was no job for so long; tells whether it shall be called again.
+  using Rest = std::function<bool()>;
+
+  explicit Backlog(Work work)
+      : Backlog(
+            std::move(work), [] { return false; }, std::chrono::milliseconds(0)) {}
+
+  Backlog(Work work, Rest rest, std::chrono::milliseconds pause)
+      : work_(std::move(work)), rest_(std::move(rest)), pause_(pause) {}
 
   /// Returns at once. The thread starts with the first job.
   void add(Job job) {
@@ -37,17 +46,27 @@ class Backlog {
     // Of this thread and those that it starts.
     if (::nice(niceness) < 0) { /* then it competes with drawing */
     }
+    const auto any = [this] { return !jobs_.empty(); };
+    bool rests = false;
     while (true) {
       std::unique_lock lock(mutex_);
-      if (!wake_.wait(lock, stop, [this] { return !jobs_.empty(); })) return;
+      while (rests && !wake_.wait_for(lock, stop, pause_, any) && !stop.stop_requested()) {
+        lock.unlock();
+        rests = rest_();
+        lock.lock();
+      }
+      if (!wake_.wait(lock, stop, any)) return;
       const Job job = std::move(jobs_.back());
       jobs_.pop_back();
       lock.unlock();
       work_(job, stop);
+      rests = true;
     }
   }
 
   const Work work_;
+  const Rest rest_;
+  const std::chrono::milliseconds pause_;
   std::mutex mutex_;
   std::condition_variable_any wake_;
   std::vector<Job> jobs_;

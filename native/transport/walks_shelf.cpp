@@ -25,8 +25,8 @@ void WalksShelf::trim(const std::function<bool(const std::string& body)>& in_use
   for (auto book = books_.begin(); book != books_.end();) {
     const std::size_t bytes = book->walks->bytes();
     const std::size_t bytes_of_gone = in_use(book->body) ? 0 : bytes;
-    const bool too_much = sum + bytes > limit_ || (bytes_of_gone > 0 && sum_of_gone + bytes_of_gone > limit_of_gone_);
-    if (too_much && book != books_.begin()) {
+    const bool too_many_gone = bytes_of_gone > 0 && sum_of_gone + bytes_of_gone > limit_of_gone_;
+    if (too_many_gone || (sum + bytes > limit_ && book != books_.begin())) {
       book = books_.erase(book);
       continue;
     }

@@ -27,7 +27,8 @@ class WalksShelf {
 
   void put(const std::string& body, const std::string& quality, std::shared_ptr<Walks> walks);
 
-  /// Lets go of what is too much by now; what was asked for last stays. `in_use`: whether a body is in a scene.
+  /// Lets go of what is too much by now; what was asked for last stays while it is in use. `in_use`: whether a body is
+  /// in a scene.
   void trim(const std::function<bool(const std::string& body)>& in_use);
 
   std::size_t bytes() const;

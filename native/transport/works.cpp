@@ -170,8 +170,13 @@ void Works::work(const Job& job, const std::stop_token& stop) {
   } catch (const std::exception& failure) {
     tell(nullptr, failure.what(), true);
   }
+  let_go();
+}
+
+bool Works::let_go() {
   shelf_.trim([this](const std::string& about_body) { return in_use(about_body); });
   bytes_of_walks_ = shelf_.bytes();
+  return bytes_of_walks_ > WalksShelf::default_limit_of_gone;
 }
 
 }  // namespace mesograin::transport

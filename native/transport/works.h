@@ -61,14 +61,21 @@ class Works {
   /// The one that all share; its thread starts with the first order.
   static Works& instance();
 
-  explicit Works(TransportCache cache = TransportCache()) : cache_(std::move(cache)) {}
+  /// How long after the last work walks of bodies that are in no scene any more are let go of, again and again while
+  /// there are many: an artist may but look at something else for a moment.
+  static constexpr std::chrono::milliseconds default_pause{5000};
+
+  explicit Works(TransportCache cache = TransportCache(), std::chrono::milliseconds pause = default_pause)
+      : cache_(std::move(cache)),
+        jobs_([this](const Job& job, const std::stop_token& stop) { work(job, stop); }, [this] { return let_go(); },
+              pause) {}
   Works(const Works&) = delete;
   Works& operator=(const Works&) = delete;
 
   /// Returns at once, all being known already if it was kept. The order that came last is worked on first.
   std::shared_ptr<const Computation> ask(Order order);
 
-  /// Bytes of the walks that were kept for other media when the last order was done.
+  /// Bytes of the walks that are kept for other media, as of the last order that was done or let go of.
   std::size_t bytes_of_walks() const { return bytes_of_walks_; }
 
  private:
@@ -91,12 +98,15 @@ class Works {
   void work(const Job& job, const std::stop_token& stop);
   std::shared_ptr<Walks> walks(const Job& job, const Quality& quality, const Effort& effort);
 
+  /// Of walks that are too many by now; tells whether later more may be.
+  bool let_go();
+
   TransportCache cache_;
   mutable std::mutex mutex_;
   std::vector<Asked> asked_;
   WalksShelf shelf_;  // of the thread
   std::atomic<std::size_t> bytes_of_walks_{0};
-  Backlog<Job> jobs_{[this](const Job& job, const std::stop_token& stop) { work(job, stop); }};
+  Backlog<Job> jobs_;
 };
 
 }  // namespace mesograin::transport

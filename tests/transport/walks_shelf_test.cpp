@@ -71,11 +71,13 @@ TEST_F(WalksShelfTest, BodiesThatAreGoneDoNotPushOutThoseInUse) {
   EXPECT_EQ(kept(shelf, 7), "016") << "the oldest are in use";
 }
 
-TEST_F(WalksShelfTest, KeepsTheLastWhateverItTakes) {
+TEST_F(WalksShelfTest, KeepsTheLastWhateverItTakesWhileItIsInUse) {
   WalksShelf shelf(0, 0);
   put(shelf, 2);
   shelf.trim(all);
   EXPECT_EQ(kept(shelf, 2), "1");
+  shelf.trim(none);
+  EXPECT_EQ(kept(shelf, 2), "");
 }
 
 }  // namespace

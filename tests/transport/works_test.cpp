@@ -9,6 +9,8 @@
 #include <fstream>
 #include <memory>
 #include <string>
+#include <thread>
+#include <vector>
 
 #include "base/file.h"
 #include "shapes.h"
@@ -168,6 +170,23 @@ TEST_F(WorksTest, KeepsTheWalksOfBodiesInUseAndFewOfOthers) {
   const auto fourth = works.ask(stretched(1.3));
   finish(*fourth);
   EXPECT_LE(bytes_of_walks(works), two + WalksShelf::default_limit_of_gone);
+}
+
+TEST_F(WorksTest, LetsGoOfWalksOnceTheirBodiesAreInNoScene) {
+  Works works{TransportCache(folder_), 20ms};
+  std::vector<std::shared_ptr<const Computation>> held;
+  for (const double factor : {1.0, 1.1, 1.2}) {
+    held.push_back(works.ask(stretched(factor)));
+    finish(*held.back());
+  }
+  const std::size_t all = bytes_of_walks(works);
+  ASSERT_GT(all, WalksShelf::default_limit_of_gone) << "or there is nothing to let go of";
+  std::this_thread::sleep_for(200ms);
+  EXPECT_EQ(works.bytes_of_walks(), all) << "they are in use";
+  held.clear();
+  for (int tries = 0; tries < 1000 && works.bytes_of_walks() > WalksShelf::default_limit_of_gone; ++tries)
+    std::this_thread::sleep_for(20ms);
+  EXPECT_LE(works.bytes_of_walks(), WalksShelf::default_limit_of_gone) << "no order came after them";
 }
 
 TEST_F(WorksTest, SaysWhatIsNothingForIt) {
