@@ -247,8 +247,10 @@ void Gather::follow_look(SeenFacet seen, const Facets& facets, const Look& how, 
       return;
     }
     if (asks_how_much && crosses) {
-      const glm::vec3 passed = glm::exp(-glm::vec3(optics.sigma_t) * (passage->length / grain.radius_of_kind()));
+      const float way = passage->length / grain.radius_of_kind();
+      const glm::vec3 passed = glm::exp(-way * glm::vec3(optics.sigma_t));
       sum.others += glm::vec3(optics.albedo) * (1.0F - passed) * scattered_in(seen).of_others;
+      weight *= glm::exp(-way * glm::vec3(optics.sigma_t * (1.0 - optics.albedo)));
     }
     // What else the grain that is seen makes of the lights is its model's, or highlights().
     const bool straight = passage->entered && !passage->scattered;

@@ -86,7 +86,7 @@ class Gather {
   struct Look {
     Scatterings scatterings;  ///< in this grain; where they end, its numbers tell what others make of them
     bool whole;               ///< no model tells what lights and the world do in it and at its surface
-    bool alone = false;       ///< its model tells how much crosses it, and the look of what
+    bool alone = false;       ///< its model tells how much scattering leaves of what crosses it, and the look of what
   };
 
   /// What look() shows, through the grain's own facets and other clear grains that stand behind it, and the world and

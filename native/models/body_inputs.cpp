@@ -140,7 +140,9 @@ void add_clear(const std::array<BodyMedium, 3>& media, const BodySurface& surfac
   const glm::dvec3 sigma_t(media[0].rest_sigma_t(), media[1].rest_sigma_t(), media[2].rest_sigma_t());
   if (seen_through(surface.eta, std::min({sigma_t.r, sigma_t.g, sigma_t.b})) < least_seen) return;
   inputs.defines.emplace_back("CLEAR");
-  inputs.uniforms["clear_sigma_t"] = glm::vec3(sigma_t);
+  const glm::dvec3 sigma_a(media[0].sigma_a, media[1].sigma_a, media[2].sigma_a);
+  inputs.uniforms["clear_sigma_a"] = glm::vec3(sigma_a);
+  inputs.uniforms["clear_sigma_s"] = glm::vec3(sigma_t - sigma_a);
   inputs.uniforms["clear_eta"] = static_cast<float>(surface.eta);
 }
 

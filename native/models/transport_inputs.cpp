@@ -225,7 +225,7 @@ MaterialInputs prototype_inputs(const scene::Material& material, const StoredTra
   inputs.uniforms["stored.last_node"] = glm::vec3(stored.size - 1);
   inputs.uniforms["stored.units"] = static_cast<float>(1.0 / stored.unit);
   inputs.uniforms["stored.sigma_t"] = glm::vec3(sigma_t);
-  if (!stored.has_unscattered) inputs.uniforms["stored.albedo"] = glm::vec3(stored_medium(material).albedo);
+  inputs.uniforms["stored.albedo"] = glm::vec3(stored_medium(material).albedo);
   if (stored.convex) inputs.defines.emplace_back("CONVEX");
   if (is_walked(material)) {
     add_forward(material, stored, inputs);

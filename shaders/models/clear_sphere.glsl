@@ -14,7 +14,9 @@
 #include "scene/world.glsl"
 
 #ifdef CLEAR
-uniform vec3 clear_sigma_t;  // per radius of the sphere; what is scattered within the phase function's forward peak goes on
+// Per radius of the sphere; what is scattered within the phase function's forward peak goes on.
+uniform vec3 clear_sigma_a;
+uniform vec3 clear_sigma_s;
 uniform float clear_eta;
 
 #if defined(WORLD) || defined(GATHERED)
@@ -26,7 +28,9 @@ vec3 crossing_light(SurfacePoint point, Outwards outwards) {
 #if defined(INSTANCED) && !defined(EXCHANGE)
   return vec3(0.0);
 #endif
-  vec3 passed = exp(-2.0 * outwards.mu_refracted * clear_sigma_t);
+  // A look through the grain's own facets is absorbed on its own way.
+  vec3 sigma_t = looked_through() ? clear_sigma_s : clear_sigma_s + clear_sigma_a;
+  vec3 passed = exp(-2.0 * outwards.mu_refracted * sigma_t);
   vec3 left = open_beyond(point.normal, point.to_viewer) * outwards.transmittance * passed;
 #ifdef REFRACTION
   vec3 normal = point.normal;

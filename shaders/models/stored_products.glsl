@@ -11,9 +11,7 @@ struct Stored {
   vec3 sigma_t;
   float units;  // of the body, a scene unit
   float eta;
-#ifndef REFRACTION
   vec3 albedo;
-#endif
 };
 uniform Stored stored;
 #ifndef INSTANCED

@@ -285,13 +285,18 @@ vec3 crossing_light(SurfacePoint point, Outwards outwards) {
   vec3 direction = direction_below;
   vec3 left = vec3(open_beyond(point.normal, point.to_viewer) * outwards.transmittance);
   vec3 sum = vec3(0.0);
+#ifdef WALKED
+  vec3 sigma_t = vec3(forward.sigma_s);
+  vec3 sigma_a = forward.sigma_a;
+#else
+  vec3 sigma_t = stored.sigma_t * stored.albedo;
+  vec3 sigma_a = stored.sigma_t - sigma_t;
+#endif
+  // A look through the grain's own facets is absorbed on its own way.
+  if (!looked_through()) sigma_t += sigma_a;
   for (int i = 0; i < MOST_WAYS; ++i) {
     float way = way_through(place, direction, FAR);
-#ifdef WALKED
-    vec3 passed = exp(-(forward.sigma_s + forward.sigma_a) * way);
-#else
-    vec3 passed = exp(-stored.sigma_t * way);
-#endif
+    vec3 passed = exp(-sigma_t * way);
     left *= passed;
     place += way * direction;
     vec3 normal = outwards_at(place);

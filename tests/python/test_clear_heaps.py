@@ -278,3 +278,71 @@ def test_suns_are_seen_through_one_crystal_as_wide_as_they_are():
     assert aside[16:32, 16:32].mean() < 0.01 * disc
     point = alone(dark, lights=[native.PointLight((0.0, 40.0, 0.3), (900.0,) * 3)])
     assert point[16:32, 16:32].mean() < 0.1
+
+
+def turned():
+    """A rotation that shows three faces of a cube to a camera along y."""
+    a, b = math.radians(35.0), math.radians(25.0)
+    about_z = numpy.array([[math.cos(a), -math.sin(a), 0.0], [math.sin(a), math.cos(a), 0.0], [0.0, 0.0, 1.0]])
+    about_x = numpy.array([[1.0, 0.0, 0.0], [0.0, math.cos(b), -math.sin(b)], [0.0, math.sin(b), math.cos(b)]])
+    return about_x @ about_z
+
+
+def reflected(cosine, eta):
+    """Of unpolarised light at a smooth surface (Fresnel), 1 where all is. `eta`: beyond it over before it."""
+    below_squared = 1.0 - (1.0 - cosine**2) / eta**2
+    below = numpy.sqrt(numpy.maximum(below_squared, 0.0))
+    upright = (cosine - eta * below) / (cosine + eta * below)
+    level = (eta * cosine - below) / (eta * cosine + below)
+    return numpy.where(below_squared > 0.0, 0.5 * (upright**2 + level**2), 1.0)
+
+
+def cube_in_white(half, eta, sigma_a, turn, rays=200):
+    """Mean over what is seen of a smooth cube that only absorbs, in a white world: each along its one way from facet
+    to facet, as the world is the same wherever some of it leaves."""
+    across = numpy.linspace(-2.0 * half, 2.0 * half, rays)
+    u, w = (plane.ravel() for plane in numpy.meshgrid(across, across))
+    origin = numpy.stack([u, numpy.full_like(u, -60.0), w], -1) @ turn  # turn's transpose, of each row
+    direction = numpy.broadcast_to(numpy.array([0.0, 1.0, 0.0]) @ turn, origin.shape).copy()
+    first = (-numpy.sign(direction) * half - origin) / direction
+    axis = numpy.argmax(first, axis=1)
+    rows = numpy.arange(len(origin))
+    place = origin + first[rows, axis, None] * direction
+    seen = (numpy.abs(place) <= half * (1.0 + 1e-9)).all(axis=1)
+    rows, axis, place, direction = rows[:seen.sum()], axis[seen], place[seen], direction[seen]
+    cosine = numpy.abs(direction[rows, axis])
+    mirrored = reflected(cosine, eta)
+    below = direction / eta
+    below[rows, axis] = 0.0
+    below[rows, axis] = numpy.sign(direction[rows, axis]) * numpy.sqrt(1.0 - (below**2).sum(axis=1))
+    radiance, left = mirrored.copy(), 1.0 - mirrored
+    for _ in range(200):
+        ways = (numpy.sign(below) * half - place) / below
+        axis = numpy.argmin(ways, axis=1)
+        way = ways[rows, axis]
+        place = place + way[:, None] * below
+        left = left * numpy.exp(-sigma_a * way)
+        again = reflected(numpy.abs(below[rows, axis]), 1.0 / eta)
+        radiance += left * (1.0 - again)
+        left = left * again
+        below[rows, axis] *= -1.0
+    return radiance.mean()
+
+
+# By a ball's chord what is totally reflected lost too little: red, green and blue were 8, 23 and 47 % too bright.
+@pytest.mark.parametrize("model", ["model_2", "model_3", "transport"])
+def test_a_crystal_alone_absorbs_on_the_way_that_light_takes_in_it(model):
+    sigma_a = (0.2, 0.6, 1.5)
+    stone = native.Material(model=model, sigma_a=sigma_a, sigma_s=(1e-6,) * 3, boundary="dielectric", eta=1.5)
+    transform = numpy.eye(4)
+    transform[:3, :3] = turned()
+    view = native.View(96, 96)
+    view.set_scene(native.Scene(instances=[native.Instance(cube(0.6), stone, transform)],
+                                world=native.World(radiance=(1.0, 1.0, 1.0)), exchange="heaps"))
+    view.set_camera(native.Camera.look_at((0.0, -60.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 1.0),
+                                          numpy.degrees(2.0 * numpy.arctan(1.1 / 60.0))))
+    view.render(32)
+    pixels = view.read()
+    shown = pixels[pixels[..., 3] > 0.999][:, :3].mean(axis=0)
+    truth = [cube_in_white(0.6, 1.5, sigma, turned()) for sigma in sigma_a]
+    assert shown == pytest.approx(truth, rel=0.015)
