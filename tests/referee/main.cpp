@@ -84,7 +84,8 @@ void add_half_space(CLI::App& application) {
 }
 
 void add_render(CLI::App& application) {
-  CLI::App* command = application.add_subcommand("render", "a picture of a scene's sphere, in OpenEXR, with its noise");
+  CLI::App* command = application.add_subcommand(
+      "render", "a picture of a scene's sphere, mesh or many meshes, in OpenEXR, with its noise");
   auto scene_path = std::make_shared<std::string>();
   auto output = std::make_shared<std::string>();
   auto choices = std::make_shared<mesograin::io::SceneChoices>();
@@ -101,13 +102,17 @@ void add_render(CLI::App& application) {
   command->callback([=] {
     mesograin::base::require_writable(*output);
     const mesograin::io::SceneFile file = mesograin::io::read_scene(*scene_path, *choices);
-    PictureCase setup = picture_case(file);
-    setup.samples = wanted->samples;
-    setup.seed = wanted->seed;
-    setup.threads = wanted->threads;
-    Progress progress(setup.height);
-    const Picture picture = trace_picture(setup, [&progress] { progress.row_done(); });
-    write_picture(*output, file, setup, picture);
+    Progress progress(file.height);
+    const auto trace = [&](auto setup, const auto& tracer) {
+      setup.samples = wanted->samples;
+      setup.seed = wanted->seed;
+      setup.threads = wanted->threads;
+      write_picture(*output, file, setup, tracer(setup, [&progress] { progress.row_done(); }));
+    };
+    if (is_heap(file))
+      trace(mesh_heap_case(file), trace_mesh_heap);
+    else
+      trace(picture_case(file), trace_picture);
   });
 }
 

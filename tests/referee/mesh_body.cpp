@@ -8,19 +8,12 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
+#include "box.h"
+
 namespace mesograin::referee {
 namespace {
 
 glm::dvec3 centre(const std::array<glm::dvec3, 3>& corners) { return (corners[0] + corners[1] + corners[2]) / 3.0; }
-
-/// Where a ray enters a box, infinity if it misses it or reaches it only beyond `furthest`.
-double entry(const glm::dvec3& lower, const glm::dvec3& upper, const glm::dvec3& origin, const glm::dvec3& inverse,
-             double furthest) {
-  const glm::dvec3 a = (lower - origin) * inverse, b = (upper - origin) * inverse;
-  const glm::dvec3 near = glm::min(a, b), far = glm::max(a, b);
-  const double begin = std::max({near.x, near.y, near.z, 0.0}), end = std::min({far.x, far.y, far.z, furthest});
-  return begin <= end * (1 + 1e-12) ? begin : std::numeric_limits<double>::infinity();
-}
 
 /// Distance along a ray to a triangle (Moeller and Trumbore, "Fast, minimum storage ray/triangle intersection", 1997).
 double meet(const std::array<glm::dvec3, 3>& corners, const glm::dvec3& origin, const glm::dvec3& direction) {
@@ -107,7 +100,7 @@ std::optional<MeshHit> MeshBody::first_hit(const glm::dvec3& origin, const glm::
     const std::size_t children[] = {task.node + 1, node.first};
     double begins[2];
     for (int i = 0; i < 2; ++i)
-      begins[i] = entry(nodes_[children[i]].lower, nodes_[children[i]].upper, origin, inverse, nearest);
+      begins[i] = Box{nodes_[children[i]].lower, nodes_[children[i]].upper}.entry(origin, inverse, nearest);
     const int nearer = begins[1] < begins[0] ? 1 : 0;
     for (const int child : {1 - nearer, nearer})
       if (begins[child] < nowhere) tasks[waiting++] = {children[child], begins[child]};

@@ -1,0 +1,176 @@
+// Scenes of many meshes: balls among them are those of the tracer of balls, and what is known exactly is found.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/ext/matrix_clip_space.hpp>
+#include <glm/ext/matrix_transform.hpp>
+#include <memory>
+#include <numbers>
+
+#include "base/error.h"
+#include "heap_picture.h"
+#include "mesh_heap_picture.h"
+#include "scene/sphere.h"
+
+namespace mesograin::referee {
+namespace {
+
+constexpr int across = 8;  // pixels
+
+/// Orthographic, along the z axis from above.
+MeshHeapCase seen_from_above(double half_width) {
+  MeshHeapCase setup;
+  setup.clip_to_world = glm::inverse(glm::ortho(-half_width, half_width, -half_width, half_width, 0.0, 100.0) *
+                                     glm::translate(glm::dmat4(1.0), glm::dvec3(0.0, 0.0, -50.0)));
+  setup.width = setup.height = across;
+  return setup;
+}
+
+scene::MeshPointer ball() {
+  static const auto mesh = std::make_shared<const scene::Mesh>(scene::unit_sphere(128, 64));
+  return mesh;
+}
+
+/// A square across z, its half side 1.
+scene::MeshPointer square() {
+  const std::vector<glm::vec3> corners{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+  return std::make_shared<const scene::Mesh>(corners, std::vector<glm::vec3>(4, {0, 0, 1}),
+                                             std::vector<glm::uvec3>{{0, 1, 2}, {0, 2, 3}});
+}
+
+scene::Material medium(double sigma_s, double sigma_a, double eta) {
+  scene::Material material;
+  material.model = scene::Model::model_2;
+  material.boundary = eta == 1.0 ? scene::Boundary::index_matched : scene::Boundary::dielectric;
+  material.sigma_s = glm::dvec3(sigma_s);
+  material.sigma_a = glm::dvec3(sigma_a);
+  material.eta = eta;
+  return material;
+}
+
+scene::Material diffuse(double reflectance) {
+  scene::Material material;
+  material.model = scene::Model::lambert;
+  material.reflectance = glm::dvec3(reflectance);
+  return material;
+}
+
+glm::dmat4 placed(const glm::dvec3& at, double scale = 1.0) {
+  return glm::scale(glm::translate(glm::dmat4(1.0), at), glm::dvec3(scale));
+}
+
+const std::vector<Ball> three{{{-1.0, 0.0, 0.0}, 1.0}, {{1.0, 0.0, 0.0}, 1.0}, {{0.0, 1.2, 1.4}, 0.8}};
+
+/// Three balls under a wide sun, by the means of whole pictures, where one is about a hundredth exact.
+double by_meshes(const scene::Material& material, const HeapLight& light, double& noise) {
+  MeshHeapCase setup = seen_from_above(2.0);
+  std::vector<glm::dmat4> places;
+  for (const Ball& of : three) places.push_back(placed(of.middle, of.radius));
+  setup.scene.arrays.emplace_back(ball(), material, scene::Transforms(places));
+  // On a plane that faces it pi, as of balls: a scene tells what a sphere gets.
+  const double irradiance = 2.0 * std::numbers::pi / (1.0 + light.cosine);
+  setup.scene.lights.emplace_back(
+      scene::DirectionalLight{light.direction, glm::dvec3(irradiance), 2.0 * std::acos(light.cosine)});
+  setup.samples = 4000;
+  const Picture picture = trace_mesh_heap(setup);
+  double sum = 0, variance = 0;
+  for (std::size_t i = 0; i < picture.radiance.size(); ++i) {
+    sum += picture.radiance[i].g;
+    variance += picture.noise[i].g * picture.noise[i].g;
+  }
+  noise = std::sqrt(variance) / sum;
+  return sum;
+}
+
+double by_balls(const HeapMaterial& material, const HeapLight& light) {
+  HeapCase setup;
+  setup.balls = three;
+  setup.material = material;
+  setup.light = light;
+  setup.camera = {{0, 0, 0}, {0, 0, -1}, {1, 0, 0}, {0, 1, 0}, 2.0, 2.0};
+  setup.width = setup.height = across;
+  setup.samples = 4000;
+  double sum = 0;
+  for (const HeapRadiance& of : trace_heap(setup).radiance) sum += of.all;
+  return sum;
+}
+
+TEST(MeshHeap, OfBallsIsTheBalls) {
+  const HeapLight sun{.sky = false, .direction = glm::normalize(glm::dvec3(0.5, -0.3, 1.0)), .cosine = std::cos(0.8)};
+  for (const double eta : {1.0, 1.5}) {
+    double noise = 0;
+    const double meshes = by_meshes(medium(1.5, 0.1, eta), sun, noise);
+    const double balls = by_balls({.sigma_s = 1.5, .sigma_a = 0.1, .eta = eta}, sun);
+    EXPECT_LT(noise, 0.01);
+    EXPECT_NEAR(meshes / balls, 1.0, 0.003 + 3.0 * std::numbers::sqrt2 * noise) << eta;
+  }
+}
+
+// Every path comes back with all that it had.
+TEST(MeshHeap, LosesNoLight) {
+  MeshHeapCase setup = seen_from_above(1.5);
+  setup.scene.world.radiance = glm::dvec3(1.0);
+  setup.scene.instances.push_back({ball(), medium(2.0, 0.0, 1.5), placed({0.3, 0.0, 0.0})});
+  setup.scene.instances.push_back({ball(), medium(0.0, 0.0, 1.3), placed({-0.8, 0.0, 1.8}, 0.7)});
+  setup.scene.instances.push_back({square(), diffuse(1.0), placed({0.0, 0.0, -1.1}, 3.0)});
+  setup.samples = 64;
+  const Picture picture = trace_mesh_heap(setup);
+  for (std::size_t i = 0; i < picture.radiance.size(); ++i) {
+    EXPECT_EQ(picture.coverage[i], 1.0);
+    EXPECT_NEAR(picture.radiance[i].g, 1.0, 1e-12);
+  }
+}
+
+// A plane sees of a sun what its share of each point of the disc comes to: E (1 + cos) / 2, times the cosine.
+TEST(MeshHeap, LightsAPlaneAsItsSunIsTold) {
+  MeshHeapCase setup = seen_from_above(0.5);
+  setup.scene.instances.push_back({square(), diffuse(0.6), placed({0.0, 0.0, 0.0})});
+  const glm::dvec3 to_light(0.6, 0.0, 0.8);
+  const double angle = 1.0;
+  setup.scene.lights.emplace_back(scene::DirectionalLight{to_light, glm::dvec3(1.0, 2.0, 3.0), angle});
+  setup.samples = 4000;
+  const Picture picture = trace_mesh_heap(setup);
+  glm::dvec3 mean(0.0);
+  for (const glm::dvec3& radiance : picture.radiance) mean += radiance / static_cast<double>(picture.radiance.size());
+  const double right = 0.6 / std::numbers::pi * to_light.z * (1.0 + std::cos(0.5 * angle)) / 2.0;
+  for (int channel = 0; channel < 3; ++channel) EXPECT_NEAR(mean[channel] / (right * (channel + 1)), 1.0, 0.01);
+}
+
+// Above the horizon, row 0 of the picture of the world, and along +x its middle column.
+TEST(MeshHeap, SeesTheWorldWhereItIs) {
+  std::vector<glm::vec3> texels(8 * 4, glm::vec3(0.0F));
+  texels[4] = texels[3] = glm::vec3(1.0F, 2.0F, 3.0F);  // high, on both sides of +x
+  MeshHeapCase setup = seen_from_above(0.5);
+  setup.scene.world.radiance = glm::dvec3(1.0);
+  setup.scene.world.image = std::make_shared<const scene::Surroundings>(8, 4, texels);
+  setup.scene.instances.push_back({square(), diffuse(1.0), placed({0.0, 0.0, 0.0})});
+  setup.samples = 4000;
+  const auto mean_of = [&] {
+    glm::dvec3 mean(0.0);
+    const Picture picture = trace_mesh_heap(setup);
+    for (const glm::dvec3& radiance : picture.radiance) mean += radiance / static_cast<double>(picture.radiance.size());
+    return mean;
+  };
+  // A quarter of all azimuths, within 45 degrees of the normal: half of what a Lambertian surface sees.
+  const glm::dvec3 upright = mean_of();
+  for (int channel = 0; channel < 3; ++channel) EXPECT_NEAR(upright[channel], 0.125 * (channel + 1), 0.01);
+  // Turned to +x: of the normal's part along it, that patch is the integrals of sin^2 and of cos, over pi.
+  const double turn = 0.7;
+  setup.scene.instances[0].object_to_world = glm::rotate(glm::dmat4(1.0), turn, glm::dvec3(0.0, 1.0, 0.0));
+  const double along_x = (std::numbers::pi / 8.0 - 0.25) * std::numbers::sqrt2 / std::numbers::pi;
+  EXPECT_NEAR(mean_of().r, 0.125 * std::cos(turn) + along_x * std::sin(turn), 0.005);
+}
+
+TEST(MeshHeap, SaysWhatItCannotTrace) {
+  MeshHeapCase setup = seen_from_above(1.0);
+  EXPECT_THROW(trace_mesh_heap(setup), Error);
+  setup.scene.instances.push_back({ball(), medium(1.0, 0.0, 1.5), placed({0.0, 0.0, 0.0})});
+  setup.scene.lights.emplace_back(scene::DirectionalLight{{0.0, 0.0, 1.0}, glm::dvec3(1.0), 0.0});
+  EXPECT_THROW(trace_mesh_heap(setup), Error);
+  setup.scene.lights.clear();
+  setup.scene.instances[0].material.roughness = 0.1;
+  EXPECT_THROW(trace_mesh_heap(setup), Error);
+}
+
+}  // namespace
+}  // namespace mesograin::referee
