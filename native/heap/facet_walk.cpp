@@ -116,6 +116,7 @@ std::optional<Passage> walk_facets(const Optics& optics, float radius, const See
       continue;
     }
     passage.place = facet->place;
+    passage.flat = facet->flat;
     if (facet->wall) {
       passage.wall = facet;
       return passage;

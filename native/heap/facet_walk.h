@@ -55,6 +55,7 @@ struct Passage {
   bool scattered;
   std::optional<Meeting> wall{};  ///< where it ends, if that is in the grain
   float length = 0.0F;            ///< of its way in the grain
+  bool flat = false;              ///< the facet by which it leaves, if it has entered
 };
 
 /// What becomes of a view ray that is scattered.

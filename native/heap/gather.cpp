@@ -25,6 +25,10 @@ constexpr int most_looked_into = 12;
 // regularization for holistic and robust light transport", 2013, section 4).
 const float least_spread = 15.0F * std::numbers::pi_v<float> / 180.0F;
 
+// The same through flat facets, behind which looks go one way: there is less noise to be bought off, and a glint of
+// another facet's would be an error that can be seen.
+const float spread_of_facets = 5.0F * std::numbers::pi_v<float> / 180.0F;
+
 // The same of light that is scattered on its way, which tells less yet of where it came in.
 const float spread_of_scattered = 40.0F * std::numbers::pi_v<float> / 180.0F;
 
@@ -36,6 +40,9 @@ constexpr float rough = 0.05F;
 
 // The same through rough facets of a grain alone, over their alpha: about what two of them spread it by.
 constexpr float spread_of_alpha = 0.6F;
+
+/// Of a cone, by the cosine of its half angle.
+float solid_angle(float edge) { return 2.0F * std::numbers::pi_v<float> * (1.0F - edge); }
 
 /// But for what it scatters and absorbs.
 Optics glass(Optics optics) {
@@ -286,7 +293,8 @@ void Gather::follow_look(SeenFacet seen, const Facets& facets, const Look& how, 
 
 float Gather::spread_of(std::uint32_t grain, const Passage& passage, const Look& how, const Facets& facets) const {
   if (how.alone) return spread_of_alpha * facets.finish(grain).roughness;
-  return passage.scattered ? spread_of_scattered : least_spread;
+  if (passage.scattered) return spread_of_scattered;
+  return passage.flat ? spread_of_facets : least_spread;
 }
 
 glm::vec3 Gather::world_along(const glm::vec3& direction, bool as_it_is) const {
@@ -307,10 +315,30 @@ glm::vec3 Gather::highlights(const SeenFacet& seen, const Facets& facets, transp
   for (std::size_t i = 0; i < heap_.lights.size(); ++i) {
     const lights::LightDraw light =
         draws_[i](heap_.anchor + glm::dvec3(seen.place), {random.uniform(), random.uniform()});
-    sum += highlight(seen, facets, light, lights::light_angle(lights_[i], light.reach));
+    const double angle = lights::light_angle(lights_[i], light.reach);
+    const bool sun = std::holds_alternative<scene::DirectionalLight>(heap_.lights[i]);
+    // A lobe that stands for the disc has tails: facets would shine that it is not seen in.
+    const float roughness = facets.finish(seen.grain).roughness;
+    sum += sun && roughness < physics::dielectric_alpha(roughness, angle)
+               ? mirrored_disc(seen, facets, i, glm::vec3(light.irradiance))
+               : highlight(seen, facets, light, angle);
   }
   if (image_ && facets.finish(seen.grain).roughness >= rough) sum += highlight(seen, facets, glare(random), 0.0);
   return sum;
+}
+
+glm::vec3 Gather::mirrored_disc(const SeenFacet& seen, const Facets& facets, std::size_t sun,
+                                const glm::vec3& irradiance) const {
+  const glm::vec3 middle(lights_[sun].place);
+  const auto wide = static_cast<float>(0.5 * lights::light_angle(lights_[sun], 1.0));
+  const float mu = glm::dot(seen.normal, seen.towards);
+  const glm::vec3 mirrored = 2.0F * mu * seen.normal - seen.towards;
+  const float edge = std::cos(wide);
+  if (!(mu > 0.0F) || glm::dot(mirrored, glm::normalize(middle)) < edge) return glm::vec3(0.0F);
+  const Optics& optics = heap_.grains.kinds[space_.grains()[seen.grain].kind];
+  const auto reflected = static_cast<float>(physics::fresnel_reflectance(mu, optics.eta));
+  return reflected / solid_angle(edge) * irradiance *
+         passed_towards(seen.grain, seen.place, mirrored, 1e30F, facets);
 }
 
 glm::vec3 Gather::highlight(const SeenFacet& seen, const Facets& facets, const lights::LightDraw& light,
@@ -360,9 +388,7 @@ glm::vec3 Gather::lights_along(std::uint32_t grain, const Passage& passage, floa
     const glm::vec3 to_light = sun && cosine >= std::cos(wide) ? passage.direction : glm::vec3(light.to_light);
     const auto reach = static_cast<float>(std::min(light.reach, 1e30));
     const glm::vec3 passed = passed_towards(grain, passage.place, to_light, reach, facets);
-    // What a disc sends, over what falls on a plane that faces it.
-    const float fluence = 2.0F / (1.0F + std::cos(wide));
-    sum += fluence * glm::vec3(light.irradiance) * passed / (2.0F * std::numbers::pi_v<float> * (1.0F - edge));
+    sum += passed * glm::vec3(light.irradiance) / solid_angle(edge);
   }
   return sum;
 }
@@ -375,7 +401,7 @@ glm::vec3 Gather::glare_along(std::uint32_t grain, const Passage& passage, float
   const float edge = std::cos(spread);
   if (!(light.irradiance != glm::dvec3(0.0)) || glm::dot(to_light, passage.direction) < edge) return glm::vec3(0.0F);
   return glm::vec3(light.irradiance) * passed_towards(grain, passage.place, to_light, 1e30F, facets) /
-         (2.0F * std::numbers::pi_v<float> * (1.0F - edge));
+         solid_angle(edge);
 }
 
 Ray Gather::ray_through(std::uint32_t grain, const glm::vec3& normal, const glm::vec3& towards) const {

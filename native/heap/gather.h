@@ -119,6 +119,9 @@ class Gather {
   lights::LightDraw glare(transport::Random& random) const;
   /// What a clear grain's surface reflects of a light that comes from where it seems `angle` wide.
   glm::vec3 highlight(const SeenFacet& seen, const Facets& facets, const lights::LightDraw& light, double angle) const;
+  /// The same of a sun's disc by a surface smooth enough to be a mirror of it: `sun`: its number.
+  glm::vec3 mirrored_disc(const SeenFacet& seen, const Facets& facets, std::size_t sun,
+                          const glm::vec3& irradiance) const;
   /// What is left of a light on its way to a grain's surface.
   glm::vec3 passed_towards(std::uint32_t grain, const glm::vec3& place, const glm::vec3& to_light, float reach,
                            const Facets& facets) const;

@@ -41,7 +41,8 @@ struct Meeting {
   bool wall;
   std::uint32_t number;  ///< of the grain or the wall
   glm::vec3 place;
-  glm::vec3 normal;  ///< against the ray; of a grain outwards
+  glm::vec3 normal;   ///< against the ray; of a grain outwards
+  bool flat = false;  ///< the surface does not bend there
 };
 
 /// Grains and walls as rays find them (Embree). Places in it come from Grains.

@@ -30,6 +30,7 @@ struct ClearLooks::Hit {
   glm::vec3 place;  // from the anchor
   glm::vec3 normal;
   bool front;
+  bool flat;
 };
 
 ClearLooks::ClearLooks(const CastContent& cast, const Content& content, const Exchange& exchange)
@@ -62,9 +63,10 @@ std::optional<ClearLooks::Hit> ClearLooks::first_hit(const glm::vec3& origin, co
 
 ClearLooks::Hit ClearLooks::place_of(const casting::Hit& hit, const glm::vec3& origin,
                                      const glm::vec3& direction) const {
-  const glm::vec4 facing = hit_surface(cast_, content_, direction, hit).normal;
+  const HitSurface surface = hit_surface(cast_, content_, direction, hit);
+  const glm::vec4& facing = surface.normal;
   return {static_cast<std::size_t>(std::abs(facing.w)) - 1, origin + hit.distance * direction, glm::vec3(facing),
-          facing.w > 0.0F};
+          facing.w > 0.0F, surface.flat};
 }
 
 std::optional<heap::SeenFacet> ClearLooks::seen_along(std::uint32_t grain, const glm::vec3& origin,
@@ -89,7 +91,7 @@ std::optional<heap::Meeting> ClearLooks::inside(std::uint32_t grain, const glm::
     if (!own) return std::nullopt;
     const Hit hit = place_of(*own, origin, direction);
     if (hit.front) return std::nullopt;
-    return heap::Meeting{false, grain, hit.place, hit.normal};
+    return heap::Meeting{false, grain, hit.place, hit.normal, hit.flat};
   }
   std::optional<Hit> hit = first_hit(origin, direction, object, clearance);
   // Others may reach into it.
@@ -98,7 +100,7 @@ std::optional<heap::Meeting> ClearLooks::inside(std::uint32_t grain, const glm::
     hit = first_hit(hit->place, direction, hit->object, 0.0F);
   }
   if (!hit || hit->object != object || hit->front) return std::nullopt;
-  return heap::Meeting{false, grain, hit->place, hit->normal};
+  return heap::Meeting{false, grain, hit->place, hit->normal, hit->flat};
 }
 
 std::optional<heap::Meeting> ClearLooks::beyond(std::uint32_t grain, const glm::vec3& origin,

@@ -17,7 +17,11 @@ namespace {
 struct Surface {
   glm::vec4 position;
   glm::vec4 normal;
+  bool flat;
 };
+
+// The mean of unit normals is as long where they are one.
+constexpr float least_flat = 1.0F - 1e-4F;
 
 // As instanced_surface.vert and surface.frag make it of the corners; what grain space is, is told there.
 Surface surface_at(const scene::Mesh& mesh, const glm::vec4* rows, const glm::uvec3& corners, const glm::vec3& weights,
@@ -48,7 +52,8 @@ Surface surface_at(const scene::Mesh& mesh, const glm::vec4* rows, const glm::uv
   const glm::vec3 across = glm::cross(places[1] - places[0], places[2] - places[0]);
   const float side = handedness * glm::dot(across, direction) < 0.0F ? 1.0F : -1.0F;
   return {glm::vec4(position, rise),
-          glm::vec4(length > 0.0F ? normal / length : glm::vec3(0.0F), side * static_cast<float>(number + 1))};
+          glm::vec4(length > 0.0F ? normal / length : glm::vec3(0.0F), side * static_cast<float>(number + 1)),
+          squared > least_flat};
 }
 
 // basis_around of tangent.glsl.
@@ -108,8 +113,12 @@ HitSurface hit_surface(const CastContent& cast, const Content& content, const gl
   const glm::vec4 coordinates =
       material.textured() ? coordinates_at(mesh, rows, corners, weights, surface.normal) : glm::vec4(0.0F);
   const std::size_t groups = instances != nullptr ? instances->groups().size() : 0;
-  return {surface.position, surface.normal, coordinates, glm::vec3(rows[0].w, rows[1].w, rows[2].w),
-          instanced ? group : groups + group};
+  return {surface.position,
+          surface.normal,
+          coordinates,
+          glm::vec3(rows[0].w, rows[1].w, rows[2].w),
+          instanced ? group : groups + group,
+          surface.flat};
 }
 
 void FoundSurfaces::resize(const glm::ivec2& size, bool textured) {

@@ -22,6 +22,7 @@ struct HitSurface {
   glm::vec4 coordinates;  ///< of a material that wears pictures
   glm::vec3 origin;       ///< of grain space, from the anchor
   std::size_t unit;       ///< what is shaded apart: the groups of instances, then the draws; or unshaded
+  bool flat;              ///< its triangle's normals are one
 };
 
 /// Where a ray that met something did.

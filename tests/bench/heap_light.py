@@ -1,10 +1,11 @@
-"""How far light between grains is from path tracing: totals and blocks of a heap of 696 balls, for kinds of grains and
-lights.
+"""How far light between grains is from path tracing: totals and blocks of a heap of 696 balls, or of cubes turned this
+way and that in their places, for kinds of grains and lights.
 
-    heap_light.py BUILD_FOLDER [--kinds K ...] [--lights L ...] [--models M ...] [--exchanges E ...] [--samples N]
-        [--paths N] [--out FOLDER] [--markdown FILE]
+    heap_light.py BUILD_FOLDER [--grains G] [--kinds K ...] [--lights L ...] [--models M ...] [--exchanges E ...]
+        [--samples N] [--paths N] [--out FOLDER] [--markdown FILE]
 
-The truth is traced beside it (mesograin-referee heap): so many paths a pixel, and its own noise in blocks is told.
+The truth is traced beside it (mesograin-referee heap, of cubes render): so many paths a pixel, and its own noise in
+blocks is told.
 Errors are relative L1 in blocks of 8 x 8 pixels of a picture of 96 x 96, over all channels. A sun that balls with a
 refracting surface are lit by is 20 degrees wide: a point's light no path finds. What is drawn with the exchange off is
 also told, in green, beside the share of the truth that was scattered in one ball alone and went through all others
@@ -46,13 +47,28 @@ KINDS = {"lambert .3": {"kind": "diffuse", "reflectance": 0.3}, "lambert .8": {"
          "clear": medium(0.999, 0.2, 1.5)}
 
 
-def light_of(name, material):
+def light_of(name, material, grains="balls"):
     if name == "sky":
         return {"type": "hemisphere"}
     above = math.radians(SUNS[name])
     aside = (math.cos(above), 0.0) if name == "sun" else (0.0, math.cos(above))
     return {"type": "distant", "direction_to_light": [*aside, math.sin(above)],
-            "angle": WIDE if "eta" in material else 0.0}
+            "angle": WIDE if "eta" in material or grains == "cubes" else 0.0}
+
+
+def truth_of_scene(native, referee, traced, paths, folder):
+    """(picture, its noise in blocks over the mean, None) of a native.Scene."""
+    case, picture = folder / "scene.json", folder / "truth.exr"
+    native.write_scene(str(case), traced, camera(native), SIZE)
+    subprocess.run([referee, "render", case, "-o", picture, "-n", str(paths)], check=True, stderr=subprocess.DEVNULL)
+    channel = channels(native, picture)
+    noise = numpy.sqrt(blocks((channel["noise.G"] ** 2)[..., None])) / 8.0
+    return (numpy.stack([channel[name] for name in "RGB"], -1), float(noise.mean() / channel["G"].mean()), None)
+
+
+def channels(native, picture):
+    pixels, names, _ = native.read_exr(picture)
+    return dict(zip(names, numpy.moveaxis(pixels, -1, 0)))
 
 
 def truth(native, referee, material, light, paths, folder):
@@ -61,8 +77,7 @@ def truth(native, referee, material, light, paths, folder):
     case.write_text(json.dumps({"spheres": str(DATA / "spheres.csv"), "camera": MANIFEST["camera"], "resolution": SIZE,
                                 "material": material, "light": light}))
     subprocess.run([referee, "heap", case, "-o", picture, "-n", str(paths)], check=True)
-    pixels, names, _ = native.read_exr(picture)
-    channel = dict(zip(names, numpy.moveaxis(pixels, -1, 0)))
+    channel = channels(native, picture)
     noise = numpy.sqrt(blocks((channel["noise.G"] ** 2)[..., None])) / 8.0
     colours = numpy.stack([channel[name] for name in "RGB"], -1)
     own = sum(channel[f"{name}.G"] for name in ("direct", "crossed", "behind"))
@@ -79,19 +94,50 @@ def how_far(found, right):
             float(numpy.abs(blocks(found) - blocks(right)).sum() / blocks(right).sum()))
 
 
-def scene(native, material, model, light, exchange):
+def ball(native):
+    _, normals, triangles = sphere()
+    return native.Mesh(normals, normals, triangles)
+
+
+def turns(count):
+    """(count, 3, 3): any way round, the same ever again."""
+    quaternions = numpy.random.default_rng(1).normal(size=(4, count))
+    w, x, y, z = quaternions / numpy.linalg.norm(quaternions, axis=0)
+    return numpy.stack([1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - z * w), 2.0 * (x * z + y * w),
+                        2.0 * (x * y + z * w), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - x * w),
+                        2.0 * (x * z - y * w), 2.0 * (y * z + x * w), 1.0 - 2.0 * (x * x + y * y)],
+                       -1).reshape(count, 3, 3)
+
+
+def cube():
+    """Corners in the unit sphere, normals and triangles, of flat faces."""
+    corners, normals, triangles = [], [], []
+    for axis in range(3):
+        for side in (-1.0, 1.0):
+            normal, along = side * numpy.eye(3)[axis], numpy.eye(3)[(axis + 1) % 3]
+            across = numpy.cross(normal, along)
+            first = len(corners)
+            corners += [(normal + a * along + b * across) / math.sqrt(3.0)
+                        for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
+            normals += [normal] * 4
+            triangles += [(first, first + 1, first + 2), (first, first + 2, first + 3)]
+    return (numpy.array(corners, numpy.float32), numpy.array(normals, numpy.float32),
+            numpy.array(triangles, numpy.uint32))
+
+
+def scene(native, material, model, light, exchange, grains="balls"):
     if material["kind"] == "diffuse":
         look = native.Material(model=model, reflectance=(material["reflectance"],) * 3)
     else:
         sigmas = {name: tuple(numpy.broadcast_to(material[name], 3)) for name in ("sigma_a", "sigma_s")}
         look = native.Material(model=model, boundary=material["boundary"], eta=material.get("eta", 1.3), **sigmas)
-    positions, normals, triangles = sphere()
     places = numpy.loadtxt(DATA / "spheres.csv", delimiter=",", skiprows=1)
     transforms = numpy.zeros((len(places), 4, 4))
-    transforms[:, :3, :3] = places[:, 3, None, None] * numpy.eye(3)
+    transforms[:, :3, :3] = places[:, 3, None, None] * (turns(len(places)) if grains == "cubes" else numpy.eye(3))
     transforms[:, :3, 3] = places[:, :3]
     transforms[:, 3, 3] = 1.0
-    heap = native.InstanceArray(native.Mesh(normals, normals, triangles), look, transforms)
+    mesh = native.Mesh(*cube()) if grains == "cubes" else ball(native)
+    heap = native.InstanceArray(mesh, look, transforms)
     if light["type"] == "distant":
         sun = native.DirectionalLight(light["direction_to_light"], (math.pi,) * 3, angle=light["angle"])
         shines = {"lights": [sun]}
@@ -113,18 +159,18 @@ def camera(native):
     return native.Camera(world_to_camera, clip)
 
 
-def measure(native, of, model, exchange, samples):
+def measure(native, of, model, exchange, samples, grains):
     """One way to draw a heap against its truth: numbers as a dictionary, and the picture."""
     material, light, (right, noise, own) = of
     view = native.View(*SIZE)
-    view.set_scene(scene(native, material, model, light, exchange))
+    view.set_scene(scene(native, material, model, light, exchange, grains))
     view.set_camera(camera(native))
     view.render(samples)
     found = view.read()[..., :3]
     total, in_blocks = how_far(found, right)
     numbers = {"model": model, "exchange": exchange, "total": total, "truth_noise": noise, "blocks": in_blocks,
                "finite": bool(numpy.isfinite(found).all())}
-    if exchange == "off":
+    if exchange == "off" and own is not None:
         numbers["own_total"], numbers["own_blocks"] = how_far(found[..., 1:2], own)
     return numbers, found
 
@@ -137,6 +183,7 @@ def own_share(case):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("build", help="the folder of the native module and of the referee")
+    parser.add_argument("--grains", default="balls", choices=["balls", "cubes"], help="(default: balls)")
     parser.add_argument("--kinds", nargs="+", default=list(KINDS), choices=list(KINDS), metavar="K",
                         help=f"of grains: {', '.join(KINDS)} (default: all)")
     parser.add_argument("--lights", nargs="+", default=LIGHTS, choices=LIGHTS)
@@ -159,21 +206,28 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         for kind in options.kinds:
             material = KINDS[kind]
+            label = kind if options.grains == "balls" else f"{kind}, {options.grains}"
             for name in options.lights:
-                light = light_of(name, material)
+                light = light_of(name, material, options.grains)
                 # Few paths find the wide sun, or lights that a path must leave the heap towards.
-                paths = options.paths * (16 if "eta" in material and name != "sky" else 1)
-                of = (material, light, truth(native, referee, material, light, paths, pathlib.Path(folder)))
+                paths = options.paths * (16 if light.get("angle") else 1)
+                if options.grains == "balls":
+                    right = truth(native, referee, material, light, paths, pathlib.Path(folder))
+                else:
+                    traced = scene(native, material, "lambert" if material["kind"] == "diffuse" else "model_2", light,
+                                   "off", options.grains)
+                    right = truth_of_scene(native, referee, traced, paths, pathlib.Path(folder))
+                of = (material, light, right)
                 drawn = []
                 for model in ["lambert"] if material["kind"] == "diffuse" else options.models:
                     for exchange in options.exchanges:
-                        numbers, found = measure(native, of, model, exchange, options.samples)
-                        case = {"kind": kind, "light": name, **numbers}
+                        numbers, found = measure(native, of, model, exchange, options.samples, options.grains)
+                        case = {"kind": label, "light": name, **numbers}
                         cases.append(case)
                         drawn.append((f"{model}, {exchange}", found))
-                        print(f"{kind:<16}{name:<5}{model:<9}{exchange:<9}{case['total']:>7.3f}{case['blocks']:>7.1%}"
+                        print(f"{label:<16}{name:<5}{model:<9}{exchange:<9}{case['total']:>7.3f}{case['blocks']:>7.1%}"
                               f"  truth's noise {case['truth_noise']:.1%}" + own_share(case), flush=True)
-                pictures.append(heap_light_page.pictures_of(kind, name, of[2][0], drawn))
+                pictures.append(heap_light_page.pictures_of(label, name, of[2][0], drawn))
     (options.out / "heap_light.json").write_text(json.dumps(cases, indent=1) + "\n")
     (options.out / "heap_light.html").write_text(heap_light_page.html(
         cases, pictures, spheres=len(numpy.loadtxt(DATA / "spheres.csv", delimiter=",", skiprows=1)), size=SIZE,

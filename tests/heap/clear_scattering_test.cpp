@@ -9,41 +9,10 @@
 #include <vector>
 
 #include "heap/gather.h"
+#include "plate.h"
 
 namespace mesograin::heap {
 namespace {
-
-constexpr float half_thickness = 0.05F;
-const glm::vec3 up(0.0F, 0.0F, 1.0F);
-
-/// Between two planes, with nothing else around.
-class Plate : public Facets {
- public:
-  std::optional<Meeting> inside(std::uint32_t grain, const glm::vec3& origin,
-                                const glm::vec3& direction) const override {
-    constexpr float level = 1e-6F;
-    if (std::abs(direction.z) < level) return std::nullopt;
-    const float side = std::copysign(1.0F, direction.z);
-    const float distance = std::max((side * half_thickness - origin.z) / direction.z, 0.0F);
-    return Meeting{false, grain, origin + distance * direction, side * up};
-  }
-  std::optional<Meeting> beyond(std::uint32_t, const glm::vec3&, const glm::vec3&) const override {
-    return std::nullopt;
-  }
-  Finish finish(std::uint32_t) const override { return {0.0F, false, false}; }
-};
-
-Heap plate() {
-  Heap heap;
-  Optics glass;
-  glass.surface = Surface::dielectric;
-  glass.eta = 1.5;
-  glass.sigma_t = glm::dvec3(0.4);
-  glass.albedo = glm::dvec3(1.0);
-  heap.grains.kinds = {glass};
-  heap.grains.grains = {{glm::vec3(0.0F), 1.0F, 0}};
-  return heap;
-}
 
 struct Seen {
   double mean;
@@ -59,7 +28,8 @@ Seen scattered(const Heap& heap, float side) {
   double squares = 0.0;
   for (int i = 0; i < looks; ++i) {
     const double found = gather
-                             .look_into({0, side * half_thickness * up, side * up, side * up}, Plate(),
+                             .look_into({0, side * half_thickness * up, side * up, side * up},
+                                        Plate({.roughness = 0.0F, .shown = false, .correlated = false}),
                                         {Scatterings::followed, true}, random)
                              .scattered.g;
     sum += found / looks;

@@ -155,29 +155,35 @@ def suns_all_around(count):
     height = 1.0 - 2.0 * number / count
     around = math.pi * (1.0 + math.sqrt(5.0)) * number
     across = numpy.sqrt(1.0 - height ** 2)
-    width = 2.0 * math.acos(1.0 - 2.0 / count)
+    # Each place of the sky is in nine discs, more or less.
+    width = 2.0 * math.acos(1.0 - 18.0 / count)
     return [native.DirectionalLight(towards, (4.0 * math.pi / count,) * 3, angle=width)
             for towards in zip(across * numpy.cos(around), across * numpy.sin(around), height)]
 
 
-# Through the grain that is seen, too, and mirrored by it. Measured: glass .989, .2 mean free paths .967; mirrored .046
-# and .040 of the .050 that a world is, for the lobe that stands for a disc loses some at the rim.
-@pytest.mark.parametrize("material, mesh", [(GLASS, ROUND), (CLEAR, ROUND), (GLASS, cube(0.8)), (ROUGH, cube(0.8))])
+# Through the grain that is seen, too, and mirrored by it, where the lobe that stands for a disc on a rough surface
+# loses some at the rim. Cubes are turned any way round, as through some that stand alike one sees in few directions.
+# Measured: .993 and .985, cubes 1.004 and .995.
+@pytest.mark.parametrize("material, mesh", [(GLASS, ROUND), (CLEAR, ROUND), (GLASS, cube(0.6)), (ROUGH, cube(0.6))])
 def test_suns_all_around_are_a_white_world(material, mesh):
     transforms = numpy.tile(numpy.eye(4), (27, 1, 1))
+    transforms[:, :3, :3] = numpy.linalg.qr(numpy.random.default_rng(4).normal(size=(27, 3, 3)))[0]
     transforms[:, :3, 3] = 2.1 * numpy.stack(numpy.meshgrid(*[numpy.arange(3) - 1.0] * 3), -1).reshape(-1, 3)
     view = native.View(48, 48)
     view.set_portions(["specular"])
-    view.set_scene(native.Scene(arrays=[native.InstanceArray(mesh, material, transforms)],
-                                lights=suns_all_around(60), world=native.World(radiance=(0.0, 0.0, 0.0)),
-                                exchange="heaps"))
     view.set_camera(native.Camera.look_at((0.0, -60.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 1.0), 6.0))
-    view.render(8)
-    pixels = view.read()
-    inside = pixels[..., 3] > 0.999
-    assert pixels[inside, 1].mean() == pytest.approx(1.0, abs=0.04)
-    mirrored = view.read_portion("specular")[inside, 1].mean()
-    assert 0.03 < mirrored < 0.055
+
+    def all_and_mirrored(radiance, lights):
+        view.set_scene(native.Scene(arrays=[native.InstanceArray(mesh, material, transforms)], lights=lights,
+                                    world=native.World(radiance=(radiance,) * 3), exchange="heaps"))
+        view.render(8)
+        pixels = view.read()
+        inside = pixels[..., 3] > 0.999
+        return pixels[inside, 1].mean(), view.read_portion("specular")[inside, 1].mean()
+
+    found, mirrored = all_and_mirrored(0.0, suns_all_around(60))
+    assert found == pytest.approx(1.0, abs=0.03)
+    assert mirrored == pytest.approx(all_and_mirrored(1.0, [])[1], rel=0.25)
 
 
 def passes(material, exchange="heaps"):
