@@ -337,8 +337,7 @@ glm::vec3 Gather::mirrored_disc(const SeenFacet& seen, const Facets& facets, std
   if (!(mu > 0.0F) || glm::dot(mirrored, glm::normalize(middle)) < edge) return glm::vec3(0.0F);
   const Optics& optics = heap_.grains.kinds[space_.grains()[seen.grain].kind];
   const auto reflected = static_cast<float>(physics::fresnel_reflectance(mu, optics.eta));
-  return reflected / solid_angle(edge) * irradiance *
-         passed_towards(seen.grain, seen.place, mirrored, 1e30F, facets);
+  return reflected / solid_angle(edge) * irradiance * passed_towards(seen.grain, seen.place, mirrored, 1e30F, facets);
 }
 
 glm::vec3 Gather::highlight(const SeenFacet& seen, const Facets& facets, const lights::LightDraw& light,
