@@ -23,12 +23,18 @@ class Bench:
         self._bins = self.table["bins"]
         self._cosines = (2.0 * numpy.arange(self._bins) + 1.0) / self._bins - 1.0
         self._mesh = sphere(native)
-        self._cameras = Cameras(native, views=14, facing_power=3)
+        self._cameras = {}
         self._view = native.View(SIZE, SIZE)
         self._light = native.DirectionalLight((0.0, 1.0, 0.0), (1.0, 1.0, 1.0))
 
     def cases(self):
         return [case for case in self.table["cases"] if case["entry"] == "refracted"]
+
+    def _cameras_for(self, g):
+        """The more forwards light scatters, the narrower is what leaves a thin grain: 14 views saw 4 % too little of
+        it where g is 0.95."""
+        views = 40 if g > 0.9 else 14
+        return self._cameras.setdefault(views, Cameras(self._native, views=views, facing_power=3))
 
     def measure(self, case, model, taps):
         """A row for each albedo."""
@@ -41,7 +47,7 @@ class Bench:
         self._view.set_scene(self._native.Scene(instances=[instance], lights=[self._light]))
         if taps:
             self._view.set_taps(taps)
-        exitance = self._cameras.exitance(self._view, 1 if taps else 4, self._bins)
+        exitance = self._cameras_for(case["g"]).exitance(self._view, 1 if taps else 4, self._bins)
         return [{"g": case["g"], "albedo": float(albedo[i]), "eta": case["eta"], "radius": case["radius"],
                  "model": model, "taps": taps,
                  **compare(exitance[:, i], numpy.array(case["scattered"][i]),
