@@ -13,6 +13,7 @@
 #include "physics/physics.h"
 #include "transport/octahedron.h"
 #include "transport/stored_transport.h"
+#include "transport/surface.h"
 
 namespace mesograin::models {
 namespace {
@@ -106,13 +107,14 @@ Volume sources_volume(const StoredTransport& stored) {
   return volume;
 }
 
-// Which way the distance from the surface grows, at the nodes; beyond the box nothing is known. `smoothed` across by
-// the neighbours (Sobel's operator), or as it is.
-Volume slopes_volume(const StoredTransport& stored, bool smoothed) {
+// Which way the distance from the surface grows, at the nodes that light is stored at, smoothed across by the
+// neighbours (Sobel's operator); beyond the box nothing is known.
+Volume smooth_slopes_volume(const StoredTransport& stored) {
   const glm::ivec3 last = stored.size - 1;
-  const auto distance_at = [&](glm::ivec3 node) {
-    node = glm::clamp(node, glm::ivec3(0), last);
-    const int index = (node.z * stored.size.y + node.y) * stored.size.x + node.x;
+  const glm::ivec3 surface = transport::surface_size(stored.size);
+  const auto distance_at = [&](const glm::ivec3& node) {
+    const glm::ivec3 at = transport::surface_finer * glm::clamp(node, glm::ivec3(0), last);
+    const int index = (at.z * surface.y + at.y) * surface.x + at.x;
     return stored.distances[static_cast<std::size_t>(index)];
   };
   const auto slope = [&](const glm::ivec3& node, int axis) {
@@ -120,7 +122,6 @@ Volume slopes_volume(const StoredTransport& stored, bool smoothed) {
     before[axis] = std::max(node[axis] - 1, 0);
     after[axis] = std::min(node[axis] + 1, last[axis]);
     const float apart = static_cast<float>(after[axis] - before[axis]) * stored.spacing[axis];
-    if (!smoothed) return (distance_at(after) - distance_at(before)) / apart;
     float rise = 0.0F;
     for (int i = -1; i <= 1; ++i)
       for (int j = -1; j <= 1; ++j) {
@@ -229,14 +230,14 @@ MaterialInputs prototype_inputs(const scene::Material& material, const StoredTra
   if (stored.convex) inputs.defines.emplace_back("CONVEX");
   if (is_walked(material)) {
     add_forward(material, stored, inputs);
-    inputs.volumes["slopes"] = slopes_volume(stored, false);
-    inputs.volumes["smooth_slopes"] = slopes_volume(stored, true);
+    inputs.volumes["smooth_slopes"] = smooth_slopes_volume(stored);
   }
   // Of the sphere that has this mean chord.
   add_light_about(material, 0.75 * stored.unit * stored.mean_chord, inputs);
   inputs.volumes["lobes"] = lobes_volume(stored);
   inputs.volumes["sources"] = sources_volume(stored);
-  inputs.volumes["distances"] = {stored.size.x, stored.size.y, stored.size.z, 1, stored.distances};
+  const glm::ivec3 surface = transport::surface_size(stored.size);
+  inputs.volumes["distances"] = {surface.x, surface.y, surface.z, 1, stored.distances};
   return inputs;
 }
 

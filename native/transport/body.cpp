@@ -193,13 +193,25 @@ std::optional<glm::vec3> Body::next_entry(glm::vec3 place, const glm::vec3& dire
   return std::nullopt;
 }
 
-Nearest Body::nearest(const glm::vec3& place) const {
+Nearest Body::nearest(const glm::vec3& place, float within) const {
   NearestQuery query{&positions_, &triangles_, place, place, 0};
-  RTCPointQuery sphere{place.x, place.y, place.z, 0.0F, std::numeric_limits<float>::infinity()};
+  RTCPointQuery sphere{place.x, place.y, place.z, 0.0F, within};
   RTCPointQueryContext context;
   rtcInitPointQueryContext(&context);
   rtcPointQuery(device_->scene, &sphere, &context, query_nearest, &query);
   return {query.point, sphere.radius, normals_[query.triangle]};
+}
+
+// By the majority of three lines, since one may run along an edge.
+bool Body::contains(const glm::vec3& place) const {
+  constexpr glm::vec3 lines[] = {
+      {0.5377F, 0.2183F, 0.8144F}, {-0.7071F, 0.6123F, 0.3536F}, {0.1483F, -0.9231F, -0.3548F}};
+  int votes = 0;
+  for (const glm::vec3& line : lines) {
+    const std::optional<Hit> hit = first_hit(place, line);
+    if (hit && glm::dot(hit->normal, line) > 0.0F) ++votes;
+  }
+  return votes >= 2;
 }
 
 // A line enters a body that does not cross itself before it leaves it.

@@ -4,6 +4,7 @@
 
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -39,7 +40,10 @@ class Body {
   /// Where a straight line that has just left the body enters it again.
   std::optional<glm::vec3> next_entry(glm::vec3 place, const glm::vec3& direction) const;
 
-  Nearest nearest(const glm::vec3& place) const;
+  /// Some point is nearer than `within`.
+  Nearest nearest(const glm::vec3& place, float within = std::numeric_limits<float>::infinity()) const;
+
+  bool contains(const glm::vec3& place) const;
 
   /// From the stretched mesh's axes to the body's: a turn.
   const glm::dmat3& axes() const { return axes_; }

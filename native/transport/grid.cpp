@@ -15,18 +15,6 @@
 namespace mesograin::transport {
 namespace {
 
-// By the majority of three lines, since one may run along an edge.
-bool is_inside(const Body& body, const glm::vec3& place) {
-  constexpr glm::vec3 lines[] = {
-      {0.5377F, 0.2183F, 0.8144F}, {-0.7071F, 0.6123F, 0.3536F}, {0.1483F, -0.9231F, -0.3548F}};
-  int votes = 0;
-  for (const glm::vec3& line : lines) {
-    const std::optional<Hit> hit = body.first_hit(place, line);
-    if (hit && glm::dot(hit->normal, line) > 0.0F) ++votes;
-  }
-  return votes >= 2;
-}
-
 // Where a place counts as being on the surface.
 constexpr float below = 1e-4F;
 
@@ -51,7 +39,7 @@ Grid::Grid(const Body& body, int nodes, Spacing spacing, const Effort& effort) {
   lower_ = body.lower();
   const std::size_t plane = static_cast<std::size_t>(size_.x) * static_cast<std::size_t>(size_.y);
   const std::size_t count = plane * static_cast<std::size_t>(size_.z);
-  distances_.resize(count);
+  std::vector<float> distances(count);  // from the surface, negative inside
   used_.assign(count, -1);
   std::vector<glm::vec3> nearest(count);
   run_pieces(effort, static_cast<std::size_t>(size_.z), [&](std::size_t z) {
@@ -60,17 +48,17 @@ Grid::Grid(const Body& body, int nodes, Spacing spacing, const Effort& effort) {
                             static_cast<int>(i % plane) / size_.x, static_cast<int>(z));
       const glm::vec3 place = lower_ + glm::vec3(node) * spacing_;
       const Nearest surface = body.nearest(place);
-      const bool inside = is_inside(body, place);
-      distances_[i] = inside ? -surface.distance : surface.distance;
+      const bool inside = body.contains(place);
+      distances[i] = inside ? -surface.distance : surface.distance;
       nearest[i] = inside && surface.distance > below ? place : surface.point + below * inwards(surface, place, inside);
     }
   });
   const float diagonal = glm::length(spacing_);
   for (std::size_t i = 0; i < count; ++i) {
-    if (distances_[i] >= diagonal) continue;
+    if (distances[i] >= diagonal) continue;
     used_[i] = static_cast<int>(places_.size());
     places_.push_back(nearest[i]);
-    depths_.push_back(std::max(-distances_[i], 0.0F));
+    depths_.push_back(std::max(-distances[i], 0.0F));
   }
   list_cells();
   measure_volumes(body);

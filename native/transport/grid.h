@@ -32,10 +32,7 @@ class Grid {
   const glm::vec3& lower() const { return lower_; }
   const glm::vec3& spacing() const { return spacing_; }
 
-  /// Distance from the surface at every node of the box, negative inside; x runs fastest.
-  const std::vector<float>& distances() const { return distances_; }
-
-  /// The used node at every node of the box, or -1.
+  /// The used node at every node of the box, or -1; x runs fastest.
   const std::vector<int>& used() const { return used_; }
 
   /// Where each used node's light is to be known.
@@ -72,7 +69,6 @@ class Grid {
   glm::ivec3 size_{2};
   glm::vec3 lower_{0.0F};
   glm::vec3 spacing_{1.0F};
-  std::vector<float> distances_;
   std::vector<int> used_;
   std::vector<Cell> cells_;
   std::vector<glm::vec3> places_;

@@ -133,7 +133,7 @@ StoredTransport compute_transport(Walks& walks, const StoredMedium& medium, cons
                          .channels = medium.grey() ? 1 : 3,
                          .convex = body.convex(),
                          .has_unscattered = medium.eta != 1.0,
-                         .distances = grid.distances(),
+                         .distances = walks.surface(),
                          .sources = {},
                          .lobes = {}};
   const int kept = stored.terms;

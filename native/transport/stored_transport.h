@@ -35,13 +35,15 @@ struct StoredTransport {
   int channels = 3;              ///< 1 for a grey medium
   bool convex = false;           ///< no line leaves the body and enters it again
   bool has_unscattered = true;   ///< sources are also fed by light that nothing has scattered before
-  std::vector<float> distances;  ///< from the surface at every node, negative inside; x runs fastest
+  std::vector<float> distances;  ///< from the surface at its own nodes (surface_size), negative inside; x runs fastest
   /// [term][node][channel]: radiance that a mean free path would send out, per irradiance; without what light that
   /// nothing has scattered feeds, if that is apart, over physics::scattered_share_below.
   std::vector<float> sources;
   std::vector<float> lobes;  ///< [term][texel of the octahedral map that the light comes from][channel]
 
-  std::size_t nodes() const { return distances.size(); }
+  std::size_t nodes() const {
+    return static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) * static_cast<std::size_t>(size.z);
+  }
 };
 
 /// How far the grid's nodes will be from one another, in units of the body: the mean of all three sides.

@@ -8,11 +8,12 @@
 
 #include "transport/digest.h"
 #include "transport/octahedron.h"
+#include "transport/surface.h"
 
 namespace mesograin::transport {
 namespace {
 
-constexpr std::string_view title = "mesograin transport 4\n";
+constexpr std::string_view title = "mesograin transport 5\n";
 constexpr std::size_t name_length = 32;
 
 template <typename Value>
@@ -107,10 +108,11 @@ std::optional<StoredTransport> from_bytes(std::string_view bytes, std::string_vi
   reader.take(&stored.convex, 1);
   reader.take(&stored.has_unscattered, 1);
   if (reader.failed()) return std::nullopt;
-  const auto nodes = static_cast<std::size_t>(stored.size.x) * static_cast<std::size_t>(stored.size.y) *
-                     static_cast<std::size_t>(stored.size.z);
+  const std::size_t nodes = stored.nodes();
+  const glm::ivec3 surface = surface_size(stored.size);
   const auto terms = static_cast<std::size_t>(stored.terms);
-  stored.distances = reader.take<float>(nodes);
+  stored.distances = reader.take<float>(static_cast<std::size_t>(surface.x) * static_cast<std::size_t>(surface.y) *
+                                        static_cast<std::size_t>(surface.z));
   for (const std::uint16_t half : reader.take<std::uint16_t>(nodes * terms * static_cast<std::size_t>(stored.channels)))
     stored.sources.push_back(glm::unpackHalf1x16(half));
   stored.lobes = reader.take<float>(terms * static_cast<std::size_t>(stored.channels) * octahedron_texels);

@@ -11,7 +11,11 @@
 namespace mesograin::transport {
 
 Walks::Walks(std::shared_ptr<const Body> body, double eta, const Quality& quality, const Effort& effort)
-    : body_(std::move(body)), eta_(eta), quality_(quality), grid_(*body_, quality.nodes, quality.spacing, effort) {}
+    : body_(std::move(body)),
+      eta_(eta),
+      quality_(quality),
+      grid_(*body_, quality.nodes, quality.spacing, part_of(effort, 0.0, 0.5)),
+      surface_(surface_distances(*body_, grid_, part_of(effort, 0.5, 1.0))) {}
 
 void Walks::trace(const std::vector<double>& extinctions, const Effort& effort) {
   std::vector<double> missing;
@@ -59,7 +63,7 @@ Lights Walks::unscattered(double sigma_t) const {
 Exchange Walks::exchange(double sigma_t) const { return step(sigma_t).exchange.at(sigma_t); }
 
 std::size_t Walks::bytes() const {
-  std::size_t sum = 0;
+  std::size_t sum = surface_.size() * sizeof(float);
   for (const auto& [sigma_t, step] : steps_) {
     const Exchange& traced = step.exchange.traced;
     sum += (step.exchange.distances.size() + traced.values.size() + traced.columns.size()) * sizeof(float) +

@@ -11,6 +11,7 @@
 #include "transport/exchange.h"
 #include "transport/grid.h"
 #include "transport/multiple.h"
+#include "transport/surface.h"
 
 namespace mesograin::transport {
 
@@ -31,6 +32,7 @@ class Walks {
   const Body& body() const { return *body_; }
   const std::shared_ptr<const Body>& shared_body() const { return body_; }
   const Grid& grid() const { return grid_; }
+  const std::vector<float>& surface() const { return surface_; }  ///< surface_distances
   double eta() const { return eta_; }
   const Quality& quality() const { return quality_; }
 
@@ -57,6 +59,7 @@ class Walks {
   double eta_;
   Quality quality_;
   Grid grid_;
+  std::vector<float> surface_;
   std::map<double, Step> steps_;
 };
 

@@ -2,7 +2,7 @@
 // Not physical: where refraction gathers light from several places on the surface, one of them is found.
 //
 // What is chosen at compile time: REFRACTION, and CONVEX as in stored_grid.glsl.
-#include "models/slopes.glsl"
+#include "models/directions.glsl"
 #include "models/stored_grid.glsl"
 #include "physics/prelude.glsl"
 #include "physics/fresnel.glsl"
@@ -14,11 +14,11 @@ struct Unscattered {
 };
 
 #ifdef REFRACTION
-uniform sampler3D smooth_slopes;  // `slopes`, smoothed by their neighbours
+uniform sampler3D smooth_slopes;  // of `distances`, smoothed by their neighbours, at the nodes that light is known at
 
 const float LEAST_WIDTH = 0.2;  // of a bundle of light, over what it was as it entered: a narrower one is seen by few places
 
-// What outwards_about says, with edges rounded off over two nodes: so light enters, of whose ways in one is looked for.
+// What outwards_at says, with edges rounded off over two nodes: so light enters, of whose ways in one is looked for.
 vec3 outwards_where_light_enters(vec3 place) { return unit_vector(texture(smooth_slopes, (to_nodes(place) + 0.5) / (stored.last_node + 1.0)).xyz); }
 
 // Towards where light comes from that was refracted at a surface of this normal; grazing light where the surface faces away.

@@ -5,8 +5,8 @@
 // What is chosen at compile time: as in models/light_tracks.glsl.
 #include "render/bindings.glsl"
 #include "render/distant_light.glsl"
+#include "models/directions.glsl"
 #include "models/light_tracks.glsl"
-#include "models/slopes.glsl"
 #include "physics/prelude.glsl"
 #include "physics/fresnel.glsl"
 

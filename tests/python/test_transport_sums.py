@@ -77,6 +77,17 @@ def test_walks_meet_light_that_was_followed_in_as_what_they_look_for_by_themselv
     assert numpy.abs(blocks(found) - blocks(anew)).sum() < 0.06 * blocks(anew).sum()
 
 
+def test_each_of_the_suns_that_share_what_was_followed_in_has_its_colour():
+    material = medium("dielectric", (0.3,) * 3, g=0.85, sigma_s=(20.0,) * 3)
+    away = numpy.eye(4)
+    away[:3, 3] = (0.0, 40.0, -3.0)
+    other = native.Instance(sphere(16, 8), native.Material(model="lambert"), away)
+    shared, apart = (picture(material, others=others, samples=64) for others in ([], [other]))
+    for channel in range(3):
+        found, known = blocks(shared[..., channel]), blocks(apart[..., channel])
+        assert numpy.abs(found - known).sum() < 0.05 * known.sum()
+
+
 @pytest.mark.parametrize("to_light", [(0.5, 0.5, 0.7), (0.8, 0.6, 0.0), (0.0, 0.0, 1.0)])
 def test_walks_in_a_cube_with_flat_faces_are_numbers(to_light):
     view = native.View(48, 48)

@@ -39,7 +39,7 @@ class WorksTest : public testing::Test {
     stored.size = glm::ivec3(2);
     stored.terms = 4;
     stored.channels = 1;
-    stored.distances.assign(8, 0.5F);
+    stored.distances.assign(27, 0.5F);
     stored.sources.assign(32, 0.25F);
     stored.lobes.assign(4 * octahedron_texels, 1.0F);
     return stored;

@@ -18,13 +18,12 @@ int cells(int nodes) { return cells_a_node * (nodes - 1) + 1; }
 
 }  // namespace
 
-int LightTracks::layers(const gl::Volume& nodes) { return std::max(cells(nodes.depth()), layers_of_pieces); }
+int LightTracks::layers(const glm::ivec3& nodes) { return std::max(cells(nodes.z), layers_of_pieces); }
 
-void LightTracks::trace(DeviceCache& cache, const DeviceMaterial& material, const glm::mat3& grain_to_prototype,
-                        std::size_t lights, bool together, int sample) {
-  const gl::Volume& nodes = *material.volume("distances");
-  const int width = cells(nodes.width()), height = cells(nodes.height());
-  const int count = static_cast<int>(lights), depth = cells(nodes.depth()) * (together ? 1 : count);
+void LightTracks::trace(DeviceCache& cache, const DeviceMaterial& material, const glm::ivec3& nodes,
+                        const glm::mat3& grain_to_prototype, std::size_t lights, bool together, int sample) {
+  const int width = cells(nodes.x), height = cells(nodes.y);
+  const int count = static_cast<int>(lights), depth = cells(nodes.z) * (together ? 1 : count);
   if (!tracks_ || tracks_->width() != width || tracks_->height() != height || tracks_->depth() != depth ||
       pieces_->depth() != layers_of_pieces * count) {
     tracks_.emplace(GL_R32UI, width, height, depth);

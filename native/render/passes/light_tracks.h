@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
 #include <optional>
 
 #include "gl/program.h"
@@ -18,11 +19,12 @@ class LightTracks {
   static constexpr std::size_t most_together = 16;
 
   /// Layers of textures that each light takes, of a grain that is stored at `nodes`.
-  static int layers(const gl::Volume& nodes);
+  static int layers(const glm::ivec3& nodes);
 
-  /// Other rays in every sample, of lights that are bound as storage. `together`: they share a lattice.
-  void trace(DeviceCache& cache, const DeviceMaterial& material, const glm::mat3& grain_to_prototype,
-             std::size_t lights, bool together, int sample);
+  /// Other rays in every sample, of lights that are bound as storage, in a grain that is stored at `nodes`. `together`:
+  /// they share a lattice.
+  void trace(DeviceCache& cache, const DeviceMaterial& material, const glm::ivec3& nodes,
+             const glm::mat3& grain_to_prototype, std::size_t lights, bool together, int sample);
 
   /// To a program that is compiled for them.
   void bind(const gl::Program& program) const;

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "render/device_layout.h"
+#include "transport/surface.h"
 
 namespace mesograin::render {
 namespace {
@@ -25,15 +26,22 @@ bool asks_for_unscattered(const DeviceMaterial& material) {
   return material.has("WALKED") && material.has("REFRACTION");
 }
 
+/// That light is stored at, of a prototype whose surface is known at these.
+glm::ivec3 light_nodes(const gl::Volume& surface) {
+  return (glm::ivec3(surface.width(), surface.height(), surface.depth()) - 1) / transport::surface_finer + 1;
+}
+
+int product(const glm::ivec3& size) { return size.x * size.y * size.z; }
+
 }  // namespace
 
 bool ProductSums::pay(const DeviceMaterial& material, const std::vector<LightDirection>& lights, double pixels) {
-  const gl::Volume* nodes = material.volume("distances");
-  if (nodes == nullptr || lights.empty()) return false;
+  const gl::Volume* surface = material.volume("distances");
+  if (surface == nullptr || lights.empty()) return false;
+  const glm::ivec3 nodes = light_nodes(*surface);
   const bool follows = asks_for_unscattered(material);
-  const double count = static_cast<double>(nodes->width()) * nodes->height() * nodes->depth();
-  const int depth = follows ? LightTracks::layers(*nodes) : nodes->depth();
-  return (follows ? pixels > pixels_of_rays : nodes_a_pixel * pixels > count) &&
+  const int depth = follows ? LightTracks::layers(nodes) : nodes.z;
+  return (follows ? pixels > pixels_of_rays : nodes_a_pixel * pixels > product(nodes)) &&
          static_cast<double>(lights.size()) * depth <= most_layers;
 }
 
@@ -62,19 +70,19 @@ void ProductSums::sum(DeviceCache& cache, const Draw& draw, const std::vector<Li
   if (held && !tracked_) return;
   directions_.emplace(device);
   directions_->bind_storage(layout::DISTANT_LIGHTS_BINDING);
-  if (tracked_) tracks_.trace(cache, material, of.grain_to_prototype, lights.size(), together, sample);
+  const glm::ivec3 nodes = light_nodes(*material.volume("distances"));
+  if (tracked_) tracks_.trace(cache, material, nodes, of.grain_to_prototype, lights.size(), together, sample);
   if (held) return;
 
   const std::size_t sums = together ? 1 : lights.size();
-  const gl::Volume& nodes = *material.volume("distances");
   const GLenum format = material.has("GREY") && !together ? GL_R32F : GL_RGBA32F;
-  sums_.emplace(format, nodes.width(), nodes.height(), nodes.depth() * static_cast<int>(sums));
+  sums_.emplace(format, nodes.x, nodes.y, nodes.z * static_cast<int>(sums));
   const gl::Program& program = cache.sum_program(material, together);
   material.bind(program);
   program.set("grain_to_prototype", of.grain_to_prototype);
   sums_->bind_image(0, format);
-  const int count = nodes.width() * nodes.height() * nodes.depth();
-  glDispatchCompute(static_cast<GLuint>((count + nodes_a_group - 1) / nodes_a_group), static_cast<GLuint>(sums), 1);
+  glDispatchCompute(static_cast<GLuint>((product(nodes) + nodes_a_group - 1) / nodes_a_group),
+                    static_cast<GLuint>(sums), 1);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
   of_ = std::move(of);
 }
