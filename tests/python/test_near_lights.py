@@ -128,12 +128,12 @@ def test_light_leaves_a_grain_by_where_it_came_in(truths, model, boundary, most)
         assert error < most
 
 
-# Measured 2.2 and 2.4 percent; walks in a ball leave 3.2 and 2.6.
+# Measured 2.0 and 2.2 percent, the truth's noise in them (2.3 and 2.5 with a third of its walks).
 @pytest.mark.parametrize("times", [1.0, 4.0])
 @pytest.mark.parametrize("model, most", [("transport", 0.025)])
 def test_a_grain_that_is_no_ball(model, most, times):
     lamp = LAMP * times
-    expected = truth("point", "index_matched", 12000, half_axes=HALF_AXES, lamp=lamp)
+    expected = truth("point", "index_matched", 36000, half_axes=HALF_AXES, lamp=lamp)
     medium = native.Material(model=model, sigma_s=(SIGMA_T * ALBEDO,) * 3, sigma_a=(SIGMA_T * (1.0 - ALBEDO),) * 3,
                              boundary="index_matched")
     view = view_from_above()
