@@ -65,6 +65,7 @@ const std::vector<Ball> three{{{-1.0, 0.0, 0.0}, 1.0}, {{1.0, 0.0, 0.0}, 1.0}, {
 double by_meshes(const scene::Material& material, const HeapLight& light, double& noise) {
   MeshHeapCase setup = seen_from_above(2.0);
   std::vector<glm::dmat4> places;
+  places.reserve(three.size());
   for (const Ball& of : three) places.push_back(placed(of.middle, of.radius));
   setup.scene.arrays.emplace_back(ball(), material, scene::Transforms(places));
   // On a plane that faces it pi, as of balls: a scene tells what a sphere gets.
