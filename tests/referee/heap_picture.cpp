@@ -11,6 +11,7 @@
 #include "interface.h"
 #include "parallel.h"
 #include "rng.h"
+#include "roulette.h"
 
 namespace mesograin::referee {
 namespace {
@@ -91,14 +92,6 @@ class Path {
 
   bool is_behind() const { return surface_.matched() && !between_ && scatterer_ != seen_; }
 
-  bool survives() {
-    constexpr double least = 0.05;
-    if (weight_ >= least) return true;
-    if (!(rng_.uniform() * least < weight_)) return false;
-    weight_ = least;
-    return true;
-  }
-
   /// Until it leaves the ball that it has come to; false where it ends.
   bool meet(std::uint32_t number, glm::dvec3& place, glm::dvec3& direction) {
     const Ball& ball = grid_.ball(number);
@@ -108,7 +101,7 @@ class Path {
       weight_ *= material_.reflectance;
       ask(number, place, std::max(glm::dot(normal, light_.direction), 0.0) / pi);
       direction = sample_cosine(normal, rng_);
-      return survives();
+      return survives(weight_, rng_);
     }
     if (!surface_.matched()) {
       changed_ = true;
@@ -138,7 +131,7 @@ class Path {
         weight_ *= material_.sigma_s / sigma_t_;
         scattered_in(number);
         ask_inside(number, place, direction);
-        if (!survives()) return false;
+        if (!survives(weight_, rng_)) return false;
         direction = sample_phase(direction, material_.g, rng_);
         continue;
       }

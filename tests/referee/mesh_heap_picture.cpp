@@ -15,6 +15,7 @@
 #include "interface.h"
 #include "mesh_heap.h"
 #include "pixels.h"
+#include "roulette.h"
 #include "view.h"
 
 namespace mesograin::referee {
@@ -129,18 +130,10 @@ class Path {
   }
 
  private:
-  bool survives() {
-    constexpr double least = 0.05;
-    if (weight_ >= least) return true;
-    if (!(rng_.uniform() * least < weight_)) return false;
-    weight_ = least;
-    return true;
-  }
-
   bool bounces(const Matter& of, const MeshHeap::Hit& hit, glm::dvec3& direction) {
     weight_ *= of.reflectance;
     direction = sample_cosine(glm::dot(hit.normal, direction) < 0.0 ? hit.normal : -hit.normal, rng_);
-    return survives();
+    return survives(weight_, rng_);
   }
 
   /// Until it leaves the body that it has come to, or is reflected by it; false where it ends.
@@ -161,7 +154,7 @@ class Path {
       if (flight < own->distance) {
         place += flight * direction;
         weight_ *= of.sigma_s / of.sigma_t;
-        if (!survives()) return false;
+        if (!survives(weight_, rng_)) return false;
         direction = sample_phase(direction, of.g, rng_);
         continue;
       }
