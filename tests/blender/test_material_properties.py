@@ -138,6 +138,30 @@ def test_a_material_goes_to_another_file(tmp_path, link):
     assert taken.copy().mesograin.model == "model_2"
 
 
+def test_a_library_override_keeps_what_was_changed(tmp_path, native):
+    material = bpy.data.materials.new("Grain")
+    material.use_fake_user, material.mesograin.model = True, "model_2"
+    library, path = str(tmp_path / "library.blend"), str(tmp_path / "file.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=library)
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
+    with bpy.data.libraries.load(library, link=True) as (_, here):
+        here.materials = ["Grain"]
+    own = here.materials[0].override_create()
+    own.use_fake_user = True
+    own.mesograin.g, own.mesograin.model, own.mesograin.roughness = 0.75, "model_3", 0.25
+    own.mesograin_look.way, own.mesograin_look.surroundings = "look", "water"
+    own.mesograin_look.mean_free_path, own.mesograin_look.colour = (0.25, 0.5, 1.0), (0.5, 0.4, 0.3)
+    own.mesograin_colours.vary, own.mesograin_colours.colour_from = True, (0.25, 0.5, 0.75)
+    wanted = dict(export.material_values(own, 1.0).values)
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    bpy.ops.wm.open_mainfile(filepath=path)
+    [own] = [each for each in bpy.data.materials if each.override_library]
+    kept = dict(export.material_values(own, 1.0).values)
+    assert all(kept[name] == pytest.approx(wanted[name], rel=1e-5) for name in wanted), (kept, wanted)
+    assert (own.mesograin_look.way, own.mesograin_look.surroundings) == ("look", "water")
+    assert own.mesograin_colours.vary and tuple(own.mesograin_colours.colour_from) == (0.25, 0.5, 0.75)
+
+
 @pytest.mark.parametrize("parameter, value, kept", [
     ("sigma_a", (-1.0, 0.0, 0.0), (0.0, 0.0, 0.0)), ("g", -3.0, -1.0), ("eta", 9.0, 4.0), ("roughness", 2.0, 1.0),
     ("scale", -1.0, 0.0), ("reflectance", (2.0, 0.5, 0.5), (1.0, 0.5, 0.5))])

@@ -11,6 +11,7 @@ from bpy.props import (BoolProperty, EnumProperty, FloatProperty, FloatVectorPro
 
 from .. import compat
 from . import instance_attributes, node_colours
+from .properties import OVERRIDABLE
 
 
 @dataclasses.dataclass(frozen=True)
@@ -105,26 +106,27 @@ def _tag(properties, _context):
     properties.id_data.update_tag()
 
 
-_COLOUR = {"size": 3, "min": 0.0, "max": 100.0, "soft_max": 3.0, "update": _tag}
-_SCATTERING = {"min": 0.0, "max": 100.0, "soft_max": 3.0, "update": _tag}
+_COMMON = {"update": _tag, "override": OVERRIDABLE}
+_COLOUR = {"size": 3, "min": 0.0, "max": 100.0, "soft_max": 3.0, **_COMMON}
+_SCATTERING = {"min": 0.0, "max": 100.0, "soft_max": 3.0, **_COMMON}
 
 
 class ColourProperties(bpy.types.PropertyGroup):
     """`material.mesograin_colours`: the range in which instances of a heap lie, evenly and at random."""
 
-    vary: BoolProperty(name="Vary Grains", default=False, update=_tag,
+    vary: BoolProperty(name="Vary Grains", default=False, **_COMMON,
                        description="Give each of many instances a colour of its own; sand is never of one colour")
-    source: EnumProperty(name="Source", default="RANGE", update=_tag, items=(
+    source: EnumProperty(name="Source", default="RANGE", **_COMMON, items=(
         ("RANGE", "Range", "Evenly and at random between two ends"),
         ("NODES", "Nodes", "What the colour of the material's Cycles surface is for each: Object Info's Random along a "
                            "Color Ramp, or its Color, or an Attribute of its instancer"),
         ("ATTRIBUTE", "Attribute", "What geometry nodes stored by a name on each instance, or a property of that name "
                                    "of the instancer"),
     ), description="What absorption, or an opaque grain's reflectance, is multiplied by")
-    colour_attribute: StringProperty(name="Absorption", default="", update=_tag,
+    colour_attribute: StringProperty(name="Absorption", default="", **_COMMON,
                                      description="The attribute of an instance, a number or a colour, by which "
                                                  "sigma_a, or an opaque grain's reflectance, is multiplied")
-    scattering_attribute: StringProperty(name="Scattering", default="", update=_tag,
+    scattering_attribute: StringProperty(name="Scattering", default="", **_COMMON,
                                          description="The attribute of an instance by which sigma_s is "
                                                      "multiplied")
     colour_from: FloatVectorProperty(name="Absorption From", default=(0.5, 0.5, 0.5), **_COLOUR,
@@ -140,7 +142,7 @@ class ColourProperties(bpy.types.PropertyGroup):
 
 def register():
     bpy.utils.register_class(ColourProperties)
-    bpy.types.Material.mesograin_colours = PointerProperty(type=ColourProperties)
+    bpy.types.Material.mesograin_colours = PointerProperty(type=ColourProperties, override=OVERRIDABLE)
 
 
 def unregister():

@@ -7,6 +7,8 @@ from ..schema import models, parameters
 MATERIAL_PARAMETERS = tuple(parameters.PARAMETERS)
 
 
+OVERRIDABLE = {"LIBRARY_OVERRIDABLE"}
+"""What a library override may change: Blender drops what is changed of any other property when it opens the file."""
 AUTO_NUMBER = 1000
 """Of the model in a file: beyond those of all models that may come."""
 
@@ -27,7 +29,7 @@ def _tag(properties, _context):
 def _property(parameter):
     """The Blender property of a parameter of the schema."""
     common = {"name": parameter.label, "default": parameter.default, "description": parameter.describe("mm"),
-              "update": _tag}
+              "update": _tag, "override": OVERRIDABLE}
     if parameter.kind == "switch":
         return BoolProperty(**common)
     if parameter.kind == "choice":
@@ -91,7 +93,7 @@ _register_classes, _unregister_classes = bpy.utils.register_classes_factory(
 
 def register():
     _register_classes()
-    bpy.types.Material.mesograin = PointerProperty(type=MaterialProperties)
+    bpy.types.Material.mesograin = PointerProperty(type=MaterialProperties, override=OVERRIDABLE)
     bpy.types.Scene.mesograin = PointerProperty(type=SceneProperties)
     bpy.types.ViewLayer.mesograin = PointerProperty(type=ViewLayerProperties)
 

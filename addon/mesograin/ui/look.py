@@ -6,6 +6,7 @@ from bpy.props import EnumProperty, FloatProperty, FloatVectorProperty, PointerP
 from .. import native_module
 from ..schema import advice, models
 from ..scene import export, meshes, thick_layer
+from ..scene.properties import OVERRIDABLE
 from .active_material import OnActiveMaterial, active_material
 
 INDICES = {"air": 1.0, "water": 1.333, "oil": 1.47}
@@ -76,23 +77,23 @@ def _surround(look, _context):
 class LookProperties(bpy.types.PropertyGroup):
     """`material.mesograin_look`. Of colour and mean free path it holds nothing: they are the coefficients."""
 
-    way: EnumProperty(name="Set by", default="coefficients", items=(
+    way: EnumProperty(name="Set by", default="coefficients", override=OVERRIDABLE, items=(
         ("coefficients", "Sigma", "Say the medium as physics does: sigma_s, sigma_a and a scale", 0),
         ("look", "Look", "Say the medium by the colour of a thick layer and how far light goes in it", 1)))
     colour: FloatVectorProperty(
-        name="Colour", subtype="COLOR", size=3, min=0.0, max=1.0, get=_colour, set=_set_colour,
+        name="Colour", subtype="COLOR", size=3, min=0.0, max=1.0, get=_colour, set=_set_colour, override=OVERRIDABLE,
         description="What an endless layer sends back of the light that enters it from everywhere: lighter is less"
         " absorption. Free paths stay. With g it is that of the reduced medium")
     mean_free_path: FloatVectorProperty(
         name="Free Path", size=3, min=thick_layer.SHORTEST, max=thick_layer.LONGEST, precision=3, get=_paths,
-        set=_set_paths, description="How far light of each channel goes, in mm, before it has lost its direction or"
-        " is absorbed: longer looks clearer. The colour stays")
+        set=_set_paths, override=OVERRIDABLE, description="How far light of each channel goes, in mm, before it has"
+        " lost its direction or is absorbed: longer looks clearer. The colour stays")
     surroundings: EnumProperty(
-        name="Lies in", default="air", update=_surround, description="What is around the grain. eta is relative to"
-        " it: a wet grain refracts and reflects less, and more of what is inside shows", items=tuple(
+        name="Lies in", default="air", update=_surround, override=OVERRIDABLE, description="What is around the grain."
+        " eta is relative to it: a wet grain refracts and reflects less, and more of what is inside shows", items=tuple(
             (name, name.capitalize(), f"Index of refraction {index:g}", number)
             for number, (name, index) in enumerate(INDICES.items())))
-    index_around: FloatProperty(default=1.0, options={"HIDDEN"})
+    index_around: FloatProperty(default=1.0, options={"HIDDEN"}, override=OVERRIDABLE)
 
     def forget_surroundings(self):
         """The grain lies in air from here on, and its eta is what it is."""
@@ -215,7 +216,7 @@ _register_classes, _unregister_classes = bpy.utils.register_classes_factory((Loo
 
 def register():
     _register_classes()
-    bpy.types.Material.mesograin_look = PointerProperty(type=LookProperties)
+    bpy.types.Material.mesograin_look = PointerProperty(type=LookProperties, override=OVERRIDABLE)
 
 
 def unregister():
