@@ -75,15 +75,16 @@ def test_coordinates_that_are_none(scene):
     assert_one_sentence(error_of_render(), "Object 'Cube'", "finite")
 
 
-def test_sun_that_is_negative(scene):
-    bpy.data.lights["Sun"].energy = -1.0
-    assert_one_sentence(error_of_render(), "Light 'Sun'", "irradiance", "-1")
-
-
-@pytest.mark.parametrize("energy", [math.nan, math.inf])
-def test_sun_whose_strength_is_none(scene, energy):
-    bpy.data.lights["Sun"].energy = energy
-    assert_one_sentence(error_of_render(), "Light 'Sun'", "irradiance", "finite")
+@pytest.mark.parametrize("kind", ["SUN", "POINT", "SPOT", "AREA"])
+@pytest.mark.parametrize("energy, reason", [(-1.0, "negative"), (math.nan, "no number"), (math.inf, "no number")])
+def test_a_light_of_no_strength_that_can_be_drawn_is_left_out_and_no_other(scene, render, kind, energy, reason):
+    before = render()
+    lost = add_object("Lost", bpy.data.lights.new("Lost", kind), Matrix.Translation((0.0, 0.0, 3.0)))
+    lost.data.energy = energy
+    picture, warnings = warnings_of_render(render)
+    [sentence] = warnings
+    assert_one_sentence(sentence, "Light 'Lost'", reason, "left out")
+    np.testing.assert_array_equal(picture, before)
 
 
 def test_sun_as_wide_as_half_the_sky(scene, render):
@@ -175,11 +176,19 @@ def test_other_lights(scene, render):
         dark = picture[8, 8, 0]
 
 
-def test_lights_that_cannot_be(scene, render):
-    made = add_object("Lamp", bpy.data.lights.new("Lamp", "POINT"))
-    made.data.energy = -1.0
-    sentence = error_of_render()
-    assert_one_sentence(sentence, "Light 'Lamp'", "radiant_intensity")
+@pytest.mark.parametrize("strength, reason", [(-1.0, "negative"), (math.nan, "no number")])
+def test_a_world_of_no_strength_that_can_be_drawn_is_black(scene, render, strength, reason):
+    before = render()
+    scene.world = bpy.data.worlds.new("Night")
+    compat.use_nodes(scene.world)
+    tree = scene.world.node_tree
+    number = tree.nodes.new("ShaderNodeValue")
+    tree.links.new(number.outputs[0], tree.nodes["Background"].inputs["Strength"])
+    number.outputs[0].default_value = strength
+    picture, warnings = warnings_of_render(render)
+    [sentence] = warnings
+    assert_one_sentence(sentence, "World 'Night'", reason, "black")
+    np.testing.assert_array_equal(picture, before)
 
 
 def test_world_without_background(scene, render):

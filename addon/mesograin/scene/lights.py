@@ -46,6 +46,9 @@ def read(evaluated_object, matrix_world):
     if not compat.casts_shadows(light):
         sentences = (*sentences, f"Light '{name}' casts shadows, though it should not.")
     power = [own * node for own, node in zip(_power(light), factor)]
+    wrong = fault(power)
+    if wrong:
+        return None, (f"Light '{name}' {wrong}, so it is left out.",)
     return _READERS[light.type](light, name, power, matrix_world), sentences
 
 
@@ -53,9 +56,18 @@ def energy_and_colour(light):
     """(strength, colour) of a light without nodes, exposure or temperature that is as bright as this."""
     power = [own * node for own, node in zip(_power(light), _emission_of_nodes(light, light.name)[0])]
     strongest = max(power)
-    if strongest <= 0.0:
+    if strongest <= 0.0 or fault(power):
         return 0.0, (1.0, 1.0, 1.0)
     return strongest, tuple(channel / strongest for channel in power)
+
+
+def fault(power):
+    """Why a light or world of this power, linear RGB, cannot be drawn; empty where it can."""
+    if not all(math.isfinite(channel) for channel in power):
+        return "has a strength or colour that is no number"
+    if min(power) < 0.0:
+        return "has a negative strength or colour, and would take light away"
+    return ""
 
 
 def _power(light):

@@ -45,6 +45,9 @@ def read(scene, side=SIDE):
     if world is None:
         return WorldValues(), ()
     values, sentences = _read(world, side)
+    wrong = lights.fault(values.radiance)
+    if wrong:
+        values, sentences = WorldValues(), (f"World '{world.name}' {wrong}, so it is black.",)
     if _has_volume(world):
         sentences = (*sentences, f"World '{world.name}' has a volume, which is left out.")
     # Where nothing shines the picture is black, whether the world is drawn or not.
