@@ -381,6 +381,9 @@ void bind_view(py::module_& module) {
            "Returns whether it did.")
       .def_property_readonly("preparing", &render::View::preparing,
                              "The share that is done of what the scene's picture waits for; None if all is known.")
+      .def_property_readonly("awaited", &render::View::awaited,
+                             "What that is: 'transport' in meshes, 'exchange' of light between grains; [] if all is "
+                             "known.")
       .def_property_readonly("warnings", &render::View::warnings,
                              "One sentence for each thing that is not drawn by the model asked for.")
       .def("render", &render, py::arg("samples") = 1,

@@ -147,6 +147,16 @@ std::optional<double> View::preparing() const {
   return sum / static_cast<double>(computations_.size());
 }
 
+std::vector<std::string> View::awaited() const {
+  wait_for_scene();
+  std::vector<std::string> kinds;
+  if (!std::all_of(computations_.begin(), computations_.end(),
+                   [](const auto& computation) { return computation->news().final; }))
+    kinds.emplace_back("transport");
+  if (solving_ && !solving_->news().final) kinds.emplace_back("exchange");
+  return kinds;
+}
+
 std::vector<std::string> View::warnings() const {
   wait_for_scene();
   std::vector<std::string> sentences;

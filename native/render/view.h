@@ -73,6 +73,9 @@ class View {
   /// The share that is done of what the scene's picture waits for; nothing if all is known.
   std::optional<double> preparing() const;
 
+  /// What that is: "transport" in meshes, "exchange" of light between grains; nothing if all is known.
+  std::vector<std::string> awaited() const;
+
   /// One sentence for each thing that is not drawn by the model asked for.
   std::vector<std::string> warnings() const;
 

@@ -40,9 +40,9 @@ void Walks::trace(const std::vector<double>& extinctions, const Effort& effort) 
               known_logarithm(radiance[deputy * all.size() + i * near_extinctions + e]);
       }
   };
-  unscattered_light(*body_, grid_, eta_, all, quality_.light_across, keep, part_of(effort, 0.0, 0.5));
+  unscattered_light(*body_, grid_, eta_, all, quality_.light_across, keep, part_of(effort, 0.0, 0.7));
   std::vector<TracedExchange> exchanges =
-      trace_exchange(*body_, grid_, eta_, missing, quality_.way_across, part_of(effort, 0.5, 1.0));
+      trace_exchange(*body_, grid_, eta_, missing, quality_.way_across, part_of(effort, 0.7, 1.0));
   for (std::size_t i = 0; i < missing.size(); ++i) {
     steps[i].exchange = std::move(exchanges[i]);
     steps_.emplace(missing[i], std::move(steps[i]));

@@ -28,6 +28,9 @@ constexpr Quality thick{.light_across = 96, .spacing = Spacing::nearer_across};
 // The light changes within ways that are short beside the grain, and nodes are worth more than products.
 constexpr Quality thickest{.nodes = 10500, .light_across = 96, .many_terms = false};
 
+// Of the time that the fine answer takes as well: what its rough one takes, and what tracing its grid does.
+constexpr double coarse_share = 0.04;
+
 double densest(const StoredMedium& medium) { return std::max({medium.sigma_t.r, medium.sigma_t.g, medium.sigma_t.b}); }
 
 // Mean free paths between nodes from which on a grain counts as thick, and as one of the thickest.
@@ -149,7 +152,7 @@ void Works::work(const Job& job, const std::stop_token& stop) {
   try {
     effort.progress(0.0);
     if (given_up) return;
-    const std::shared_ptr<Walks> few = walks(job, coarse, effort);
+    const std::shared_ptr<Walks> few = walks(job, coarse, part_of(effort, 0.0, 0.2 * coarse_share));
     const Body& body = few->body();
     StoredMedium medium = job.order.medium;
     medium.sigma_t *= body.unit();
@@ -160,9 +163,12 @@ void Works::work(const Job& job, const std::stop_token& stop) {
           "Light's transport is stored for grains up to about {:.0f} mean free paths across; this one has {:.0f}.",
           2.0 * widest_spacing / node_spacing(body, quality), 2.0 * most);
     if (most * node_spacing(body, coarse) <= widest_spacing)
-      tell(std::make_shared<StoredTransport>(compute_transport(*few, medium, effort)), {}, false);
-    const std::shared_ptr<Walks> many = walks(job, quality, part_of(effort, 0.0, 0.1));
-    const auto stored = std::make_shared<StoredTransport>(compute_transport(*many, medium, part_of(effort, 0.1, 1.0)));
+      tell(std::make_shared<StoredTransport>(
+               compute_transport(*few, medium, part_of(effort, 0.2 * coarse_share, coarse_share))),
+           {}, false);
+    const std::shared_ptr<Walks> many = walks(job, quality, part_of(effort, coarse_share, 2.0 * coarse_share));
+    const auto stored =
+        std::make_shared<StoredTransport>(compute_transport(*many, medium, part_of(effort, 2.0 * coarse_share, 1.0)));
     cache_.keep(job.name, job.about, *stored);
     tell(stored, {}, true);
   } catch (const Stopped&) {

@@ -1,10 +1,13 @@
 # F12 shows what the native module renders, pixel for pixel.
+import random
+
 import addon_utils
 import bpy
 import numpy as np
 import pytest
 from mesograin.engine import engine, status
 from mesograin.engine.pace import Pace
+from mesograin.engine.waiting import Waiting
 from mesograin.scene import export, meshes
 
 
@@ -123,6 +126,38 @@ def test_the_first_sample_tells_no_time_left(render, blend_files, monkeypatch):
     render()
     assert said[0] == "Sample 1/8" and len(said) > 1
     assert all(line.endswith(" left") for line in said[1:]), said
+
+
+def test_who_waits_is_told_for_what_and_how_long():
+    transport, begun = Waiting(), "Computing how light goes in grains, once for each shape and medium"
+    assert transport.sentence(["transport"], 0.04, 50.0) == f"{begun}: 4%"
+    assert transport.sentence(["transport"], 0.05, 51.5) == f"{begun}: 5%", "too little is done to tell"
+    assert transport.sentence(["transport"], 0.28, 56.0) == f"{begun}: 28%, about 18 s left"
+    assert Waiting().sentence(["exchange"], 0.5, 0.0) == (
+        "Computing how light goes between grains, once for these grains and lights: 50%")
+    assert Waiting().sentence(["transport", "exchange"], 0.0, 0.0) == (
+        "Computing how light goes in and between grains: 0%")
+
+
+def test_a_render_that_waits_for_transport_says_so_and_how_far_it_is(render, blend_files, monkeypatch):
+    bpy.ops.wm.open_mainfile(filepath=str(blend_files / "sphere.blend"))
+    bpy.context.scene.mesograin.samples, bpy.context.scene.render.resolution_percentage = 1, 10
+    for material in bpy.data.materials:
+        material.mesograin.model = "transport"
+        material.mesograin.eta = 1.31 + 1e-4 * random.random()  # of which no run before has left anything in the cache
+    said = []
+
+    class Told(Waiting):
+        def sentence(self, awaited, share, now):
+            said.append((tuple(awaited), share))
+            return super().sentence(awaited, share, now)
+
+    monkeypatch.setattr(engine, "POLL_SECONDS", 0.005)
+    monkeypatch.setattr(engine.waiting, "Waiting", Told)
+    render()
+    shares = [share for _, share in said]
+    assert said[0][0] == ("transport",) and len(set(shares)) > 3
+    assert shares == sorted(shares), "what is done is not undone"
 
 
 @pytest.mark.parametrize("crop", [False, True], ids=["in_place", "cropped"])

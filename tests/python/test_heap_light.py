@@ -214,10 +214,11 @@ def test_who_waits_for_the_light_sees_how_far_it_is_and_can_cancel():
     view.set_camera(camera())
     task = view.start(4)
     assert not task.wait(0.01) and 0.0 <= view.preparing < 1.0 and view.samples == 0
+    assert view.awaited == ["exchange"]
     view.cancel()
     assert task.wait(5.0) and view.samples == 0
     view.render(1)
-    assert view.preparing is None and view.samples == 1
+    assert view.preparing is None and view.awaited == [] and view.samples == 1
 
 
 def test_a_camera_finds_no_light_anew(viewport):

@@ -176,6 +176,7 @@ def test_an_impatient_view_draws_at_once_and_better_later(cube):
     view = show(native.View(32, 32, patient=False), cube, unknown)
     first = brightness(view)
     assert view.preparing is not None, "it was known before"
+    assert view.awaited == ["transport"]
     seen, deadline = [], time.monotonic() + 120.0
     while time.monotonic() < deadline:
         done = view.preparing is None
@@ -186,7 +187,7 @@ def test_an_impatient_view_draws_at_once_and_better_later(cube):
             break
         time.sleep(0.02)
     assert len(seen) == 2, "first a coarse answer, then the final one"
-    assert view.take_news() is False and view.samples == 2
+    assert view.take_news() is False and view.samples == 2 and view.awaited == []
     assert seen[0] == pytest.approx(seen[1], rel=0.06)
     assert first == pytest.approx(seen[1], rel=0.3)
     assert brightness(show(native.View(32, 32), cube, unknown)) == pytest.approx(seen[1], rel=1e-5)

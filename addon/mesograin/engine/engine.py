@@ -10,7 +10,7 @@ import numpy as np
 from .. import compat, native_module
 from ..durations import duration
 from ..scene import export, lens
-from . import motion, passes, status, viewport, viewport_text
+from . import motion, passes, status, viewport, viewport_text, waiting
 from .pace import Pace
 
 # How long a final render may go without looking whether it was cancelled, and without showing how far it is.
@@ -133,11 +133,13 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
 
     def _wait(self, view, task):
         """Until a view's task ends, or is cancelled by the artist."""
+        patience = waiting.Waiting()
         while not task.wait(POLL_SECONDS):
             if self.test_break():
                 view.cancel()
-            if view.preparing is not None:
-                self.update_stats("", _preparing(view.preparing))
+            share = view.preparing
+            if share is not None:
+                self.update_stats("", patience.sentence(view.awaited, share, time.perf_counter()))
         task.result()
 
     def _sign(self, metadata):
@@ -253,10 +255,6 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
             _redraw_panels()
 
 
-def _preparing(share):
-    return f"Light in and between grains: {share or 0.0:.0%}"
-
-
 def _set_pass(result, name, pixels):
     # Blender's rows begin at the bottom.
     compat.set_pass_pixels(result.layers[0].passes[name], np.ascontiguousarray(pixels[::-1]))
@@ -265,7 +263,7 @@ def _set_pass(result, name, pixels):
 def _line(session, target, warnings, columns):
     """The text over a viewport: how far it is, and what the artist has to know of it."""
     share = session.preparing
-    parts = [] if share is None else [_preparing(share)]
+    parts = [] if share is None else [waiting.line(session.awaited, share)]
     parts.append(f"Sample {session.samples}/{target}")
     if warnings:
         parts.append(viewport_text.line(warnings, columns - len(" | ".join((*parts, "")))))

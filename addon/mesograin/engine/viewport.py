@@ -127,6 +127,11 @@ class Session:
         return self._view.preparing if self._taking is None else 0.0
 
     @property
+    def awaited(self):
+        """What that is, as native.View's."""
+        return tuple(self._view.awaited) if self._taking is None else ()
+
+    @property
     def warnings(self):
         """Sentences on what is not drawn by the model asked for."""
         return tuple(self._view.warnings) if self._taking is None else ()
