@@ -9,7 +9,7 @@ from mesograin import compat
 from mesograin.engine import engine, status
 from mesograin.scene import export
 from mesograin.schema import models, parameters
-from mesograin.ui import grain_colours, node_panels, panels
+from mesograin.ui import grain_colours, node_panels, panels, presets
 from mesograin.ui.bake_panel import panel as bake_panel
 from mesograin.ui.compare_panel import panel as compare_panel
 from mesograin.ui.match_panel import panel as match_panel
@@ -135,6 +135,36 @@ def test_the_button_for_nodes_keeps_its_name(kind, rest):
     layout = Layout()
     node_panels.draw_surface(layout, datablock, rest)
     assert layout.boxes == ["Use Nodes"] and layout.split == [rest]  # a button with an icon loses its name in a split
+
+
+def test_no_menu_of_materials_is_longer_than_a_small_screen_and_together_they_have_all():
+    class Rows(Layout):
+        """rows: what a menu shows, one below the other; chosen: the presets among them."""
+
+        def __init__(self):
+            super().__init__()
+            self.rows, self.chosen = [], []
+
+        def operator(self, name, **_):
+            self.rows.append(name)
+            chosen = types.SimpleNamespace(preset=None)
+            self.chosen.append(chosen)
+            return chosen
+
+        def menu(self, name, **_):
+            self.rows.append(name)
+            assert hasattr(bpy.types, name), name
+
+        def label(self, text="", **_):
+            self.rows.append(text)
+
+    shown = []
+    for menu in (presets.MESOGRAIN_MT_presets, *presets.MEASURED):
+        rows = Rows()
+        menu.draw(types.SimpleNamespace(layout=rows), None)
+        assert len(rows.rows) <= 16, "of 23 pixels each, where half a screen of 768 is free"
+        shown += [chosen.preset for chosen in rows.chosen if chosen.preset]
+    assert shown == list(presets.BY_IDENTIFIER)
 
 
 @pytest.mark.parametrize("samples, said", [(1, "1 sample"), (2, "2 samples")])

@@ -85,14 +85,28 @@ class MESOGRAIN_MT_presets(bpy.types.Menu):
 
     def draw(self, _context):
         column = self.layout.column()
-        for group in GROUPS:
-            column.label(text=group.title)
-            for preset in group.presets:
-                column.operator(MESOGRAIN_OT_apply_preset.bl_idname, text=preset.name).preset = preset.identifier
-            column.separator()
+        _draw_group(column, GROUPS[0])
+        column.separator()
+        for menu in MEASURED:
+            column.menu(menu.__name__)
+        column.separator()
         column.menu(MESOGRAIN_MT_own_presets.__name__)
         column.operator(MESOGRAIN_OT_add_preset.bl_idname)
 
 
+def _draw_group(layout, group):
+    layout.label(text=group.title)
+    for preset in group.presets:
+        layout.operator(MESOGRAIN_OT_apply_preset.bl_idname, text=preset.name).preset = preset.identifier
+
+
+def _menu_of(number, group):
+    """A menu of its own: with all of them in one, an artist's own materials were below the end of a small screen."""
+    return type(f"MESOGRAIN_MT_presets_{number}", (bpy.types.Menu,), {
+        "bl_label": group.title, "draw": lambda menu, _context: _draw_group(menu.layout, group)})
+
+
+MEASURED = tuple(_menu_of(number, group) for number, group in enumerate(GROUPS[1:], 1))
+
 register, unregister = bpy.utils.register_classes_factory(
-    (MESOGRAIN_OT_apply_preset, MESOGRAIN_OT_add_preset, MESOGRAIN_MT_own_presets, MESOGRAIN_MT_presets))
+    (MESOGRAIN_OT_apply_preset, MESOGRAIN_OT_add_preset, MESOGRAIN_MT_own_presets, *MEASURED, MESOGRAIN_MT_presets))
