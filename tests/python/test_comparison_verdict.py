@@ -22,8 +22,8 @@ def significant(pixels):
     (entry(error=None, corrected=None, noise=None), "the reference is black"),
     (entry(corrected=None, noise=None), "5.00% off, noise unknown from one seed"),
     (entry(significance={"verdict": "no significant difference"}), "no significant difference, noise 1.00%"),
-    (entry(significance=significant(400)), "4.00% off, in 40.0% of the pixels"),
-    (entry(significance=significant(0)), "4.00% off, seen in blocks of pixels"),
+    (entry(significance=significant(400)), "4.00% off, beyond noise in 40.0% of the pixels"),
+    (entry(significance=significant(0)), "4.00% off, beyond noise in blocks of pixels"),
 ])
 def test_words(case, words):
     assert verdict(case) == words

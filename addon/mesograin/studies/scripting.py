@@ -56,7 +56,8 @@ class Case:
 
     @property
     def verdict(self):
-        """A few words, such as '2.31% off, in 40.0% of the pixels' or 'no significant difference, noise 0.27%'."""
+        """A few words, such as '2.31% off, beyond noise in 40.0% of the pixels' or 'no significant difference, noise
+        0.27%'."""
         return verdict.verdict(self.entry)
 
     def path(self, picture):
