@@ -105,6 +105,22 @@ def test_properties_are_the_schema_s():
             assert items == list(zip([choice.name for choice in parameter.choices], numbers))
 
 
+def test_whatever_an_artist_sets_has_a_tooltip_and_can_be_animated():
+    groups = [(owner, name) for owner in (bpy.data.materials.new("Grain"), bpy.context.scene, bpy.context.view_layer)
+              for name in dir(owner) if name.startswith("mesograin")]
+    assert len(groups) > 6
+    for owner, name in groups:
+        group = getattr(owner, name)
+        for each in group.bl_rna.properties:
+            if each.identifier in ("rna_type", "name") or each.is_hidden:
+                continue
+            assert each.description, f"{name}.{each.identifier}"
+            words = each.type in ("STRING", "POINTER") or (each.type == "ENUM" and each.is_enum_flag)
+            assert words or each.is_animatable, f"{name}.{each.identifier}"
+    operators = [getattr(bpy.ops.mesograin, name).get_rna_type() for name in dir(bpy.ops.mesograin)]
+    assert [each.identifier for each in operators if not each.description] == []
+
+
 def test_defaults_are_the_native_module_s(native):
     standard, grain = native.Material(), bpy.data.materials.new("Grain").mesograin
     for parameter in ("model", "g", "eta", "roughness", "scale", "specular", "boundary", "masking", "profile"):

@@ -77,9 +77,11 @@ def _surround(look, _context):
 class LookProperties(bpy.types.PropertyGroup):
     """`material.mesograin_look`. Of colour and mean free path it holds nothing: they are the coefficients."""
 
-    way: EnumProperty(name="Set by", default="coefficients", override=OVERRIDABLE, items=(
-        ("coefficients", "Sigma", "Say the medium as physics does: sigma_s, sigma_a and a scale", 0),
-        ("look", "Look", "Say the medium by the colour of a thick layer and how far light goes in it", 1)))
+    way: EnumProperty(
+        name="Set by", default="coefficients", override=OVERRIDABLE,
+        description="In which words the medium is said: both are kept in step", items=(
+            ("coefficients", "Sigma", "Say the medium as physics does: sigma_s, sigma_a and a scale", 0),
+            ("look", "Look", "Say the medium by the colour of a thick layer and how far light goes in it", 1)))
     colour: FloatVectorProperty(
         name="Colour", subtype="COLOR", size=3, min=0.0, max=1.0, get=_colour, set=_set_colour, override=OVERRIDABLE,
         description="What an endless layer sends back of the light that enters it from everywhere: lighter is less"

@@ -32,6 +32,7 @@ class MESOGRAIN_OT_cancel_match(CancelOperator, bpy.types.Operator):
 
 class MESOGRAIN_OT_show_match(ShowPictureOperator, bpy.types.Operator):
     bl_idname = "mesograin.show_match"
+    bl_description = "Show this picture of the search in an Image Editor"
     session = session
 
     @classmethod
