@@ -12,6 +12,7 @@ from mesograin.studies.comparison.progress import Calls
 from mesograin.studies.match import choices, of_blender, run, subject, target
 from mesograin.ui.match_panel import operators, properties
 from mesograin.ui.match_panel.session import MatchError, session
+from mesograin.ui.side_task import pictures
 
 SUNS = [((1.0, 1.0, 2.0), 3.0)]
 SIGMA_S, SIGMA_A = (1.5, 2.0, 2.5), (0.05, 0.1, 0.4)
@@ -195,3 +196,14 @@ def test_the_panel_asks_for_what_the_study_takes(grain, tmp_path):
     asked.reference, asked.free_exposure = "volume_index_matched", True
     assert properties.arguments(bpy.context.scene)["reference"] == "volume_index_matched"
     assert properties.arguments(bpy.context.scene)["exposure"] == "free"
+
+
+def test_what_was_matched_is_not_called_cycles():
+    """It may be a photograph."""
+    session.results = {"material": "Sand", "files": {"model": "model.exr", "reference": "target.exr",
+                                                     "error": "error.exr"}}
+    try:
+        shown = pictures.pictures_of(session.entry)
+        assert {operators.BUTTONS[name][0] for name in shown} == {"Model", "Picture", "Error"}
+    finally:
+        session.forget()

@@ -5,6 +5,13 @@ from ..active_material import OnActiveMaterial
 from ..side_task.operators import CancelOperator, ShowPictureOperator, StartOperator
 from .session import session
 
+# The pictures of a match: what each is called on its button, and what it shows.
+BUTTONS = {
+    "model": ("Model", "What was found, by Mesograin"),
+    "reference": ("Picture", "What was to be matched, as small as it was compared"),
+    "error": ("Error", "What was found less the picture"),
+}
+
 
 class MESOGRAIN_OT_match(StartOperator, bpy.types.Operator):
     bl_idname = "mesograin.match"
@@ -37,9 +44,7 @@ class MESOGRAIN_OT_show_match(ShowPictureOperator, bpy.types.Operator):
 
     @classmethod
     def description(cls, _context, properties):
-        told = {"model": "What was found, by Mesograin", "error": "What was found less the picture",
-                "reference": "What was to be matched, as small as it was compared"}
-        return f"{told.get(properties.picture, '')}; shown in an Image Editor"
+        return f"{BUTTONS[properties.picture][1]}; shown in an Image Editor"
 
     def entry(self):
         return session.entry, session.task.out

@@ -52,7 +52,7 @@ def draw_results(layout, context):
                          f" {found['renders']} pictures.", icon="INFO")
     row = box.row(align=True)
     for picture in pictures.pictures_of(session.entry):
-        row.operator(operators.MESOGRAIN_OT_show_match.bl_idname, text=pictures.BUTTONS[picture][0]).picture = picture
+        row.operator(operators.MESOGRAIN_OT_show_match.bl_idname, text=operators.BUTTONS[picture][0]).picture = picture
     layout.operator(operators.MESOGRAIN_OT_apply_match.bl_idname, icon="CHECKMARK")
 
 
