@@ -1,5 +1,6 @@
 # The Bake panel without a window: the button's file, what it says, and that the scene stays as it is.
 import json
+import random
 import time
 
 import bpy
@@ -44,6 +45,17 @@ def test_a_cancelled_bake_writes_nothing(asked, tmp_path):
     bake.cancel()
     bake.wait()
     assert not bake.finished and bake.error == "" and not list(tmp_path.iterdir())
+
+
+def test_a_bake_that_waits_for_transport_says_so(asked):
+    grain = bpy.data.materials[0].mesograin
+    grain.model = "transport"
+    grain.eta = 1.31 + 1e-4 * random.random()  # of which no run before has left anything in the cache
+    bake = prepare(bpy.context)
+    assert bake.before_first_step.startswith("Light in grains: ")
+    bake.start()
+    bake.wait()
+    assert bake.finished and bake.before_first_step == "First sample"
 
 
 @pytest.fixture

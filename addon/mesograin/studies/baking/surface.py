@@ -98,6 +98,13 @@ class Surface:
         """One sentence for each thing in the texture that the model asked for did not draw; known after `render`."""
         return self._views[0].warnings
 
+    @property
+    def awaited(self):
+        """(what, share done) of what the first sample waits for, as native.View's `awaited` and `preparing`; None if
+        that is nothing."""
+        share = self._views[0].preparing
+        return None if share is None else (self._views[0].awaited, share)
+
     def cancel(self):
         """Ends `render` after its current sample; from any thread."""
         self._cancelled = True

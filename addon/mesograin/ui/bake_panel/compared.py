@@ -15,6 +15,8 @@ class ComparedBake:
     object. arguments: of `baking.beside.bake`, but for what these and the folders say. results: what OUT.json holds,
     once it was finished."""
 
+    before_first_step = "Blender is starting"
+
     def __init__(self, path, name, **arguments):
         self.path, self.name = path, name
         self.results = None

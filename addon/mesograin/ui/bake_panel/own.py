@@ -6,6 +6,7 @@ import time
 
 from ... import native_module
 from ...durations import duration
+from ...engine import waiting
 from ...studies.baking import relightable, relightable_files, surface
 
 
@@ -15,8 +16,10 @@ def refusals():
 
 
 class _Threaded:
-    """path: where it goes. After the end: `error`, one sentence or empty; `seconds`."""
+    """path: where it goes. before_first_step: what it does while nobody knows for how long. After the end: `error`, one
+    sentence or empty; `seconds`."""
 
+    before_first_step = "First sample"
     detail = ""
     results = None
 
@@ -84,6 +87,11 @@ class Bake(_Threaded):
     def __init__(self, chosen, path, samples, margin, half):
         super().__init__(path, margin, half)
         self.surface, self.samples = chosen, samples
+
+    @property
+    def before_first_step(self):
+        awaited = self.surface.awaited
+        return waiting.line(*awaited) if awaited else super().before_first_step
 
     @property
     def sentences(self):

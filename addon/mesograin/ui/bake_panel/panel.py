@@ -45,7 +45,7 @@ def draw_bake(layout, context):
     what = f"{active.name} to EXR" if active is not None else "to EXR"
     label = f"Bake {what} and with Cycles" if compare else f"Bake {what}"
     side_task.draw_task(layout, context, session, operators.MESOGRAIN_OT_bake, operators.MESOGRAIN_OT_cancel_bake,
-                        "Blender is starting" if compare else "First sample", bake.detail if bake else "",
+                        bake.before_first_step if bake else "", bake.detail if bake else "",
                         text=label, icon="RENDER_STILL")
     if bake is None:
         return
