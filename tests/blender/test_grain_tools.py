@@ -28,6 +28,36 @@ def test_shapes_are_closed_and_as_large_as_the_unit_sphere(kind, segments):
         assert not np.allclose(kinds.make(kind, seed=4, segments=segments).vertices, shape.vertices, atol=1e-3)
 
 
+def sides_met(shape, origin, direction):
+    """Along a line, from where on it is outside, which side of the surface it meets at each crossing: 1 is its back."""
+    corners = np.concatenate((shape.faces[:, [0, 1, 2]], shape.faces[:, [0, 2, 3]]))
+    a, b, c = (shape.vertices[corners[:, corner]] for corner in range(3))
+    # Möller and Trumbore, "Fast, minimum storage ray/triangle intersection", 1997.
+    across = np.cross(direction, c - a)
+    determinant = np.einsum("ij,ij->i", b - a, across)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        u = np.einsum("ij,ij->i", origin - a, across) / determinant
+        turned = np.cross(origin - a, b - a)
+        v = turned @ direction / determinant
+        distance = np.einsum("ij,ij->i", c - a, turned) / determinant
+    met = (u >= 0.0) & (v >= 0.0) & (u + v <= 1.0)
+    return -np.sign(determinant[met])[np.argsort(distance[met])]
+
+
+@pytest.mark.parametrize("habit", [{}, {"angularity": 0.0, "roundness": 1.0}, {"angularity": 1.0, "roundness": 0.0}])
+@pytest.mark.parametrize("kind", kinds.KINDS)
+def test_shapes_do_not_cross_themselves(kind, habit):
+    """What does is drawn by model 3 where `transport` is asked for."""
+    random = np.random.default_rng(1)
+    shape = kinds.make(kind, seed=3, **habit)
+    lower, upper = shape.vertices.min(axis=0), shape.vertices.max(axis=0)
+    for _ in range(128):
+        direction = random.normal(size=3)
+        direction /= np.linalg.norm(direction)
+        sides = sides_met(shape, random.uniform(lower, upper) - 10.0 * direction, direction)
+        np.testing.assert_array_equal(sides, np.resize((-1.0, 1.0), len(sides)))
+
+
 @pytest.mark.parametrize("kind", kinds.KINDS)
 def test_textures_neither_overlap_nor_stretch_much(native, kind):
     data = objects.mesh(kind, segments=12)

@@ -63,7 +63,7 @@ def snow(random, segments, angularity, roundness):
     hexagon = np.cos(np.pi / 6.0) / np.cos((from_arm - 1.0) * np.pi / 6.0)
     reach = core * hexagon + (1.0 - core) * np.minimum(arms, 1.0)
     thickness = random.uniform(0.06, 0.1) * (1.0 + roundness)
-    rise = np.where(np.abs(z) < 1.0, z, np.sign(z) * np.sqrt(np.maximum(1.0 - 0.6 * square ** 8, 0.0)))
+    rise = z * np.sqrt(1.0 - 0.6 * square ** 8)
     out = square * reach
     return plate.moved(np.stack((out * np.cos(angle), out * np.sin(angle), thickness * rise), axis=-1))
 
