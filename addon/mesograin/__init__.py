@@ -15,7 +15,7 @@ __version__ = ".".join(str(number) for number in bl_info["version"])
 ROOMS = ("compat", "native_module", "grains.shape", "grains.kinds", "grains.pile", "grains.objects",
          "scene.smooth_normals", "scene.properties", "scene.meshes", "scene.heaps", "scene.lens", "scene.lights",
          "scene.mesh_lights", "scene.images", "scene.node_colours", "scene.node_patterns", "scene.node_skies",
-         "scene.unwrapped", "scene.colours", "scene.surroundings",
+         "scene.unwrapped", "scene.colours", "scene.overrides", "scene.surroundings",
          "scene.textures", "scene.plain_materials", "scene.thick_layer", "scene.export",
          "engine.status", "engine.writing", "engine.motion", "engine.identities", "engine.passes", "engine.viewport",
          "engine.viewport_text", "engine.engine",

@@ -14,7 +14,7 @@ PACKAGE = pathlib.Path(mesograin.__file__).parent
 
 
 def registered():
-    handlers = {name for event in ("undo_post", "redo_post", "load_pre")
+    handlers = {name for event in ("undo_post", "redo_post", "load_pre", "save_pre")
                 for name in (handler.__name__ for handler in getattr(bpy.app.handlers, event))}
     return {
         "classes": {name for name in dir(bpy.types) if "mesograin" in name.lower()},
@@ -22,7 +22,8 @@ def registered():
                        for name in dir(getattr(bpy.types, kind)) if name.startswith("mesograin")},
         "engines": {panel.__name__ for panel in compat.borrowed_panels()
                     if engine.MesograinRenderEngine.bl_idname in panel.COMPAT_ENGINES},
-        "handlers": {name for name in handlers if name in ("_forget_meshes", "_stop_sessions", "_forget")},
+        "handlers": {name for name in handlers
+                     if name in ("_forget_meshes", "_stop_sessions", "_forget", "read_before_saving")},
     }
 
 
