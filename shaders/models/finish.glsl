@@ -126,7 +126,8 @@ float lit_share_of_bump(vec3 straight, vec3 bent, vec3 to_light) {
   return 2.0 * light / (light + ggx_smith_root(light, alpha));
 #else
   float g = light / max(dot(bent, to_light) * across, 1e-8);
-  return g >= 1.0 ? 1.0 : max(g * (1.0 + g - g * g), 0.0);
+  if (g <= 0.0) return 0.0;  // where the cubic rises again
+  return g >= 1.0 ? 1.0 : g * (1.0 + g - g * g);
 #endif
 }
 #endif
