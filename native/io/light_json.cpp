@@ -155,6 +155,22 @@ Json written(const AreaLight& light) {
           {"spread", light.spread}};
 }
 
+// around: a World or a Backdrop.
+template <typename Around>
+void read_around(Around& around, const Node& node, const std::filesystem::path& folder) {
+  around.radiance = glm::dvec3(1.0);
+  if (node.has("radiance_linear_rgb") || !node.has("image")) around.radiance = node["radiance_linear_rgb"].rgb();
+  if (node.has("image"))
+    around.image = at(node["image"], [&] { return read_surroundings(folder / node["image"].text()); });
+  if (!node.has("world_to_image")) return;
+  const Node rows = node["world_to_image"];
+  if (rows.size() != 3) rows.fail("must be a list of 3 rows");
+  for (int row = 0; row < 3; ++row) {
+    const glm::dvec3 numbers = rows[static_cast<std::size_t>(row)].vector();
+    for (int column = 0; column < 3; ++column) around.world_to_image[column][row] = numbers[column];
+  }
+}
+
 }  // namespace
 
 Json to_json(const Light& light) {
@@ -172,22 +188,17 @@ std::vector<Light> read_lights(const Node& root) {
 }
 
 World read_world(const Node& node, const std::filesystem::path& folder) {
-  node.require_object(std::array<std::string_view, 4>{"radiance_linear_rgb", "image", "world_to_image", "seen"},
-                      provenance_keys);
+  node.require_object(
+      std::array<std::string_view, 5>{"radiance_linear_rgb", "image", "world_to_image", "seen", "backdrop"},
+      provenance_keys);
   World world;
-  world.radiance = glm::dvec3(1.0);
-  if (node.has("radiance_linear_rgb") || !node.has("image")) world.radiance = node["radiance_linear_rgb"].rgb();
-  if (node.has("image"))
-    world.image = at(node["image"], [&] { return read_surroundings(folder / node["image"].text()); });
-  if (node.has("world_to_image")) {
-    const Node rows = node["world_to_image"];
-    if (rows.size() != 3) rows.fail("must be a list of 3 rows");
-    for (int row = 0; row < 3; ++row) {
-      const glm::dvec3 numbers = rows[static_cast<std::size_t>(row)].vector();
-      for (int column = 0; column < 3; ++column) world.world_to_image[column][row] = numbers[column];
-    }
-  }
+  read_around(world, node, folder);
   if (node.has("seen")) world.seen = node["seen"].boolean();
+  if (node.has("backdrop")) {
+    const Node backdrop = node["backdrop"];
+    backdrop.require_object(std::array<std::string_view, 3>{"radiance_linear_rgb", "image", "world_to_image"});
+    read_around(world.backdrop.emplace(), backdrop, folder);
+  }
   at(node, [&] { validate(world); });
   return world;
 }

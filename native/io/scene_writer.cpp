@@ -67,20 +67,29 @@ class Writer {
   }
 
   Json world(const World& world) {
-    Json json{{"radiance_linear_rgb", {world.radiance.r, world.radiance.g, world.radiance.b}}, {"seen", world.seen}};
-    if (!world.image) return json;
-    const std::string file = beside("world.exr");
-    image::Image picture{world.image->width(), world.image->height(), 3, {}};
-    for (const glm::vec3& texel : world.image->texels())
-      picture.pixels.insert(picture.pixels.end(), {texel.r, texel.g, texel.b});
-    write_exr(path_.parent_path() / file, picture.view());
-    json["image"] = file;
-    const glm::dmat3 rows = glm::transpose(world.world_to_image);
-    for (int row = 0; row < 3; ++row) json["world_to_image"].push_back({rows[row].x, rows[row].y, rows[row].z});
+    Json json = around(world, "world.exr");
+    json["seen"] = world.seen;
+    if (world.backdrop) json["backdrop"] = around(*world.backdrop, "backdrop.exr");
     return json;
   }
 
  private:
+  // Of a World or a Backdrop, whose image is written beside the scene.
+  template <typename Around>
+  Json around(const Around& around, const char* image_name) {
+    Json json{{"radiance_linear_rgb", {around.radiance.r, around.radiance.g, around.radiance.b}}};
+    if (!around.image) return json;
+    const std::string file = beside(image_name);
+    image::Image picture{around.image->width(), around.image->height(), 3, {}};
+    for (const glm::vec3& texel : around.image->texels())
+      picture.pixels.insert(picture.pixels.end(), {texel.r, texel.g, texel.b});
+    write_exr(path_.parent_path() / file, picture.view());
+    json["image"] = file;
+    const glm::dmat3 rows = glm::transpose(around.world_to_image);
+    for (int row = 0; row < 3; ++row) json["world_to_image"].push_back({rows[row].x, rows[row].y, rows[row].z});
+    return json;
+  }
+
   std::string beside(const std::string& what) const { return path_.stem().string() + "_" + what; }
 
   Json material(const Material& material) {

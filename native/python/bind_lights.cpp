@@ -127,6 +127,14 @@ std::shared_ptr<Surroundings> make_surroundings(const Array<float>& pixels) {
                                         std::move(texels));
 }
 
+// rotation: (3, 3), row by row, or nothing.
+glm::dmat3 to_rotation(const std::optional<Array<double>>& rotation) {
+  if (!rotation) return glm::dmat3(1.0);
+  if (rotation->ndim() != 2 || rotation->shape(0) != 3 || rotation->shape(1) != 3)
+    throw Error("rotation must be a 3 x 3 matrix.");
+  return glm::transpose(glm::make_mat3(rotation->data()));
+}
+
 void bind_world(py::module_& module) {
   py::class_<Surroundings, std::shared_ptr<Surroundings>>(
       module, "Surroundings", "A picture of all directions, copied and immutable, for as many worlds as need it.")
@@ -136,22 +144,27 @@ void bind_world(py::module_& module) {
           "of it.")
       .def_property_readonly("size", [](const Surroundings& s) { return std::pair(s.width(), s.height()); });
 
-  py::class_<scene::World>(module, "World", "What is all around the scene.")
+  py::class_<scene::Backdrop>(module, "Backdrop", "What the camera sees in the place of a world, and nothing else.")
       .def(py::init([](const Triple& radiance, std::shared_ptr<Surroundings> image,
-                       const std::optional<Array<double>>& rotation, bool seen) {
-             scene::World world{to_vector(radiance), std::move(image), glm::dmat3(1.0), seen};
-             if (rotation) {
-               if (rotation->ndim() != 2 || rotation->shape(0) != 3 || rotation->shape(1) != 3)
-                 throw Error("rotation must be a 3 x 3 matrix.");
-               world.world_to_image = glm::transpose(glm::make_mat3(rotation->data()));
-             }
-             return validated(world);
+                       const std::optional<Array<double>>& rotation) {
+             return scene::Backdrop{to_vector(radiance), std::move(image), to_rotation(rotation)};
            }),
            py::arg("radiance") = Triple{1.0, 1.0, 1.0}, py::arg("image") = py::none(), py::arg("rotation") = py::none(),
-           py::arg("seen") = false,
+           "As a World's.");
+
+  py::class_<scene::World>(module, "World", "What is all around the scene.")
+      .def(py::init([](const Triple& radiance, std::shared_ptr<Surroundings> image,
+                       const std::optional<Array<double>>& rotation, bool seen,
+                       const std::optional<scene::Backdrop>& backdrop) {
+             return validated(
+                 scene::World{to_vector(radiance), std::move(image), to_rotation(rotation), seen, backdrop});
+           }),
+           py::arg("radiance") = Triple{1.0, 1.0, 1.0}, py::arg("image") = py::none(), py::arg("rotation") = py::none(),
+           py::arg("seen") = false, py::arg("backdrop") = py::none(),
            "radiance: linear RGB, multiplies the image, a Surroundings; rotation: (3, 3), from the world's directions "
            "to "
-           "the image's; seen: behind the grains, else the picture is transparent there.")
+           "the image's; seen: behind the grains, else the picture is transparent there; backdrop: what is seen "
+           "instead, a Backdrop.")
       .def_property_readonly("radiance", [](const scene::World& w) { return to_triple(w.radiance); })
       .def_property_readonly("has_image", [](const scene::World& w) { return w.image != nullptr; })
       .def_readonly("seen", &scene::World::seen)

@@ -18,6 +18,15 @@ constexpr std::uint32_t sun_seeds = 0x10000U;
 constexpr std::uint32_t world_seed = 0x20000U;
 constexpr std::uint32_t local_seeds = 0x30000U;
 
+std::optional<gl::Texture> sent(const scene::Surroundings* image) {
+  std::optional<gl::Texture> texture;
+  if (image == nullptr) return texture;
+  texture.emplace(GL_RGB32F, image->width(), image->height());
+  texture->upload(GL_RGB, GL_FLOAT, image->texels().data());
+  texture->sample_linearly(true);
+  return texture;
+}
+
 }  // namespace
 
 void Lighting::set(const scene::Scene& scene) {
@@ -31,12 +40,9 @@ void Lighting::set(const scene::Scene& scene) {
   if (scene.world == world_) return;
   world_ = scene.world;
   world_light_.reset();
-  world_image_.reset();
   if (world_.shines()) world_light_.emplace(world_);
-  if (!world_.image) return;
-  world_image_.emplace(GL_RGB32F, world_.image->width(), world_.image->height());
-  world_image_->upload(GL_RGB, GL_FLOAT, world_.image->texels().data());
-  world_image_->sample_linearly(true);
+  world_image_ = sent(world_.image.get());
+  backdrop_image_ = sent(world_.backdrop ? world_.backdrop->image.get() : nullptr);
 }
 
 bool Lighting::is_light(const glm::dvec3& middle, double radius, const glm::dvec3& radiance) const {

@@ -41,6 +41,9 @@ class Lighting {
   /// Null unless the world is an image.
   const gl::Texture* world_image() const { return world_image_ ? &*world_image_ : nullptr; }
 
+  /// The same of the world's backdrop.
+  const gl::Texture* backdrop_image() const { return backdrop_image_ ? &*backdrop_image_ : nullptr; }
+
   /// Whether any light has a place.
   bool any_local() const { return !local_.empty(); }
 
@@ -69,6 +72,7 @@ class Lighting {
   scene::World world_;
   std::optional<lights::WorldLight> world_light_;  // if it shines
   std::optional<gl::Texture> world_image_;
+  std::optional<gl::Texture> backdrop_image_;
 };
 
 }  // namespace mesograin::render

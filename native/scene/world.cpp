@@ -18,6 +18,23 @@ bool is_light(const Colour& colour) {
   return true;
 }
 
+// Of a World or a Backdrop.
+template <typename Around>
+void validate_around(const Around& around) {
+  if (!is_light(around.radiance))
+    throw Error("A world's radiance must be finite and not negative; got ({}, {}, {}).", around.radiance.r,
+                around.radiance.g, around.radiance.b);
+  const glm::dmat3 unit = glm::transpose(around.world_to_image) * around.world_to_image;
+  constexpr double tolerance = 1e-5;
+  for (int column = 0; column < 3; ++column)
+    for (int row = 0; row < 3; ++row)
+      if (!(std::abs(unit[column][row] - (column == row ? 1.0 : 0.0)) <= tolerance))
+        throw Error(
+            "A world's rotation must be three directions of unit length, square to each other; their products are "
+            "off by {}.",
+            std::abs(unit[column][row] - (column == row ? 1.0 : 0.0)));
+}
+
 }  // namespace
 
 Surroundings::Surroundings(int width, int height, std::vector<glm::vec3> texels)
@@ -32,18 +49,8 @@ Surroundings::Surroundings(int width, int height, std::vector<glm::vec3> texels)
 }
 
 void validate(const World& world) {
-  if (!is_light(world.radiance))
-    throw Error("A world's radiance must be finite and not negative; got ({}, {}, {}).", world.radiance.r,
-                world.radiance.g, world.radiance.b);
-  const glm::dmat3 unit = glm::transpose(world.world_to_image) * world.world_to_image;
-  constexpr double tolerance = 1e-5;
-  for (int column = 0; column < 3; ++column)
-    for (int row = 0; row < 3; ++row)
-      if (!(std::abs(unit[column][row] - (column == row ? 1.0 : 0.0)) <= tolerance))
-        throw Error(
-            "A world's rotation must be three directions of unit length, square to each other; their products are "
-            "off by {}.",
-            std::abs(unit[column][row] - (column == row ? 1.0 : 0.0)));
+  validate_around(world);
+  if (world.backdrop) validate_around(*world.backdrop);
 }
 
 }  // namespace mesograin::scene

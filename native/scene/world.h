@@ -4,6 +4,7 @@
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace mesograin::scene {
@@ -25,11 +26,21 @@ class Surroundings {
   std::vector<glm::vec3> texels_;
 };
 
+/// What a camera sees where the world is; as a world has it, but no light.
+struct Backdrop {
+  glm::dvec3 radiance{0.0};
+  std::shared_ptr<const Surroundings> image;
+  glm::dmat3 world_to_image{1.0};
+
+  bool operator==(const Backdrop&) const = default;
+};
+
 struct World {
   glm::dvec3 radiance{0.0};  ///< linear RGB, from every direction; multiplies the image if there is one
   std::shared_ptr<const Surroundings> image;
-  glm::dmat3 world_to_image{1.0};  ///< rotates or mirrors a direction before it is looked up
-  bool seen = false;               ///< behind the grains; else the picture is transparent there
+  glm::dmat3 world_to_image{1.0};      ///< rotates or mirrors a direction before it is looked up
+  bool seen = false;                   ///< behind the grains; else the picture is transparent there
+  std::optional<Backdrop> backdrop{};  ///< seen instead, if it is seen
 
   /// Whether any light comes from it.
   bool shines() const { return radiance != glm::dvec3(0.0); }
@@ -37,7 +48,7 @@ struct World {
   bool operator==(const World&) const = default;
 };
 
-/// Throws Error if the radiance is negative, the rotation is none, or a number is not finite.
+/// Throws Error if a radiance is negative, a rotation is none, or a number is not finite.
 void validate(const World& world);
 
 }  // namespace mesograin::scene

@@ -126,3 +126,67 @@ def test_a_sky_with_noise(ground, render):  # noqa: F811
     tree.links.new(ramp.outputs["Color"], background.inputs["Color"])
     look_over(ground)
     assert_as_in_cycles(ground, render)
+
+
+def for_cameras(tree, background, seen):
+    """Gives a world's lights `background`, and its cameras a Background node of the colour `seen`."""
+    rays, mix, other = nodes(tree, "LightPath", "MixShader", "Background")
+    other.inputs["Color"].default_value = (*seen, 1.0)
+    tree.links.new(rays.outputs["Is Camera Ray"], mix.inputs["Fac"])
+    tree.links.new(background.outputs[0], mix.inputs[1])
+    tree.links.new(other.outputs[0], mix.inputs[2])
+    tree.links.new(mix.outputs[0], tree.get_output_node("CYCLES").inputs["Surface"])
+
+
+@pytest.mark.parametrize("lit", ["by a colour", "by a gradient", "by nothing"])
+def test_a_camera_sees_another_world_than_lights(ground, render, lit):  # noqa: F811
+    tree, background = make_world(ground, (0.4, 0.1, 0.2), 0.0 if lit == "by nothing" else 2.0)
+    if lit == "by a gradient":
+        tree.links.new(gradient(tree, "LINEAR", (0.2, -0.9, 0.1)), background.inputs["Color"])
+    for_cameras(tree, background, (0.05, 0.6, 0.3))
+    look_over(ground)
+    theirs = assert_as_in_cycles(ground, render)
+    assert read_scene().warnings == ()
+    np.testing.assert_allclose(theirs[0, 0, :3], (0.05, 0.6, 0.3), rtol=1e-3)
+
+
+def test_a_world_that_is_brighter_to_cameras(ground, render):  # noqa: F811
+    """Nodes ask whether a camera looks elsewhere than in a mix of all."""
+    tree, background = make_world(ground, (0.4, 0.1, 0.2), 1.0)
+    rays, brighter = nodes(tree, "LightPath", "Math")
+    brighter.operation = "MULTIPLY_ADD"
+    brighter.inputs[1].default_value, brighter.inputs[2].default_value = 3.0, 0.5
+    tree.links.new(rays.outputs["Is Camera Ray"], brighter.inputs[0])
+    tree.links.new(brighter.outputs[0], background.inputs["Strength"])
+    look_over(ground)
+    theirs = assert_as_in_cycles(ground, render)
+    np.testing.assert_allclose(theirs[0, 0, :3], (1.4, 0.35, 0.7), rtol=1e-3)
+
+
+def test_what_a_world_is_to_other_rays_is_said(ground):  # noqa: F811
+    tree, background = make_world(ground, (0.4, 0.1, 0.2), 1.0)
+    [rays] = nodes(tree, "LightPath")
+    tree.links.new(rays.outputs["Is Glossy Ray"], background.inputs["Strength"])
+    [sentence] = read_scene().warnings
+    assert "World 'World'" in sentence and "Is Glossy Ray" in sentence
+
+
+def hidden_from(world, rays):
+    if not hasattr(world, "cycles_visibility"):
+        pytest.skip("this Blender's worlds are seen by all rays")
+    setattr(world.cycles_visibility, rays, False)
+
+
+def test_a_world_that_cameras_do_not_see(ground, render):  # noqa: F811
+    make_world(ground, (0.4, 0.1, 0.2), 1.0)
+    hidden_from(ground.world, "camera")
+    look_over(ground)
+    theirs = assert_as_in_cycles(ground, render)
+    assert theirs[0, 0, :3].max() == 0.0
+
+
+def test_a_world_that_other_rays_do_not_see_is_said(ground):  # noqa: F811
+    make_world(ground, (0.4, 0.1, 0.2), 1.0)
+    hidden_from(ground.world, "glossy")
+    [sentence] = read_scene().warnings
+    assert "World 'World'" in sentence and "glossy rays" in sentence and "left out" in sentence

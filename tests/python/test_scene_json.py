@@ -66,8 +66,10 @@ def test_a_scene_that_is_written_is_the_one_that_is_read(tmp_path):
     lights = [native.DirectionalLight((1, 1, 1), (3, 2, 1), 0.01), native.PointLight((1, 2, 3), (4, 5, 6), 0.1),
               native.SpotLight((1, 2, 3), (0, 0, -1), (4, 5, 6), angle=0.5, blend=0.25),
               native.AreaLight((0, 0, 5), (1, 0, 0), (0, 2, 0), (7, 8, 9), ellipse=True)]
+    backdrop = native.Backdrop((1, 0.5, 0.2), native.Surroundings(np.float32(random.random((2, 4, 3)))),
+                               np.float64([[0, 0, 1], [1, 0, 0], [0, 1, 0]]))
     world = native.World(radiance=(0.5, 0.25, 1), image=native.Surroundings(np.float32(random.random((4, 8, 3)))),
-                         rotation=np.float64([[0, 1, 0], [-1, 0, 0], [0, 0, 1]]), seen=True)
+                         rotation=np.float64([[0, 1, 0], [-1, 0, 0], [0, 0, 1]]), seen=True, backdrop=backdrop)
     scene = native.Scene(instances=[native.Instance(mesh, ground, transforms[0])], lights=lights, world=world,
                          arrays=[native.InstanceArray(mesh, sand, transforms)], exchange="order_1")
     camera = native.Camera.look_at((0, -5, 2), (0, 0, 0), (0, 0, 1), 40.0, 1.5)

@@ -48,7 +48,7 @@ class Stage:
     def __enter__(self):
         try:
             self.scene = self._own(bpy.data.scenes.new("Mesograin reference"))
-            self.world, _ = surroundings.read(self._depsgraph.scene)
+            self.world, _ = surroundings.read(self._depsgraph.scene, layer=self._depsgraph.view_layer)
             self.scene.world = self._own(bpy.data.worlds.new("Mesograin world"))
             image = lighting.fill_world(self.scene.world, self.world)
             if image is not None:

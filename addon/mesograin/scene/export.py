@@ -283,7 +283,7 @@ def with_new_materials(values, depsgraph):
     as_before = (values.millimetres_per_unit == scene.mesograin.millimetres_per_unit
                  and values.exchange == scene.mesograin.exchange
                  and values.denoise == scene.mesograin.denoise
-                 and values.world == surroundings.read(scene, _world_side(depsgraph))[0])
+                 and values.world == surroundings.read(scene, _world_side(depsgraph), depsgraph.view_layer)[0])
     if not changed or not as_before or any(heap.factors and heap.material.name in changed for heap in values.heaps):
         return None
     return values.with_materials(lambda material: changed.get(material.name, material))
@@ -332,6 +332,8 @@ class _Reader:
         # An artist who drags waits for what is painted.
         self._side = textures.COARSE if depsgraph.mode == "VIEWPORT" else textures.SIDE
         self._world_side = _world_side(depsgraph)
+        self._layer = depsgraph.view_layer
+        self._override = depsgraph.view_layer_eval.material_override if varied else None
         self._cache = cache
         self._varied = varied
         self._materials = before._materials if before else {}
@@ -404,6 +406,9 @@ class _Reader:
         parts = self._cache.parts(shape)
         if not any(part.has_area for part in parts) or any(part.broken_uvs for part in parts):
             return None
+        parts = [part for part in parts if not self._is_mist(shape, part.slot)]
+        if not parts:
+            return None
         materials = [self._material(shape, part.slot, many=True) for part in parts]
         if any(material.finish and material.finish.radiance for material in materials):
             self._warn(f"Instances of '{shape.name}' shine, but on nothing: only objects of their own are lights to "
@@ -455,11 +460,13 @@ class _Reader:
         gathered = self._gather()
         if not self._instances and not gathered:
             self._warn("There is nothing to draw: add a mesh that is visible in renders.")
-        around, sentences = surroundings.read(scene, self._world_side)
+        around, sentences = surroundings.read(scene, self._world_side, self._layer)
         for sentence in sentences:
             self._warn(sentence)
         if not self._lights and not around.shines:
             self._warn("The scene has no light and its world is black, so everything is: add a light (Add > Light).")
+        for sentence in (*left_out.of_scene(scene), *left_out.of_layer(self._layer)):
+            self._warn(sentence)
         camera = scene.camera
         if camera is not None and camera.type == "CAMERA" and camera.data.type == "PANO":
             self._warn(f"Camera '{camera.name}' is panoramic, which Mesograin draws as perspective.")
@@ -490,6 +497,8 @@ class _Reader:
         for sentence in left_out.sentences(evaluated_object):
             self._warn(sentence)
         for part in parts:
+            if self._is_mist(evaluated_object, part.slot):
+                continue
             material = self._material(evaluated_object, part.slot)
             self._instances.append(InstanceValues(evaluated_object.name, part.mesh, material, to_world,
                                                   part.broken_uvs))
@@ -506,8 +515,12 @@ class _Reader:
             return
         self._lights.extend(found)
 
+    def _worn(self, evaluated_object, slot):
+        """The bpy.types.Material of faces, or None."""
+        return self._override or _in_slot(evaluated_object, slot)
+
     def _variation(self, evaluated_object, slot):
-        material = _in_slot(evaluated_object, slot)
+        material = self._worn(evaluated_object, slot)
         if material is None:
             return None
         key = self._key(evaluated_object, slot, material, many=True)
@@ -548,8 +561,20 @@ class _Reader:
             return None
         return next((part.mesh for part in self._cache.parts(evaluated_object) if part.slot == slot), None)
 
+    def _is_mist(self, evaluated_object, slot):
+        """Whether faces are but the border of a volume, which a surface in their place would hide. In a comparison
+        both sides draw one."""
+        material = self._worn(evaluated_object, slot)
+        if not self._varied or material is None or not plain_materials.is_plain(material):
+            return False
+        if not plain_materials.is_mist(material):
+            return False
+        self._warn(f"Material '{material.name}' is a volume without a surface, so what wears it is left out: if it is "
+                   "a grain, choose a model for it.")
+        return True
+
     def _material(self, evaluated_object, slot, many=False):
-        material = _in_slot(evaluated_object, slot)
+        material = self._worn(evaluated_object, slot)
         reading = None
         key = self._key(evaluated_object, slot, material, many)
         if key not in self._materials:
@@ -577,7 +602,7 @@ class _Reader:
                        "left out.")
             return
         values, sentences = lights.read(evaluated_object, matrix_world)
-        for sentence in sentences:
+        for sentence in (*sentences, *left_out.of_light(evaluated_object)):
             self._warn(sentence)
         if values is not None:
             self._lights.append(values)

@@ -4,7 +4,7 @@ import dataclasses
 import bpy
 import numpy as np
 
-from . import images, instance_attributes
+from . import hue, images, instance_attributes
 
 
 class Unknown(Exception):
@@ -32,11 +32,12 @@ def cannot_load(image):
 @dataclasses.dataclass
 class Places:
     """Where nodes are asked, n places. coordinates: (n, 3) each, by name. used: which of them were. with_suns: skies
-    show theirs."""
+    show theirs. from_camera: whether a camera looks there; None where that is not asked."""
 
     coordinates: dict
     used: set = dataclasses.field(default_factory=set)
     with_suns: bool = False
+    from_camera: object = None
 
     def get(self, name):
         if name not in self.coordinates:
@@ -273,6 +274,13 @@ def _attribute(node, socket, places):
     return value[:, :3].mean(axis=1) if socket.identifier == "Fac" else value[:, :3]
 
 
+def _light_path(node, socket, places):
+    # What Cycles says of the other kinds depends on how it comes to ask.
+    if socket.name != "Is Camera Ray" or places.from_camera is None:
+        raise Unknown(f"{node.name}: {socket.name}")
+    return float(places.from_camera)
+
+
 def _uv_map(node, _socket, places):
     return places.get("UV")
 
@@ -500,20 +508,37 @@ def _curves(node, _socket, places):
     return value + share * (bent - value)
 
 
+def _hue_saturation(node, _socket, places):
+    """Cycles' svm_hsv."""
+    share, colours = number(node.inputs["Fac"], places)[:, None], colour(node.inputs["Color"], places)
+    turn, saturation, value = hue.split(colours)
+    turn = (turn + number(node.inputs["Hue"], places) + 0.5) % 1.0
+    saturation = np.clip(saturation * number(node.inputs["Saturation"], places), 0.0, 1.0)
+    changed = hue.join(turn, saturation, value * number(node.inputs["Value"], places))
+    return np.maximum(colours + share * (changed - colours), 0.0)
+
+
 def _to_grey(node, _socket, places):
     return colour(node.inputs["Color"], places) @ LUMINANCE
 
 
 def _separate(node, socket, places):
-    if getattr(node, "mode", "RGB") != "RGB":
+    value = _as_colour(_input(node.inputs[0], places), places.count)
+    parts = hue.split(value) if _mode(node) == "HSV" else value.T
+    return parts[list(node.outputs).index(socket)]
+
+
+def _mode(node):
+    """Of a node that splits or joins a colour."""
+    mode = getattr(node, "mode", "RGB")
+    if mode not in ("RGB", "HSV"):
         raise Unknown(node.name)
-    return _as_colour(_input(node.inputs[0], places), places.count)[:, list(node.outputs).index(socket)]
+    return mode
 
 
 def _combine(node, _socket, places):
-    if getattr(node, "mode", "RGB") != "RGB":
-        raise Unknown(node.name)
-    return np.stack([number(socket, places) for socket in list(node.inputs)[:3]], axis=1)
+    parts = [number(socket, places) for socket in list(node.inputs)[:3]]
+    return hue.join(*parts) if _mode(node) == "HSV" else np.stack(parts, axis=1)
 
 
 def _clamp(node, _socket, places):
@@ -538,9 +563,10 @@ def _map_range(node, _socket, places):
 # What follows each type of node: a function of the node, its output and places. Patterns add themselves.
 NODES = {
     "RGB": _constant, "VALUE": _constant, "TEX_COORD": _coordinates, "UVMAP": _uv_map, "OBJECT_INFO": _object_info,
-    "ATTRIBUTE": _attribute, "MAPPING": _mapping, "TEX_IMAGE": _image, "TEX_ENVIRONMENT": _environment,
-    "TEX_CHECKER": _checker, "TEX_GRADIENT": _gradient, "VALTORGB": _ramp, "MIX_RGB": _mix_rgb, "MIX": _mix,
-    "MATH": _math, "INVERT": _invert, "GAMMA": _gamma, "BRIGHTCONTRAST": _bright_contrast, "CURVE_RGB": _curves,
-    "RGBTOBW": _to_grey, "SEPRGB": _separate, "SEPARATE_COLOR": _separate, "SEPXYZ": _separate, "COMBRGB": _combine,
-    "COMBINE_COLOR": _combine, "COMBXYZ": _combine, "CLAMP": _clamp, "MAP_RANGE": _map_range,
+    "ATTRIBUTE": _attribute, "LIGHT_PATH": _light_path, "MAPPING": _mapping, "TEX_IMAGE": _image,
+    "TEX_ENVIRONMENT": _environment, "TEX_CHECKER": _checker, "TEX_GRADIENT": _gradient, "VALTORGB": _ramp,
+    "MIX_RGB": _mix_rgb, "MIX": _mix, "MATH": _math, "INVERT": _invert, "HUE_SAT": _hue_saturation, "GAMMA": _gamma,
+    "BRIGHTCONTRAST": _bright_contrast, "CURVE_RGB": _curves, "RGBTOBW": _to_grey, "SEPRGB": _separate,
+    "SEPARATE_COLOR": _separate, "SEPXYZ": _separate, "COMBRGB": _combine, "COMBINE_COLOR": _combine,
+    "COMBXYZ": _combine, "CLAMP": _clamp, "MAP_RANGE": _map_range,
 }

@@ -31,9 +31,9 @@ def _altitude(node):
     return min(max(node.altitude, 1.0), 59999.0)
 
 
-def suns(socket):
+def suns(socket, from_camera=None):
     """[(direction to it (3,), its angle in radians, irradiance (3,))] of the suns in what feeds a world's shader input.
-    They are too small for a picture of the world. Raises Unknown."""
+    They are too small for a picture of the world. from_camera: as node_colours.Places has it. Raises Unknown."""
     found = []
     for node in {link.from_node.name: link.from_node for link in _links(socket)}.values():
         if node.type != "TEX_SKY" or node.sky_type != "NISHITA" or not node.sun_disc or node.mute:
@@ -44,7 +44,8 @@ def suns(socket):
         towards, half = sky.sun_direction(node.sun_elevation, node.sun_rotation), 0.5 * node.sun_size
         points = _disc(towards, half)
         with_suns, without = (node_colours.radiance(socket, node_colours.Places(
-            {"generated": points, "object": points}, with_suns=each)) for each in (True, False))
+            {"generated": points, "object": points}, with_suns=each, from_camera=from_camera))
+                              for each in (True, False))
         solid_angle = 2.0 * np.pi * (1.0 - np.cos(half))
         irradiance = np.maximum(with_suns - without, 0.0).mean(axis=0) * solid_angle
         if irradiance.any():

@@ -20,7 +20,8 @@ STRAIGHT = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
 class WorldValues:
     """radiance: linear RGB, multiplies the image. image: native.Surroundings, equal by identity, or None; image_name,
     image_digest: of Blender's image. rotation: from the world's directions to the image's, 9 numbers, row by row.
-    seen: in the picture. suns: lights.SunValues of those in its skies, which are not in the image."""
+    seen: in the picture. suns: lights.SunValues of those in its skies, which are not in the image. backdrop: None, or
+    WorldValues of what a camera sees instead."""
 
     radiance: tuple = (0.0, 0.0, 0.0)
     image: object = None
@@ -29,29 +30,64 @@ class WorldValues:
     rotation: tuple = STRAIGHT
     seen: bool = False
     suns: tuple = ()
+    backdrop: object = None
 
     @property
     def shines(self):
         return any(self.radiance)
 
     def to_native(self, native):
-        rotation = np.array(self.rotation).reshape(3, 3)
-        return native.World(radiance=self.radiance, image=self.image, rotation=rotation, seen=self.seen)
+        return native.World(**self.around(), seen=self.seen,
+                            backdrop=self.backdrop and native.Backdrop(**self.backdrop.around()))
+
+    def around(self):
+        """What native.World and native.Backdrop both take."""
+        return {"radiance": self.radiance, "image": self.image, "rotation": np.array(self.rotation).reshape(3, 3)}
 
 
-def read(scene, side=SIDE):
-    """(WorldValues, sentences about what is left out) of a scene's world. side: of what is painted, in texels."""
-    world = scene.world
-    if world is None:
+def read(scene, side=SIDE, layer=None):
+    """(WorldValues, sentences about what is left out) of a scene's world, or of that of its view layer. side: of what
+    is painted, in texels."""
+    world = layer and getattr(layer, "world_override", None) or scene.world
+    if world is None or (layer and not layer.use_sky):
         return WorldValues(), ()
-    values, sentences = _read(world, side)
-    wrong = lights.fault(values.radiance)
-    if wrong:
-        values, sentences = WorldValues(), (f"World '{world.name}' {wrong}, so it is black.",)
+    values, sentences = _read_checked(world, side)
+    seen, hidden_from = values, _hidden_from(world)
+    if "camera" in hidden_from:
+        seen = WorldValues()
+    elif _knows_cameras(world):
+        seen, of_seen = _read_checked(world, side, from_camera=True)
+        sentences = tuple(dict.fromkeys((*sentences, *of_seen)))
+    if seen is not values:
+        values = dataclasses.replace(values, backdrop=dataclasses.replace(seen, suns=()))
+    others = [rays for rays in hidden_from if rays != "camera"]
+    if others:
+        sentences = (*sentences, f"World '{world.name}' lights as others do: that it is hidden from "
+                                 f"{' and '.join(others)} rays is left out.")
     if _has_volume(world):
         sentences = (*sentences, f"World '{world.name}' has a volume, which is left out.")
     # Where nothing shines the picture is black, whether the world is drawn or not.
-    return dataclasses.replace(values, seen=values.shines and not scene.render.film_transparent), sentences
+    return dataclasses.replace(values, seen=seen.shines and not scene.render.film_transparent), sentences
+
+
+def _read_checked(world, side, from_camera=False):
+    """As _read, but for what is no light."""
+    values, sentences = _read(world, side, from_camera)
+    wrong = lights.fault(values.radiance)
+    if wrong:
+        return WorldValues(), (f"World '{world.name}' {wrong}, so it is black.",)
+    return values, sentences
+
+
+def _knows_cameras(world):
+    """Whether a world may look otherwise to a camera than to what it lights."""
+    return compat.uses_nodes(world) and any(node.type == "LIGHT_PATH" for node in world.node_tree.nodes)
+
+
+def _hidden_from(world):
+    """The kinds of Cycles' rays that do not see a world."""
+    visibility = getattr(world, "cycles_visibility", None)
+    return [rays for rays in ("camera", "diffuse", "glossy", "transmission") if not getattr(visibility, rays, True)]
 
 
 def _has_volume(world):
@@ -59,17 +95,18 @@ def _has_volume(world):
     return output is not None and output.inputs["Volume"].is_linked
 
 
-def _read(world, side):
+def _read(world, side, from_camera=False):
     if not compat.uses_nodes(world):
         return WorldValues(tuple(world.color)), ()
     output = world.node_tree.get_output_node("CYCLES")
-    links = output.inputs["Surface"].links if output else ()
-    if not links:
+    surface = output and _chosen(output.inputs["Surface"], from_camera)
+    link = surface and node_colours.feeding(surface)
+    if link is None:
         return WorldValues(), ()
-    background = links[0].from_node
+    background = link.from_node
     strength = _constant(background.inputs["Strength"]) if background.type == "BACKGROUND" else None
     if strength is None:
-        return _painted(world, output.inputs["Surface"], side)
+        return _painted(world, surface, side, from_camera)
     colour = _constant(background.inputs["Color"])
     if colour is not None:
         return WorldValues(tuple(strength * channel for channel in colour[:3])), ()
@@ -78,14 +115,26 @@ def _read(world, side):
         values, sentences = _read_image(world, texture, strength)
         if not sentences or values.image is None:
             return values, sentences
-    return _painted(world, output.inputs["Surface"], side)
+    return _painted(world, surface, side, from_camera)
 
 
-def _painted(world, socket, side):
+def _chosen(socket, from_camera):
+    """The input that a world's shader input comes to where mixes ask for no more than whether a camera looks."""
+    while (link := node_colours.feeding(socket)) is not None and link.from_node.type == "MIX_SHADER":
+        share = node_colours.feeding(link.from_node.inputs["Fac"])
+        if link.from_node.mute or share is None or share.from_node.type != "LIGHT_PATH" or (
+                share.from_socket.name != "Is Camera Ray"):
+            break
+        socket = link.from_node.inputs[2 if from_camera else 1]
+    return socket
+
+
+def _painted(world, socket, side, from_camera):
     """What nodes make of every direction."""
     try:
-        pixels, suns = node_colours.remembered((node_colours.fingerprint(socket), side),
-                                               lambda: (_paint(socket, side), node_skies.suns(socket)))
+        pixels, suns = node_colours.remembered(
+            (node_colours.fingerprint(socket), side, from_camera),
+            lambda: (_paint(socket, side, from_camera), node_skies.suns(socket, from_camera)))
     except node_colours.Unknown as unknown:
         advice = ("" if isinstance(unknown, node_colours.Lost) else
                   ": use colours, gradients, patterns, skies, mixes or environment images")
@@ -98,13 +147,13 @@ def _painted(world, socket, side):
     return WorldValues((1.0,) * 3, surroundings, "", _digests[surroundings], suns=suns), ()
 
 
-def _paint(socket, side):
+def _paint(socket, side, from_camera):
     """(h, w, 3) float32."""
     turn = (0.5 - (np.arange(2 * side) + 0.5) / (2 * side)) * 2.0 * np.pi
     rise = (0.5 - (np.arange(side) + 0.5) / side) * np.pi
     turn, rise = (angles.ravel() for angles in np.meshgrid(turn, rise))
     directions = np.stack((np.cos(rise) * np.cos(turn), np.cos(rise) * np.sin(turn), np.sin(rise)), axis=1)
-    places = node_colours.Places({"generated": directions, "object": directions})
+    places = node_colours.Places({"generated": directions, "object": directions}, from_camera=from_camera)
     radiance = np.nan_to_num(node_colours.radiance(socket, places), nan=0.0, posinf=3e38, neginf=0.0)
     return np.ascontiguousarray(radiance.clip(min=0.0).reshape(side, 2 * side, 3), dtype=np.float32)
 

@@ -13,11 +13,24 @@
 namespace mesograin::render {
 namespace {
 
+// around: a scene::World or scene::Backdrop; image: its own, if it has one.
+template <typename Around>
+void set_around(const gl::Program& program, const Around& around, const gl::Texture* image) {
+  program.set("world_radiance", glm::vec3(around.radiance));
+  program.set("has_image", static_cast<int>(image != nullptr));
+  program.set("world_to_image", glm::mat3(around.world_to_image));
+  if (image != nullptr) program.set("world_image", *image);
+}
+
 void set_world(const gl::Program& program, const Lighting& lighting) {
-  program.set("world_radiance", glm::vec3(lighting.world().radiance));
-  program.set("has_image", static_cast<int>(lighting.world_image() != nullptr));
-  program.set("world_to_image", glm::mat3(lighting.world().world_to_image));
-  if (lighting.world_image() != nullptr) program.set("world_image", *lighting.world_image());
+  set_around(program, lighting.world(), lighting.world_image());
+}
+
+void set_seen_world(const gl::Program& program, const Lighting& lighting) {
+  if (lighting.world().backdrop)
+    set_around(program, *lighting.world().backdrop, lighting.backdrop_image());
+  else
+    set_world(program, lighting);
 }
 
 // Draws on no pixel that a single draw's bounds do not cover; everywhere if they reach behind the camera, and for a
@@ -90,7 +103,7 @@ void ShadePass::draw_background(const Sample& sample) {
   background_program_.set("clip_to_world", glm::mat4(glm::inverse(world_to_clip)));
   background_program_.set("jitter", sample.jitter);
   background_program_.set("size", glm::vec2(sample.size));
-  set_world(background_program_, sample.lighting);
+  set_seen_world(background_program_, sample.lighting);
   full_screen_.draw();
 }
 
