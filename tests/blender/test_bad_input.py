@@ -358,3 +358,11 @@ def test_a_cancelled_render_ends_at_once_and_keeps_what_it_has(scene):
     bpy.ops.render.render()
     assert time.monotonic() - started < 10.0
     assert 0 < status.get(status.RENDER).samples < 1 << 20
+
+
+def test_an_exposure_that_is_cycles_own_is_said(scene, render):
+    if not hasattr(scene, "cycles"):
+        pytest.skip("this Blender has no Cycles")
+    scene.cycles.film_exposure = 0.7
+    [sentence] = warnings_of_render(render)[1]
+    assert_one_sentence(sentence, "exposure", "0.7", "Color Management")

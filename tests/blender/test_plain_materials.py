@@ -92,3 +92,58 @@ def test_a_chosen_model_makes_it_a_grain(material):
     values, sentences = drawn()
     assert values["model"] == "lambert" and values["reflectance"] == tuple(material.mesograin.reflectance)
     assert sentences == ()
+
+
+def glossy(material, **inputs):
+    return shade(material, "ShaderNodeBsdfGlossy" if hasattr(bpy.types, "ShaderNodeBsdfGlossy") else
+                 "ShaderNodeBsdfAnisotropic", **inputs)
+
+
+def choose(node, distribution):
+    try:
+        node.distribution = distribution
+    except TypeError:
+        pytest.skip(f"this Blender's Glossy has no {distribution}")
+
+
+def test_sharp_glossy_has_no_roughness(material):
+    choose(glossy(material, Roughness=0.5), "SHARP")
+    values, sentences = drawn()
+    assert values["model"] == "conductor" and values["roughness"] == 0.0 and sentences == ()
+
+
+@pytest.mark.parametrize("distribution, name", [("BECKMANN", "Beckmann"), ("ASHIKHMIN_SHIRLEY", "Ashikhmin-Shirley")])
+def test_other_facets_than_ggx_are_said(material, distribution, name):
+    choose(glossy(material, Roughness=0.5), distribution)
+    values, [sentence] = drawn()
+    assert values["roughness"] == pytest.approx(0.25)
+    assert "Material 'Paint'" in sentence and name in sentence and "GGX" in sentence
+
+
+def make_mist(material):
+    tree = material.node_tree
+    volume, output = tree.nodes.new("ShaderNodeVolumeScatter"), tree.nodes.new("ShaderNodeOutputMaterial")
+    tree.links.new(volume.outputs[0], output.inputs["Volume"])
+
+
+def test_a_volume_without_a_surface_hides_nothing(material):
+    make_mist(material)
+    values = read_scene()
+    assert values.instances == ()
+    assert any("Material 'Paint'" in sentence and "volume" in sentence and "left out" in sentence
+               for sentence in values.warnings)
+
+
+def test_a_grain_that_is_a_volume_for_cycles_is_drawn(material):
+    make_mist(material)
+    material.mesograin.model = "model_3"
+    values, sentences = drawn()
+    assert values["model"] == "model_3" and sentences == ()
+
+
+def test_a_volume_under_a_surface_is_said(material):
+    shade(material, "ShaderNodeBsdfDiffuse")
+    volume = material.node_tree.nodes.new("ShaderNodeVolumeScatter")
+    material.node_tree.links.new(volume.outputs[0], material.node_tree.get_output_node("CYCLES").inputs["Volume"])
+    values, [sentence] = drawn()
+    assert values["model"] == "lambert" and "its volume" in sentence

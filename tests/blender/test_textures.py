@@ -189,6 +189,19 @@ def test_a_normal_map_bends(paint, render, shape):
     assert_as_in_cycles(render, 0.01 if shape == "plane" else 0.02)
 
 
+def test_bumps_are_not_lit_from_below(paint, render):
+    """By a wide sun, of which half is below the horizon."""
+    tree = paint.node_tree
+    node, bending = surface(paint), tree.nodes.new("ShaderNodeNormalMap")
+    node.inputs["Color"].default_value = (0.8, 0.8, 0.8, 1.0)
+    texture(paint, bending.inputs["Color"], image=bumps("Bumps"))
+    tree.links.new(bending.outputs["Normal"], node.inputs["Normal"])
+    stage(paint, "plane", tilted=(0.0, 0.0, 0.0))
+    sun = bpy.data.objects["Sun"]
+    sun.rotation_euler, sun.data.angle = (0.0, math.radians(80.0), 0.4), math.radians(60.0)
+    assert_as_in_cycles(render, 0.02, samples=256)
+
+
 @pytest.mark.parametrize("shape", ["plane", "sphere"])
 def test_roughness_and_metal_of_an_image(paint, render, shape):
     node = surface(paint, "ShaderNodeBsdfPrincipled")
@@ -288,3 +301,31 @@ def test_a_pattern_in_space_on_overlapping_uvs_is_left_out(paint, render):
         corner.uv = (corner.uv[0] * 2.0 % 1.0, corner.uv[1])
     render()
     assert any("do not lie over each other" in warning for warning in read_scene().warnings)
+
+
+@pytest.mark.parametrize("numbers", [dict(Hue=0.2), dict(Saturation=1.7, Value=0.8),
+                                     dict(Hue=0.9, Saturation=0.3, Fac=0.6)])
+def test_hue_and_saturation(paint, render, numbers):
+    tree = paint.node_tree
+    changed = tree.nodes.new("ShaderNodeHueSaturation")
+    tree.links.new(changed.outputs["Color"], surface(paint).inputs["Color"])
+    for name, value in numbers.items():
+        changed.inputs[name].default_value = value
+    texture(paint, changed.inputs["Color"], image=lines("Lines"))
+    stage(paint, "plane")
+    assert_as_in_cycles(render)
+
+
+@pytest.mark.skipif(not hasattr(bpy.types, "ShaderNodeSeparateColor"), reason="this Blender has other nodes for it")
+def test_hue_apart_and_joined_again(paint, render):
+    """The saturation of an image as the hue of its colours."""
+    tree = paint.node_tree
+    apart, joined = tree.nodes.new("ShaderNodeSeparateColor"), tree.nodes.new("ShaderNodeCombineColor")
+    apart.mode = joined.mode = "HSV"
+    tree.links.new(apart.outputs[1], joined.inputs[0])
+    joined.inputs[1].default_value = 0.7
+    tree.links.new(apart.outputs[2], joined.inputs[2])
+    tree.links.new(joined.outputs["Color"], surface(paint).inputs["Color"])
+    texture(paint, apart.inputs["Color"], image=lines("Lines"))
+    stage(paint, "plane")
+    assert_as_in_cycles(render)

@@ -153,7 +153,15 @@ def read(material, box=textures.Box(), own=AVERAGE, side=textures.SIDE, mesh=Non
         _read_node(found, material, link.from_node)
     if output and output.inputs["Displacement"].is_linked:
         found.leave_out("its displacement")
+    if output and output.inputs["Volume"].is_linked:
+        found.leave_out("its volume")
     return found
+
+
+def is_mist(material):
+    """Whether a plain material is a volume and has no surface."""
+    output = material.node_tree.get_output_node("CYCLES") if compat.uses_nodes(material) else None
+    return output is not None and output.inputs["Volume"].is_linked and not output.inputs["Surface"].is_linked
 
 
 def depends_on_place(material):
@@ -193,9 +201,15 @@ def _read_diffuse(found, _material, node):
 
 def _read_glossy(found, _material, node):
     colour = found.colour(node.inputs["Color"])
-    found.be_conductor(colour, found.number(node.inputs["Roughness"], "roughness"))
+    sharp = getattr(node, "distribution", "") == "SHARP"  # which has no roughness, whatever that socket says
+    found.be_conductor(colour, 0.0 if sharp else found.number(node.inputs["Roughness"], "roughness"))
+    if getattr(node, "distribution", "") in _OTHER_FACETS:
+        found.leave_out(f"its distribution of facets {_OTHER_FACETS[node.distribution]}, for which GGX stands")
     found.set(**compat.facets(node))
     found.normal(node)
+
+
+_OTHER_FACETS = {"BECKMANN": "Beckmann", "ASHIKHMIN_SHIRLEY": "Ashikhmin-Shirley"}
 
 
 def _read_emission(found, _material, node):
