@@ -63,6 +63,15 @@ def test_those_that_cannot_be_drawn_are_counted():
     assert any(f"{SIDE * SIDE} instances of 'Grain'" in sentence for sentence in values.warnings)
 
 
+def test_what_is_asked_of_an_instanced_object_in_vain_is_said():
+    _, grain = scatter(grid())
+    add_sun((0.0, 0.0, 1.0), math.pi)
+    assert not any("'Grain'" in sentence for sentence in read_scene().warnings)
+    grain.is_holdout = True
+    [sentence] = [sentence for sentence in read_scene().warnings if "Object 'Grain'" in sentence]
+    assert "a holdout" in sentence
+
+
 def test_materials_are_those_of_the_slots():
     _, grain = scatter(grid())
     red = bpy.data.materials.new("Red")

@@ -134,6 +134,15 @@ def test_a_volume_without_a_surface_hides_nothing(material):
                for sentence in values.warnings)
 
 
+@pytest.mark.parametrize("kind, inputs", [("ShaderNodeBsdfTransparent", {}),
+                                          ("ShaderNodeBsdfPrincipled", {"Alpha": 0.0})])
+def test_what_is_transparent_hides_nothing(material, kind, inputs):
+    shade(material, kind, **inputs)
+    values = read_scene()
+    assert values.instances == ()
+    assert any("Material 'Paint' is transparent" in sentence for sentence in values.warnings)
+
+
 def test_a_grain_that_is_a_volume_for_cycles_is_drawn(material):
     make_mist(material)
     material.mesograin.model = "model_3"

@@ -406,9 +406,11 @@ class _Reader:
         parts = self._cache.parts(shape)
         if not any(part.has_area for part in parts) or any(part.broken_uvs for part in parts):
             return None
-        parts = [part for part in parts if not self._is_mist(shape, part.slot)]
+        parts = [part for part in parts if self._has_surface(shape, part.slot)]
         if not parts:
             return None
+        for sentence in left_out.sentences(shape):
+            self._warn(sentence)
         materials = [self._material(shape, part.slot, many=True) for part in parts]
         if any(material.finish and material.finish.radiance for material in materials):
             self._warn(f"Instances of '{shape.name}' shine, but on nothing: only objects of their own are lights to "
@@ -497,7 +499,7 @@ class _Reader:
         for sentence in left_out.sentences(evaluated_object):
             self._warn(sentence)
         for part in parts:
-            if self._is_mist(evaluated_object, part.slot):
+            if not self._has_surface(evaluated_object, part.slot):
                 continue
             material = self._material(evaluated_object, part.slot)
             self._instances.append(InstanceValues(evaluated_object.name, part.mesh, material, to_world,
@@ -561,17 +563,17 @@ class _Reader:
             return None
         return next((part.mesh for part in self._cache.parts(evaluated_object) if part.slot == slot), None)
 
-    def _is_mist(self, evaluated_object, slot):
-        """Whether faces are but the border of a volume, which a surface in their place would hide. In a comparison
-        both sides draw one."""
+    def _has_surface(self, evaluated_object, slot):
+        """Whether faces are more than the border of a volume, or of nothing: a surface in their place would hide what
+        is behind. In a comparison both sides draw one."""
         material = self._worn(evaluated_object, slot)
         if not self._varied or material is None or not plain_materials.is_plain(material):
-            return False
-        if not plain_materials.is_mist(material):
-            return False
-        self._warn(f"Material '{material.name}' is a volume without a surface, so what wears it is left out: if it is "
-                   "a grain, choose a model for it.")
-        return True
+            return True
+        what = plain_materials.without_surface(material)
+        if what is not None:
+            self._warn(f"Material '{material.name}' is {what}, so what wears it is left out: if it is a grain, choose "
+                       "a model for it.")
+        return what is None
 
     def _material(self, evaluated_object, slot, many=False):
         material = self._worn(evaluated_object, slot)

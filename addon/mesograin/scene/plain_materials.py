@@ -158,10 +158,17 @@ def read(material, box=textures.Box(), own=AVERAGE, side=textures.SIDE, mesh=Non
     return found
 
 
-def is_mist(material):
-    """Whether a plain material is a volume and has no surface."""
+def without_surface(material):
+    """What a plain material is where it has no surface that could be drawn, as a noun; None where it has one."""
     output = material.node_tree.get_output_node("CYCLES") if compat.uses_nodes(material) else None
-    return output is not None and output.inputs["Volume"].is_linked and not output.inputs["Surface"].is_linked
+    if output is None:
+        return None
+    link = node_colours.feeding(output.inputs["Surface"])
+    if link is None:
+        return "a volume without a surface" if output.inputs["Volume"].is_linked else None
+    alpha = link.from_node.inputs.get("Alpha") if link.from_node.type == "BSDF_PRINCIPLED" else None
+    unseen = alpha is not None and not alpha.is_linked and alpha.default_value == 0.0
+    return "transparent" if unseen or link.from_node.type == "BSDF_TRANSPARENT" else None
 
 
 def depends_on_place(material):
