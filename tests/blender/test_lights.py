@@ -107,6 +107,26 @@ def test_emission_of_nodes_counts_and_textures_are_told(ground, render):
     assert_as_in_cycles(ground, render)
 
 
+def test_nodes_that_vary_nothing_are_followed(ground, render):
+    light = add_light("POINT", (0.4, -0.3, 2.0)).data
+    compat.use_nodes(light)
+    tree = light.node_tree
+    emission = next(node for node in tree.nodes if node.type == "EMISSION")
+    ramp, product = tree.nodes.new("ShaderNodeValToRGB"), tree.nodes.new("ShaderNodeMath")
+    ramp.color_ramp.elements[1].color = (0.2, 0.7, 1.0, 1.0)
+    ramp.inputs["Fac"].default_value = 0.6
+    product.operation = "MULTIPLY"
+    product.inputs[0].default_value, product.inputs[1].default_value = 3.0, 1.5
+    tree.links.new(ramp.outputs["Color"], emission.inputs["Color"])
+    tree.links.new(product.outputs["Value"], emission.inputs["Strength"])
+    assert_as_in_cycles(ground, render)
+    assert read_scene().warnings == ()
+    places = tree.nodes.new("ShaderNodeTexCoord")
+    tree.links.new(places.outputs["Normal"], ramp.inputs["Fac"])
+    [sentence] = read_scene().warnings
+    assert "Light 'Point'" in sentence and "vary its color" in sentence
+
+
 @pytest.mark.parametrize("kind", ["SUN", "SPOT", "AREA"])
 @pytest.mark.parametrize("axes", [(0.0, 0.0, 0.0), (1.0, 1.0, 0.0), (1.0, 0.0, 1.0)])
 def test_a_light_without_a_direction_is_left_out_and_said(ground, render, kind, axes):

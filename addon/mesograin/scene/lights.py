@@ -2,7 +2,10 @@
 import dataclasses
 import math
 
+import numpy as np
+
 from .. import compat
+from . import node_colours
 
 
 @dataclasses.dataclass(frozen=True)
@@ -92,15 +95,16 @@ def _emission_of_nodes(light, name):
     if node.type != "EMISSION":
         return white, (f"Light '{name}' has the node '{node.name}', which is left out: its own colour and strength are "
                        "rendered.",)
-    colour, strength = node.inputs["Color"], node.inputs["Strength"]
-    if colour.is_linked or strength.is_linked:
-        textured = " and ".join(socket.name.lower() for socket in (colour, strength) if socket.is_linked)
-        sentences = (f"Light '{name}' has nodes that vary its {textured}, which are left out.",)
-    else:
-        sentences = ()
-    factor = 1.0 if strength.is_linked else strength.default_value
-    tint = white if colour.is_linked else colour.default_value[:3]
-    return tuple(factor * channel for channel in tint), sentences
+    told, unknown = [], []
+    for socket, ask in ((node.inputs["Color"], node_colours.colour), (node.inputs["Strength"], node_colours.number)):
+        try:
+            told.append(ask(socket, node_colours.nowhere())[0])
+        except node_colours.Unknown:
+            told.append(1.0)
+            unknown.append(socket.name.lower())
+    sentences = (f"Light '{name}' has nodes that vary its {' and '.join(unknown)}, which are left out.",
+                 ) if unknown else ()
+    return tuple((told[1] * told[0] * np.ones(3)).tolist()), sentences
 
 
 def _times(power, factor):

@@ -50,6 +50,11 @@ class Places:
         return len(next(iter(self.coordinates.values())))
 
 
+def nowhere():
+    """Places for nodes that are the same everywhere; Unknown is raised of all that ask where they are."""
+    return Places({"nowhere": np.zeros((1, 3))})
+
+
 LUMINANCE = np.array((0.2126, 0.7152, 0.0722))  # Rec. 709, of Blender's default configuration
 
 
