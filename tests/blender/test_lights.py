@@ -107,6 +107,20 @@ def test_emission_of_nodes_counts_and_textures_are_told(ground, render):
     assert_as_in_cycles(ground, render)
 
 
+@pytest.mark.parametrize("kelvin", [1500.0, 3000.0, 6500.0])
+def test_a_light_of_a_temperature(ground, render, kelvin):
+    light = add_light("POINT", (0.4, -0.3, 2.0), color=(1.0, 1.0, 1.0)).data
+    compat.use_nodes(light)
+    tree = light.node_tree
+    emission = next(node for node in tree.nodes if node.type == "EMISSION")
+    glow = tree.nodes.new("ShaderNodeBlackbody")
+    glow.inputs["Temperature"].default_value = kelvin
+    tree.links.new(glow.outputs["Color"], emission.inputs["Color"])
+    theirs = assert_as_in_cycles(ground, render)[..., :3].mean(axis=(0, 1))
+    ours = np.array(read_scene().lights[0].values[1][1])
+    np.testing.assert_allclose(ours / ours[1], theirs / theirs[1], atol=0.01)
+
+
 def test_nodes_that_vary_nothing_are_followed(ground, render):
     light = add_light("POINT", (0.4, -0.3, 2.0)).data
     compat.use_nodes(light)

@@ -4,7 +4,7 @@ import dataclasses
 import bpy
 import numpy as np
 
-from . import hue, images, instance_attributes
+from . import blackbody, hue, images, instance_attributes
 
 
 class Unknown(Exception):
@@ -523,6 +523,10 @@ def _hue_saturation(node, _socket, places):
     return np.maximum(colours + share * (changed - colours), 0.0)
 
 
+def _blackbody(node, _socket, places):
+    return blackbody.colour(number(node.inputs["Temperature"], places))
+
+
 def _to_grey(node, _socket, places):
     return colour(node.inputs["Color"], places) @ LUMINANCE
 
@@ -573,5 +577,5 @@ NODES = {
     "MIX_RGB": _mix_rgb, "MIX": _mix, "MATH": _math, "INVERT": _invert, "HUE_SAT": _hue_saturation, "GAMMA": _gamma,
     "BRIGHTCONTRAST": _bright_contrast, "CURVE_RGB": _curves, "RGBTOBW": _to_grey, "SEPRGB": _separate,
     "SEPARATE_COLOR": _separate, "SEPXYZ": _separate, "COMBRGB": _combine, "COMBINE_COLOR": _combine,
-    "COMBXYZ": _combine, "CLAMP": _clamp, "MAP_RANGE": _map_range,
+    "COMBXYZ": _combine, "CLAMP": _clamp, "MAP_RANGE": _map_range, "BLACKBODY": _blackbody,
 }
