@@ -185,9 +185,9 @@ def principled_layers():
 
 def facets(node):
     """Whether the facets of a Principled or Glossy node keep what one bounce loses, as native.Finish has it."""
-    # Up to Blender 3 by random walks among the facets, which are drawn as one bounce.
-    keep = has_even_lights() and node.distribution == "MULTI_GGX"
-    return {"facets_keep_energy": True} if keep else {}
+    # Up to Blender 3 Cycles follows walks among the facets (Heitz et al., "Multiple-Scattering Microfacet BSDFs with
+    # the Smith Model", 2016), which tell about as much light another way round.
+    return {"facets_keep_energy": True} if node.distribution == "MULTI_GGX" else {}
 
 
 def bumps():

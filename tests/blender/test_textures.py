@@ -189,6 +189,25 @@ def test_a_normal_map_bends(paint, render, shape):
     assert_as_in_cycles(render, 0.01 if shape == "plane" else 0.02)
 
 
+@pytest.mark.parametrize("kind, inputs", [("Glossy", {}), ("Principled", {"Metallic": 1.0})])
+def test_facets_that_scatter_again_lose_no_light(paint, render, kind, inputs):
+    """Of rough metal a third of the light left its facets at the second bounce or later."""
+    known = hasattr(bpy.types, f"ShaderNodeBsdf{kind}")
+    node = surface(paint, f"ShaderNodeBsdf{kind}" if known else "ShaderNodeBsdfAnisotropic")
+    node.distribution = "MULTI_GGX"
+    node.inputs[0].default_value, node.inputs["Roughness"].default_value = (0.9, 0.6, 0.3, 1.0), 0.8
+    for name, value in inputs.items():
+        node.inputs[name].default_value = value
+    stage(paint, "sphere")
+    scene = bpy.context.scene
+    scene.mesograin.samples = 64
+    ours = render()
+    scene.render.engine = "CYCLES"
+    scene.cycles.samples, scene.cycles.max_bounces, scene.cycles.use_denoising = 64, 0, False
+    theirs = render()
+    np.testing.assert_allclose(ours[..., :3].mean(axis=(0, 1)), theirs[..., :3].mean(axis=(0, 1)), rtol=0.1)
+
+
 def test_bumps_are_not_lit_from_below(paint, render):
     """By a wide sun, of which half is below the horizon."""
     tree = paint.node_tree
