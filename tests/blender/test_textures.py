@@ -217,7 +217,7 @@ def test_bumps_are_not_lit_from_below(paint, render):
     tree.links.new(bending.outputs["Normal"], node.inputs["Normal"])
     stage(paint, "plane", tilted=(0.0, 0.0, 0.0))
     sun = bpy.data.objects["Sun"]
-    sun.rotation_euler, sun.data.angle = (0.0, math.radians(80.0), 0.4), math.radians(60.0)
+    sun.rotation_euler, sun.data.angle = (0.0, math.radians(84.0), 0.4), math.radians(30.0)
     assert_as_in_cycles(render, 0.02, samples=256)
 
 

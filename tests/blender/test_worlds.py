@@ -146,7 +146,7 @@ def test_a_camera_sees_another_world_than_lights(ground, render, lit):  # noqa: 
     for_cameras(tree, background, (0.05, 0.6, 0.3))
     look_over(ground)
     theirs = assert_as_in_cycles(ground, render)
-    assert read_scene().warnings == ()
+    assert not any("World" in sentence for sentence in read_scene().warnings)
     np.testing.assert_allclose(theirs[0, 0, :3], (0.05, 0.6, 0.3), rtol=1e-3)
 
 
