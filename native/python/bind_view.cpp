@@ -97,6 +97,19 @@ class Taking {
   std::shared_future<void> done_;
 };
 
+// What has become known, being taken in, for a caller who has something else to do.
+class News {
+ public:
+  explicit News(render::View& view) : any_(view.start_news()) {}
+
+  bool wait(std::optional<double> seconds) const { return wait_for(any_, seconds); }
+  bool done() const { return wait(0.0); }
+  bool result() const { return any_.get(); }
+
+ private:
+  std::shared_future<bool> any_;
+};
+
 // Samples under way, for a caller who has something else to do. The work is the device thread's: no thread of Python's
 // waits for it.
 class Rendering {
@@ -316,6 +329,11 @@ void bind_view(py::module_& module) {
       .def("wait", &Taking::wait, py::arg("seconds") = py::none(), Release(),
            "Waits for that, if `seconds` is given at most so long; whether it has come.")
       .def("result", &Taking::result, Release(), "Waits for that. Raises Error as View.set_scene() does.");
+  py::class_<News>(module, "News", "What View.start_news() takes in.")
+      .def_property_readonly("done", &News::done, "Whether that is done, or has failed.")
+      .def("wait", &News::wait, py::arg("seconds") = py::none(), Release(),
+           "Waits for that, if `seconds` is given at most so long; whether it is done.")
+      .def("result", &News::result, Release(), "Waits for that. As View.take_news().");
   py::class_<render::View>(
       module, "View",
       "An image of a scene, through a camera or unwrapped, that gets better with every sample (box pixel filter, "
@@ -379,6 +397,9 @@ void bind_view(py::module_& module) {
       .def("take_news", &render::View::take_news, Release(),
            "Takes in what has become known of light since; if anything has, restarts the accumulation. "
            "Returns whether it did.")
+      .def(
+          "start_news", [](render::View& view) { return News(view); }, Release(),
+          "As take_news(), without waiting: gives the News under way. Whatever else is asked of the view waits for it.")
       .def_property_readonly("preparing", &render::View::preparing,
                              "The share that is done of what the scene's picture waits for; None if all is known.")
       .def_property_readonly("awaited", &render::View::awaited,

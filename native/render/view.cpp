@@ -37,6 +37,7 @@ std::uint64_t next_id() {
 
 void View::wait_for_scene() const {
   if (taking_.valid()) taking_.wait();
+  if (news_.valid()) news_.wait();
 }
 
 // After the samples that were asked for before.
@@ -126,10 +127,18 @@ void View::set_taps(int taps) {
   *samples_ = 0;
 }
 
-bool View::take_news() {
-  const bool news = change([&] { return frame(id_).take_news(); });
-  if (news) *samples_ = 0;
-  return news;
+bool View::take_news() { return start_news().get(); }
+
+std::shared_future<bool> View::start_news() {
+  wait_for_scene();
+  if (under_way_.valid()) under_way_.wait();
+  auto take = [this] {
+    const bool news = frame(id_).take_news();
+    if (news) *samples_ = 0;
+    return news;
+  };
+  news_ = gl::ContextThread::instance().post(std::move(take)).share();
+  return news_;
 }
 
 std::optional<double> View::preparing() const {

@@ -70,6 +70,9 @@ class View {
   /// did.
   bool take_news();
 
+  /// As take_news(), without waiting; whatever else is asked of the view until then waits for that, as for a scene.
+  std::shared_future<bool> start_news();
+
   /// The share that is done of what the scene's picture waits for; nothing if all is known.
   std::optional<double> preparing() const;
 
@@ -134,6 +137,7 @@ class View {
   std::vector<std::shared_ptr<const transport::Computation>> computations_;
   std::shared_ptr<const heap::Solving> solving_;  // null where no light goes from grain to grain
   std::shared_future<void> taking_;               // a scene; not valid before the first
+  std::shared_future<bool> news_;                 // being taken in; not valid before the first
   std::shared_ptr<std::atomic<int>> samples_ = std::make_shared<std::atomic<int>>(0);
   std::shared_future<double> under_way_;  // what was started last; not valid before
   std::atomic<std::uint64_t> started_ = 0;

@@ -46,8 +46,17 @@ class Withheld:
     def preparing(self):
         return self._view.preparing if self.told else 0.5
 
-    def take_news(self):
-        return self.told and self._view.take_news()
+    def start_news(self):
+        return self._view.start_news() if self.told else Withheld.None_()
+
+    class None_:
+        """News that are none."""
+
+        def wait(self, seconds=None):
+            return True
+
+        def result(self):
+            return False
 
 
 class Taken:
@@ -73,6 +82,21 @@ class Taken:
 
     def start_scene(self, scene):
         return Taken.Taking(self._view.start_scene(scene), self.open)
+
+
+class Telling:
+    """A native.View that has taken in what has become known once `open` is set: of very many instances."""
+
+    def __init__(self, view):
+        self._view, self.open, self._asked = view, threading.Event(), False
+
+    def __getattr__(self, name):
+        assert not self._asked or self.open.is_set() or name in ("width", "height", "cancel"), f"{name} waits for news"
+        return getattr(self._view, name)
+
+    def start_news(self):
+        self._asked = True
+        return Taken.Taking(self._view.start_news(), self.open)
 
 
 @pytest.fixture
@@ -191,6 +215,28 @@ def test_no_redraw_waits_for_a_scene_to_be_taken(drag, native):
     right.set_camera(native.Camera.look_at((0.0, 0.0, 11.0), (0.0, 0.0, 0.0), (0.0, 1.0, 0.0), 45.0))
     right.render(2)
     np.testing.assert_allclose(pictures[-1], right.read(), atol=1e-5)
+
+
+def test_no_redraw_waits_for_news_to_be_taken(drag, native):
+    """A scene that comes meanwhile is taken after them."""
+    _, session = drag(sample_seconds=0.0, redraw_seconds=0.0)
+    while session.busy or session.samples < 2:
+        session.advance(2)
+    view = session._view = Telling(session._view)
+    session._preparing = True
+    for _ in range(3):
+        assert session.advance(2) is None and session.busy and not session.waits
+    bpy.data.materials["Translucent"].mesograin.reflectance = (0.3,) * 3
+    session.set_scene(export.read_scene(bpy.context.evaluated_depsgraph_get(), meshes.MeshCache()))
+    assert session.advance(2) is None and session.picture() is None
+    view.open.set()
+    while session.busy or session.samples < 2:
+        session.advance(2)
+    right = native.View(*SIZE)
+    right.set_scene(export.scene_from_depsgraph(bpy.context.evaluated_depsgraph_get())[0])
+    right.set_camera(export.camera_from_scene(bpy.context.evaluated_depsgraph_get(), *SIZE))
+    right.render(2)
+    np.testing.assert_allclose(session.picture(), right.read(), atol=1e-5)
 
 
 def test_an_error_of_what_was_shown_before_is_not_that_of_what_is_shown(drag, native, monkeypatch):

@@ -30,7 +30,8 @@ class Session:
         self._values = None  # of the scene that was last asked for
         self._camera = None
         self._next_scene = self._next_camera = None  # asked for, and not yet the view's
-        self._taking = None  # a scene that the view is being given
+        self._taking = None  # a scene that the view is being given, or news that it takes in
+        self._takes_news = False  # which of the two
         self._view = None
         self._pixels = None
         self._kept = None  # (picture, samples) that is finished, and not yet returned
@@ -174,20 +175,32 @@ class Session:
         self._keep_busy()
 
     def _take_scene(self):
-        """Whether the view has the scene that was asked for last. Raises native.Error as View.set_scene."""
+        """Whether the view has the scene that was asked for last, and all news begun. Raises native.Error as
+        View.set_scene."""
         while self._taking is not None or self._next_scene is not None:
             if self._taking is None:
                 self._taking, self._next_scene = self._view.start_scene(self._next_scene), None
             if not self._taking.wait(PATIENCE_SECONDS):
                 return False
-            taking, self._taking = self._taking, None
-            try:
-                taking.result()
-            except native_module.get().Error:
-                self._values = None  # the next update takes nothing for shown
-                raise
-            self._begin()
+            self._took()
         return True
+
+    def _took(self):
+        """Goes on with what the view has taken. Raises native.Error as View.set_scene."""
+        taking, self._taking = self._taking, None
+        takes_news, self._takes_news = self._takes_news, False
+        if takes_news:
+            if taking.result():
+                before = self._pixels.copy() if self._seen else None
+                self._restart()
+                self._fade = None if before is None else (before, None)
+            return
+        try:
+            taking.result()
+        except native_module.get().Error:
+            self._values = None  # the next update takes nothing for shown
+            raise
+        self._begin()
 
     def _begin(self):
         self._preparing = True
@@ -198,10 +211,10 @@ class Session:
             return
         if self._task is None and self._preparing:
             self._preparing = self._view.preparing is not None  # asked first, so that the last news is not missed
-            if self._view.take_news():
-                before = self._pixels.copy() if self._seen else None
-                self._restart()
-                self._fade = None if before is None else (before, None)
+            self._taking, self._takes_news = self._view.start_news(), True
+            if not self._taking.wait(PATIENCE_SECONDS):  # that of a million grains takes a second
+                return
+            self._took()
         if self._task is None and self._camera is not None and self._view.samples < self._target:
             count = min(self._chunk, self._target - self._view.samples)
             self._task = _start(self._view, count)
