@@ -232,6 +232,10 @@ class Updates(list):
     def scene(self):
         return bpy.context.scene
 
+    @property
+    def view_layer(self):
+        return bpy.context.view_layer
+
 
 class Update:
     is_updated_geometry = is_updated_transform = True
