@@ -121,6 +121,14 @@ def test_a_light_of_a_temperature(ground, render, kelvin):
     np.testing.assert_allclose(ours / ours[1], theirs / theirs[1], atol=0.01)
 
 
+def test_a_muted_emission_gives_no_light(ground, render):
+    add_light("POINT", (0.4, -0.3, 2.0))
+    muted = add_light("POINT", (-0.4, 0.3, 2.0)).data
+    compat.use_nodes(muted)
+    next(node for node in muted.node_tree.nodes if node.type == "EMISSION").mute = True
+    assert_as_in_cycles(ground, render)
+
+
 def test_nodes_that_vary_nothing_are_followed(ground, render):
     light = add_light("POINT", (0.4, -0.3, 2.0)).data
     compat.use_nodes(light)

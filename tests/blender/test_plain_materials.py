@@ -94,6 +94,24 @@ def test_a_chosen_model_makes_it_a_grain(material):
     assert sentences == ()
 
 
+def test_a_muted_shader_is_black(material):
+    shade(material, "ShaderNodeBsdfDiffuse", Color=(*COLOUR, 1.0)).mute = True
+    values, sentences = drawn()
+    assert values["model"] == "lambert" and values["reflectance"] == (0.0, 0.0, 0.0) and sentences == ()
+
+
+def test_a_muted_mix_shows_its_first(material):
+    mix = shade(material, "ShaderNodeMixShader", Fac=0.9)
+    tree = material.node_tree
+    for number, colour in ((1, (*COLOUR, 1.0)), (2, (0.9, 0.1, 0.1, 1.0))):
+        node = tree.nodes.new("ShaderNodeBsdfDiffuse")
+        node.inputs["Color"].default_value = colour
+        tree.links.new(node.outputs[0], mix.inputs[number])
+    mix.mute = True
+    values, sentences = drawn()
+    assert values["reflectance"] == pytest.approx(COLOUR) and sentences == ()
+
+
 def glossy(material, **inputs):
     return shade(material, "ShaderNodeBsdfGlossy" if hasattr(bpy.types, "ShaderNodeBsdfGlossy") else
                  "ShaderNodeBsdfAnisotropic", **inputs)

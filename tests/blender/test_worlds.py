@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from mathutils import Euler, Matrix
 from test_export import add_object, read_scene
-from test_lights import assert_as_in_cycles, ground, make_world  # noqa: F401 (a fixture)
+from test_lights import add_light, assert_as_in_cycles, ground, make_world  # noqa: F401 (a fixture)
 
 from mesograin import compat
 from mesograin.scene import surroundings
@@ -190,3 +190,12 @@ def test_a_world_that_other_rays_do_not_see_is_said(ground):  # noqa: F811
     hidden_from(ground.world, "glossy")
     [sentence] = read_scene().warnings
     assert "World 'World'" in sentence and "glossy rays" in sentence and "left out" in sentence
+
+
+def test_a_muted_background_lights_nothing(ground, render):  # noqa: F811
+    add_light("POINT", (0.4, -0.3, 3.0))
+    _, background = make_world(ground, (0.4, 0.1, 0.2), 1.0)
+    background.mute = True
+    ground.camera.data.ortho_scale = 6.0
+    theirs = assert_as_in_cycles(ground, render)
+    assert theirs[0, 0, :3].max() == 0.0

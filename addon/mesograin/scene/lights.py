@@ -92,6 +92,8 @@ def _emission_of_nodes(light, name):
     if not links:
         return (0.0, 0.0, 0.0), ()
     node = links[0].from_node
+    if node.type == "EMISSION" and node.mute:
+        return (0.0, 0.0, 0.0), ()
     if node.type != "EMISSION":
         return white, (f"Light '{name}' has the node '{node.name}', which is left out: its own colour and strength are "
                        "rendered.",)

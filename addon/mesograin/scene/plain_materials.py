@@ -146,11 +146,7 @@ def read(material, box=textures.Box(), own=AVERAGE, side=textures.SIDE, mesh=Non
         found.be_lambert(material.diffuse_color)
         return found
     output = material.node_tree.get_output_node("CYCLES")
-    link = output and node_colours.feeding(output.inputs["Surface"])
-    if link is None:
-        found.be_lambert((0.0, 0.0, 0.0))
-    else:
-        _read_node(found, material, link.from_node)
+    _read_what_feeds(found, material, output and output.inputs["Surface"])
     if output and output.inputs["Displacement"].is_linked:
         found.leave_out("its displacement")
     if output and output.inputs["Volume"].is_linked:
@@ -192,11 +188,23 @@ def _reflectance(colour):
 
 
 def _read_node(found, material, node):
+    if node.mute:
+        _read_what_feeds(found, material, next((link.from_socket for link in node.internal_links), None))
+        return
     if node.type in _READERS:
         _READERS[node.type](found, material, node)
         return
     found.be_lambert(material.diffuse_color)
     found.leave_out(f"the node '{node.name}', for which its viewport colour stands")
+
+
+def _read_what_feeds(found, material, socket):
+    """Of an input that shows a shader; without any it is black."""
+    link = socket and node_colours.feeding(socket)
+    if link is None:
+        found.be_lambert((0.0, 0.0, 0.0))
+    else:
+        _read_node(found, material, link.from_node)
 
 
 def _read_diffuse(found, _material, node):

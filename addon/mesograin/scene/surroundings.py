@@ -104,6 +104,8 @@ def _read(world, side, from_camera=False):
     if link is None:
         return WorldValues(), ()
     background = link.from_node
+    if background.type == "BACKGROUND" and background.mute:
+        return WorldValues(), ()
     strength = _constant(background.inputs["Strength"]) if background.type == "BACKGROUND" else None
     if strength is None:
         return _painted(world, surface, side, from_camera)
