@@ -6,7 +6,7 @@ import bpy
 import numpy
 from mathutils import Matrix
 
-from ..scene import export, meshes, surroundings
+from ..scene import export, lights, meshes, surroundings
 from . import instancing, lighting, settings
 
 
@@ -110,6 +110,8 @@ class Stage:
             raise StageError("The scene has no visible light, and its world is black: add a light.")
 
     def _copy_light(self, source, matrix):
+        if lights.is_left_out(source):
+            return
         light = self._own(lighting.copy_light(source, self._least_sun))
         self._add(light.name, light, matrix)
 

@@ -64,6 +64,11 @@ def energy_and_colour(light):
     return strongest, tuple(channel / strongest for channel in power)
 
 
+def is_left_out(light):
+    """Whether a light, wherever it is, has a strength that cannot be drawn."""
+    return bool(fault([own * node for own, node in zip(_power(light), _emission_of_nodes(light, light.name)[0])]))
+
+
 def fault(power):
     """Why a light or world of this power, linear RGB, cannot be drawn; empty where it can."""
     if not all(math.isfinite(channel) for channel in power):
