@@ -293,9 +293,11 @@ void Gather::follow_look(SeenFacet seen, const Facets& facets, const Look& how, 
 
 float Gather::spread_of(std::uint32_t grain, const Passage& passage, const Look& how, const Facets& facets) const {
   if (how.alone) return spread_of_alpha * facets.finish(grain).roughness;
-  if (passage.scattered) return spread_of_scattered;
-  return passage.flat ? spread_of_facets : least_spread;
+  return how.narrowed * (passage.scattered ? spread_of_scattered : passage.flat ? spread_of_facets : least_spread);
 }
+
+// Kaplanyan and Dachsbacher 2013, section 4.3 and their supplement: of a mollifier in two dimensions.
+float Gather::narrowed(std::uint32_t sample) { return std::pow(static_cast<float>(sample) + 1.0F, -1.0F / 6.0F); }
 
 glm::vec3 Gather::world_along(const glm::vec3& direction, bool as_it_is) const {
   const glm::dvec3 along(direction);

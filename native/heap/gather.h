@@ -87,11 +87,15 @@ class Gather {
     Scatterings scatterings;  ///< in this grain; where they end, its numbers tell what others make of them
     bool whole;               ///< no model tells what lights and the world do in it and at its surface
     bool alone = false;       ///< its model tells how much scattering leaves of what crosses it, and the look of what
+    float narrowed = 1.0F;    ///< by what the cones that lights are spread over are multiplied
   };
 
   /// What look() shows, through the grain's own facets and other clear grains that stand behind it, and the world and
   /// the lights that are seen so.
   Through look_into(const SeenFacet& seen, const Facets& facets, const Look& how, transport::Random& random) const;
+
+  /// Look::narrowed of a picture's sample: its bias goes as its noise does, the more samples there are.
+  static float narrowed(std::uint32_t sample);
 
   /// What a clear grain's surface reflects of suns and lamps.
   glm::vec3 highlights(const SeenFacet& seen, const Facets& facets, transport::Random& random) const;

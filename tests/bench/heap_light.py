@@ -1,11 +1,11 @@
-"""How far light between grains is from path tracing: totals and blocks of a heap of 696 balls, or of cubes turned this
-way and that in their places, for kinds of grains and lights.
+"""How far light between grains is from path tracing: totals and blocks of a heap of 696 balls, or of other grains
+turned this way and that in their places, for kinds of grains and lights.
 
     heap_light.py BUILD_FOLDER [--grains G] [--kinds K ...] [--lights L ...] [--models M ...] [--exchanges E ...]
         [--samples N] [--paths N] [--out FOLDER] [--markdown FILE]
 
-The truth is traced beside it (mesograin-referee heap, of cubes render): so many paths a pixel, and its own noise in
-blocks is told.
+The truth is traced beside it (mesograin-referee heap, of others than balls render): so many paths a pixel, and its
+own noise in blocks is told.
 Errors are relative L1 in blocks of 8 x 8 pixels of a picture of 96 x 96, over all channels. A sun that balls with a
 refracting surface are lit by is 20 degrees wide: a point's light no path finds. What is drawn with the exchange off is
 also told, in green, beside the share of the truth that was scattered in one ball alone and went through all others
@@ -22,7 +22,7 @@ import tempfile
 
 import heap_light_page
 import numpy
-from frame import sphere
+from heap_grains import GRAINS, mesh, turns
 
 DATA = pathlib.Path(__file__).resolve().parents[1] / "data/heaps"
 MANIFEST = json.loads((DATA / "manifest.json").read_text())
@@ -32,11 +32,11 @@ LIGHTS = [*SUNS, "sky"]
 WIDE = math.radians(20.0)
 
 
-def medium(albedo, radius, eta=None):
+def medium(albedo, radius, eta=None, g=0):
     """A material as tests/data/heaps/manifest.json has it; albedo and radius (mean free paths): one, or by channel."""
     albedo, radius = numpy.broadcast_arrays(numpy.asarray(albedo, float), numpy.asarray(radius, float))
     return {"kind": "subsurface", "sigma_s": (albedo * radius).tolist(), "sigma_a": ((1.0 - albedo) * radius).tolist(),
-            "g": 0, **({"boundary": "index_matched"} if eta is None else {"boundary": "dielectric", "eta": eta})}
+            "g": g, **({"boundary": "index_matched"} if eta is None else {"boundary": "dielectric", "eta": eta})}
 
 
 KINDS = {"lambert .3": {"kind": "diffuse", "reflectance": 0.3}, "lambert .8": {"kind": "diffuse", "reflectance": 0.8},
@@ -44,7 +44,8 @@ KINDS = {"lambert .3": {"kind": "diffuse", "reflectance": 0.3}, "lambert .8": {"
             for albedo in (0.9, 0.999) for radius in (1, 3, 10)},
          "coloured": medium((0.999, 0.97, 0.8), (1.0, 3.0, 5.0)),
          "eta 1.3": medium(0.999, 3, 1.3), "eta 1.5": medium(0.999, 3, 1.5),
-         "clear": medium(0.999, 0.2, 1.5)}
+         "coloured, eta 1.5": medium((0.999, 0.97, 0.8), (1.0, 3.0, 5.0), 1.5),
+         "forward, eta 1.3": medium(0.999, 8, 1.3, g=0.8), "clear": medium(0.999, 0.2, 1.5)}
 
 
 def light_of(name, material, grains="balls"):
@@ -53,7 +54,7 @@ def light_of(name, material, grains="balls"):
     above = math.radians(SUNS[name])
     aside = (math.cos(above), 0.0) if name == "sun" else (0.0, math.cos(above))
     return {"type": "distant", "direction_to_light": [*aside, math.sin(above)],
-            "angle": WIDE if "eta" in material or grains == "cubes" else 0.0}
+            "angle": WIDE if "eta" in material or grains != "balls" else 0.0}
 
 
 def truth_of_scene(native, referee, traced, paths, folder):
@@ -94,50 +95,19 @@ def how_far(found, right):
             float(numpy.abs(blocks(found) - blocks(right)).sum() / blocks(right).sum()))
 
 
-def ball(native):
-    _, normals, triangles = sphere()
-    return native.Mesh(normals, normals, triangles)
-
-
-def turns(count):
-    """(count, 3, 3): any way round, the same ever again."""
-    quaternions = numpy.random.default_rng(1).normal(size=(4, count))
-    w, x, y, z = quaternions / numpy.linalg.norm(quaternions, axis=0)
-    return numpy.stack([1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - z * w), 2.0 * (x * z + y * w),
-                        2.0 * (x * y + z * w), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - x * w),
-                        2.0 * (x * z - y * w), 2.0 * (y * z + x * w), 1.0 - 2.0 * (x * x + y * y)],
-                       -1).reshape(count, 3, 3)
-
-
-def cube():
-    """Corners in the unit sphere, normals and triangles, of flat faces."""
-    corners, normals, triangles = [], [], []
-    for axis in range(3):
-        for side in (-1.0, 1.0):
-            normal, along = side * numpy.eye(3)[axis], numpy.eye(3)[(axis + 1) % 3]
-            across = numpy.cross(normal, along)
-            first = len(corners)
-            corners += [(normal + a * along + b * across) / math.sqrt(3.0)
-                        for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
-            normals += [normal] * 4
-            triangles += [(first, first + 1, first + 2), (first, first + 2, first + 3)]
-    return (numpy.array(corners, numpy.float32), numpy.array(normals, numpy.float32),
-            numpy.array(triangles, numpy.uint32))
-
-
 def scene(native, material, model, light, exchange, grains="balls"):
     if material["kind"] == "diffuse":
         look = native.Material(model=model, reflectance=(material["reflectance"],) * 3)
     else:
         sigmas = {name: tuple(numpy.broadcast_to(material[name], 3)) for name in ("sigma_a", "sigma_s")}
-        look = native.Material(model=model, boundary=material["boundary"], eta=material.get("eta", 1.3), **sigmas)
+        look = native.Material(model=model, boundary=material["boundary"], eta=material.get("eta", 1.3),
+                               g=material["g"], **sigmas)
     places = numpy.loadtxt(DATA / "spheres.csv", delimiter=",", skiprows=1)
     transforms = numpy.zeros((len(places), 4, 4))
-    transforms[:, :3, :3] = places[:, 3, None, None] * (turns(len(places)) if grains == "cubes" else numpy.eye(3))
+    transforms[:, :3, :3] = places[:, 3, None, None] * (numpy.eye(3) if grains == "balls" else turns(len(places)))
     transforms[:, :3, 3] = places[:, :3]
     transforms[:, 3, 3] = 1.0
-    mesh = native.Mesh(*cube()) if grains == "cubes" else ball(native)
-    heap = native.InstanceArray(mesh, look, transforms)
+    heap = native.InstanceArray(mesh(native, grains), look, transforms)
     if light["type"] == "distant":
         sun = native.DirectionalLight(light["direction_to_light"], (math.pi,) * 3, angle=light["angle"])
         shines = {"lights": [sun]}
@@ -183,7 +153,7 @@ def own_share(case):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("build", help="the folder of the native module and of the referee")
-    parser.add_argument("--grains", default="balls", choices=["balls", "cubes"], help="(default: balls)")
+    parser.add_argument("--grains", default="balls", choices=GRAINS, help="(default: balls)")
     parser.add_argument("--kinds", nargs="+", default=list(KINDS), choices=list(KINDS), metavar="K",
                         help=f"of grains: {', '.join(KINDS)} (default: all)")
     parser.add_argument("--lights", nargs="+", default=LIGHTS, choices=LIGHTS)
@@ -222,7 +192,7 @@ def main():
                 for model in ["lambert"] if material["kind"] == "diffuse" else options.models:
                     for exchange in options.exchanges:
                         numbers, found = measure(native, of, model, exchange, options.samples, options.grains)
-                        case = {"kind": label, "light": name, **numbers}
+                        case = {"kind": label, "light": name, "refracts": "eta" in material, **numbers}
                         cases.append(case)
                         drawn.append((f"{model}, {exchange}", found))
                         print(f"{label:<16}{name:<5}{model:<9}{exchange:<9}{case['total']:>7.3f}{case['blocks']:>7.1%}"

@@ -15,7 +15,7 @@ BOUNDS = {"blocks": {"order_1": 0.04, "gathered": 0.025}, "low": {"order_1": 0.0
 
 def bound(case):
     """Of its error in blocks; None without light between grains."""
-    row = "refracting" if case["kind"].startswith(("eta", "clear")) else "low" if case["light"] == "low" else "blocks"
+    row = "refracting" if case["refracts"] else "low" if case["light"] == "low" else "blocks"
     return BOUNDS[row].get(case["exchange"])
 
 
@@ -59,7 +59,7 @@ def html(cases, pictures, **about):
     environment.filters["percent"] = lambda value: f"{100.0 * value:.1f}"
     environment.filters["total_met"] = lambda case: _marked(case, abs(case["total"] - 1.0) <= BOUNDS["total"])
     environment.filters["blocks_met"] = lambda case: _marked(case, case["blocks"] <= (bound(case) or 0.0))
-    wide = any(case["kind"].startswith(("eta", "clear")) and case["light"] != "sky" for case in cases)
+    wide = any(case["refracts"] and case["light"] != "sky" for case in cases)
     return environment.get_template("heap_light.html.j2").render(cases=cases, pictures=pictures, bounds=BOUNDS,
                                                                  wide=wide, **about)
 

@@ -61,18 +61,18 @@ def torus():
     return grid_mesh(numpy.stack((out * numpy.cos(u), out * numpy.sin(u), 0.7 * numpy.sin(v)), axis=-1))
 
 
-def peanut():
+def peanut(segments=28):
     """Two balls grown together."""
     apart, ball = 0.9, 1.35
 
     def reach(directions):
         along = numpy.abs(directions[:, 2])
         return directions * (apart * along + numpy.sqrt(ball ** 2 - apart ** 2 * (1 - along ** 2)))[:, None]
-    return cubed_sphere(reach)
+    return cubed_sphere(reach, segments)
 
 
-def sand():
-    made = grains().kinds.sand(numpy.random.default_rng(3), 28, 0.7, 0.3)
+def sand(segments=28):
+    made = grains().kinds.sand(numpy.random.default_rng(3), segments, 0.7, 0.3)
     faces = numpy.concatenate((made.faces[:, [0, 1, 2]], made.faces[:, [0, 2, 3]]))
     vertices = made.vertices - 0.5 * (made.vertices.min(axis=0) + made.vertices.max(axis=0))
     return vertices * (2.2 / numpy.linalg.norm(vertices, axis=1).max()), faces

@@ -24,8 +24,8 @@ Heap under_sun(double aside, double width) {
   return heap;
 }
 
-/// What is seen of that sun through the plate, from straight above.
-double seen_through(double aside, double width, bool flat) {
+/// What is seen of that sun through the plate, from straight above, in one sample of a picture.
+double seen_through(double aside, double width, bool flat, std::uint32_t sample = 0) {
   const Heap heap = under_sun(aside, width);
   const Gather gather(heap, std::make_shared<const HeapLight>(solve_exchange(heap, {}, {}, {})));
   transport::Random random(7, 0);
@@ -33,7 +33,10 @@ double seen_through(double aside, double width, bool flat) {
   double sum = 0.0;
   for (int i = 0; i < looks; ++i)
     sum +=
-        gather.look_into({0, half_thickness * up, up, up}, Plate(smooth, flat), {Scatterings::followed, true}, random)
+        gather
+            .look_into({0, half_thickness * up, up, up}, Plate(smooth, flat),
+                       {.scatterings = Scatterings::followed, .whole = true, .narrowed = Gather::narrowed(sample)},
+                       random)
             .lights.g /
         looks;
   return sum;
@@ -55,6 +58,16 @@ TEST(ClearLights, AreSpreadLessThroughFlatFacets) {
   EXPECT_GT(seen_through(4.0 * degree, degree, true), 0.0);
   EXPECT_EQ(seen_through(6.0 * degree, degree, true), 0.0);
   EXPECT_GT(seen_through(14.0 * degree, degree, false), 0.0);
+}
+
+// So that a picture ends as what is there, and not as what had little noise.
+TEST(ClearLights, AreSpreadLessByEachSample) {
+  EXPECT_GT(seen_through(8.0 * degree, degree, false, 0), 0.0);
+  EXPECT_EQ(seen_through(8.0 * degree, degree, false, 63), 0.0);
+  const double passed = 0.96 / 1.04;
+  EXPECT_NEAR(seen_through(7.0 * degree, degree, false, 63) / radiance_of(15.0 * degree), passed, 0.02);
+  // None is narrower than it is.
+  EXPECT_NEAR(seen_through(9.0 * degree, 20.0 * degree, false, 1U << 20U) / radiance_of(20.0 * degree), passed, 0.02);
 }
 
 /// What a plate's surface mirrors of a sun so far from where it mirrors the viewer.

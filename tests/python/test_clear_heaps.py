@@ -271,6 +271,26 @@ def test_a_crystal_shows_what_stands_behind_it():
     assert behind[16:32, 16:32].mean() < 0.15
 
 
+# A sun behind a flat facet is spread over 5 degrees in the first sample, over less than 4 from the fourth on.
+def test_suns_behind_crystals_grow_sharper_with_the_samples():
+    aside = math.radians(4.0)
+    sun = native.DirectionalLight((math.sin(aside), math.cos(aside), 0.0), (3.0,) * 3, angle=math.radians(1.0))
+    transforms = numpy.tile(numpy.eye(4), (len(ALONE), 1, 1))
+    transforms[:, :3, 3] = ALONE
+    view = native.View(48, 48)
+    view.set_scene(native.Scene(arrays=[native.InstanceArray(cube(0.6), GLASS, transforms)], lights=[sun],
+                                world=native.World(radiance=(0.0,) * 3), exchange="heaps"))
+    view.set_camera(native.Camera.look_at((0.0, -60.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 1.0), 1.5))
+
+    def middle(samples):
+        view.render(samples)
+        return view.read()[16:32, 16:32, 1].mean()
+
+    first = middle(1)
+    assert first > 10.0
+    assert middle(32) < 0.2 * first
+
+
 # Places are told from amid all that there is, in single precision.
 def test_a_small_crystal_in_a_large_scene_is_as_clear():
     near, far = alone(half_bright()), alone(half_bright(), [black_thing((4000.0, 0.0, 0.0), (1.0, 1.0, 1.0))])

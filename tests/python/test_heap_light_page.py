@@ -9,8 +9,8 @@ import heap_light_page  # noqa: E402
 
 
 def case(**changes):
-    return {"kind": "lambert .8", "light": "sun", "model": "lambert", "exchange": "order_1", "total": 1.0,
-            "blocks": 0.03, "truth_noise": 0.004, "finite": True, **changes}
+    return {"kind": "lambert .8", "refracts": False, "light": "sun", "model": "lambert", "exchange": "order_1",
+            "total": 1.0, "blocks": 0.03, "truth_noise": 0.004, "finite": True, **changes}
 
 
 def rows(*cases):
@@ -20,7 +20,7 @@ def rows(*cases):
 
 def test_a_bound_is_met_or_missed():
     for met, blocks, of in ((True, 0.039, {}), (False, 0.041, {}), (True, 0.065, {"light": "low"}),
-                            (False, 0.026, {"exchange": "gathered"}), (True, 0.079, {"kind": "eta 1.5"})):
+                            (False, 0.026, {"exchange": "gathered"}), (True, 0.079, {"refracts": True})):
         [row] = rows(case(blocks=blocks, **of))
         assert ('"met">%.1f' % (100.0 * blocks) in row) == met and ('"missed">%.1f' % (100.0 * blocks) in row) != met
     [row] = rows(case(total=1.04))

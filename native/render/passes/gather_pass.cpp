@@ -65,6 +65,7 @@ bool GatherPass::run(const Sample& sample, const ArrayVisibility& arrays, Surfac
                              sample.content.instances() != nullptr ? sample.content.instances()->bounds() : Bounds{});
   const std::size_t instances = sample.content.instances() != nullptr ? sample.content.instances()->count() : 0;
   const auto pixel_at = [&](std::size_t i) { return glm::dvec2(i % width, i / width); };
+  const float narrowed = heap::Gather::narrowed(sample.index);
   const std::uint64_t seed = (static_cast<std::uint64_t>(sample.seed) << 32U) + sample.index;
   const bool whole = cast_rows(sample.size.y, sample.go_on, [&](int first, int end) {
     for (std::size_t i = width * static_cast<std::size_t>(first); i < width * static_cast<std::size_t>(end); ++i) {
@@ -80,7 +81,7 @@ bool GatherPass::run(const Sample& sample, const ArrayVisibility& arrays, Surfac
       if (clear && gather->sees_into(*grain)) {
         const bool all_told = sample.gathers_all_of(number);
         const heap::Gather::Look how{all || all_told ? heap::Scatterings::followed : heap::Scatterings::end, all_told,
-                                     !all_told && number >= instances};
+                                     !all_told && number >= instances, narrowed};
         const heap::Gather::Through into =
             into_clear({*grain, place, normal, towards}, pixel_rays, pixel_at(i), *gather, *clear,
                        all ? rays_a_sample : rays_into_clear, how, random);
