@@ -17,7 +17,7 @@ struct Grain {
   glm::vec3 middle;  ///< from a place amid the heap
   float radius;
   std::uint32_t kind;      ///< which of Grains::kinds
-  float thickness = 1.0F;  ///< its radius over the one that its kind is for
+  float thickness = 1.0F;  ///< its radius over the one that its kind is for; more than 1 if it is no ball
 
   /// In which the kind's lengths are told.
   float radius_of_kind() const { return radius / thickness; }

@@ -116,7 +116,10 @@ class Gatherer {
     if (!shape(*mesh).grain || !(radius > 0.0)) return;
     balls = balls && shape(*mesh).roundness > roundness_of_balls;
     roles.back().grain = static_cast<std::uint32_t>(grains.grains.size());
-    const double of_kind = rounded(radius);
+    // The mean way of light through a body is 4 V / A, whatever its shape and however it scatters, so that what a grain
+    // absorbs is right if the ball's is as long (Blanco and Fournier, "An invariance property of diffusive random
+    // walks", 2003, eq. 1). Of balls of one area it goes as the square root of the roundness.
+    const double of_kind = rounded(radius * std::sqrt(shape(*mesh).roundness));
     heap::Optics optics = heap::optics_of(material, of_kind);
     optics.lens = shape(*mesh).roundness > roundness_of_lenses;
     grains.grains.push_back(
