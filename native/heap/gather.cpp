@@ -21,9 +21,9 @@ namespace {
 constexpr int most_looked_into = 12;
 
 // Light that comes from a lamp or a sun through several grains is found by no look along one line, or seldom: it is
-// told as if each of them spread it over a cone of this half angle (Kaplanyan and Dachsbacher, "Path space
-// regularization for holistic and robust light transport", 2013, section 4).
-const float least_spread = 15.0F * std::numbers::pi_v<float> / 180.0F;
+// told as if each of them spread it over a cone of this half angle, narrower with each sample (Kaplanyan and
+// Dachsbacher, "Path space regularization for holistic and robust light transport", 2013, section 4).
+const float least_spread = 20.0F * std::numbers::pi_v<float> / 180.0F;
 
 // The same through flat facets, behind which looks go one way: there is less noise to be bought off, and a glint of
 // another facet's would be an error that can be seen.
