@@ -218,12 +218,15 @@ py::dict of_exchange(const render::ExchangeStatistics& exchange) {
   result["found"] = found;
   result["balls"] = exchange.balls;
   result["gathered"] = exchange.gathered;
+  const auto pair = [](const render::Range& range) { return py::make_tuple(range.least, range.most); };
   py::list stuff;
   for (const render::Stuff& one : exchange.stuff) {
     py::dict entry;
     entry["surface"] = heap::surface_names[static_cast<std::size_t>(one.surface)];
-    entry["thickness"] = py::make_tuple(one.thinnest, one.thickest);
-    entry["albedo"] = py::make_tuple(one.darkest, one.brightest);
+    entry["thickness"] = pair(one.thickness);
+    entry["albedo"] = pair(one.albedo);
+    entry["g"] = pair(one.g);
+    entry["eta"] = pair(one.eta);
     stuff.append(entry);
   }
   result["stuff"] = stuff;
@@ -430,8 +433,8 @@ void bind_view(py::module_& module) {
            "'residual' of the solution, 'milliseconds' that it took, 'final': no better one is under way, 'found': how "
            "often its 'tables', 'links', 'sources' and 'solutions' were found so far, 'balls': whether all grains are "
            "that round, 'gathered': whether rays of the last sample found more of some grains that are seen, 'stuff': "
-           "[{'surface', 'thickness', 'albedo'}] of what they are made of, the last two from least to "
-           "most, in mean free paths to the radius and of one scattering}}.")
+           "[{'surface', 'thickness', 'albedo', 'g', 'eta'}] of what they are made of, all but the first from least to "
+           "most; thickness in mean free paths to the radius, albedo of one scattering}}.")
       .def("read_told", &read_told, py::arg("out"),
            "As read(), and what is told of the same samples: {'timings', 'statistics'}. One after the other each would "
            "wait for the sample under way.")

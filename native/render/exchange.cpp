@@ -288,8 +288,13 @@ void Exchange::find_whole() {
 
 namespace {
 
-double least(const glm::dvec3& colour) { return std::min({colour.r, colour.g, colour.b}); }
-double most(const glm::dvec3& colour) { return std::max({colour.r, colour.g, colour.b}); }
+Range range_of(const glm::dvec3& colour) {
+  return {std::min({colour.r, colour.g, colour.b}), std::max({colour.r, colour.g, colour.b})};
+}
+
+Range both(const Range& one, const Range& other) {
+  return {std::min(one.least, other.least), std::max(one.most, other.most)};
+}
 
 std::vector<Stuff> stuff_of(const heap::Grains& grains) {
   std::vector<bool> used(grains.kinds.size(), false);
@@ -299,12 +304,13 @@ std::vector<Stuff> stuff_of(const heap::Grains& grains) {
     if (!used[kind]) continue;
     const heap::Optics& optics = grains.kinds[kind];
     const glm::dvec3& albedo = optics.opaque() ? optics.reflectance : optics.albedo;
-    const Stuff own{optics.surface, least(optics.sigma_t), most(optics.sigma_t), least(albedo), most(albedo)};
+    const Stuff own{
+        optics.surface, range_of(optics.sigma_t), range_of(albedo), {optics.g, optics.g}, {optics.eta, optics.eta}};
     Stuff& stuff = found.try_emplace(optics.surface, own).first->second;
-    stuff.thinnest = std::min(stuff.thinnest, own.thinnest);
-    stuff.thickest = std::max(stuff.thickest, own.thickest);
-    stuff.darkest = std::min(stuff.darkest, own.darkest);
-    stuff.brightest = std::max(stuff.brightest, own.brightest);
+    stuff.thickness = both(stuff.thickness, own.thickness);
+    stuff.albedo = both(stuff.albedo, own.albedo);
+    stuff.g = both(stuff.g, own.g);
+    stuff.eta = both(stuff.eta, own.eta);
   }
   std::vector<Stuff> all;
   all.reserve(found.size());

@@ -18,13 +18,18 @@
 
 namespace mesograin::render {
 
+struct Range {
+  double least;
+  double most;
+};
+
 /// What the grains of one surface are made of, over all of them and all channels.
 struct Stuff {
   heap::Surface surface;
-  double thinnest;  ///< mean free paths to the radius; 0 of what is opaque
-  double thickest;
-  double darkest;  ///< albedo of one scattering, or reflectance of what is opaque
-  double brightest;
+  Range thickness;  ///< mean free paths to the radius of the ball that stands for a grain; 0 of what is opaque
+  Range albedo;     ///< of one scattering, or reflectance of what is opaque
+  Range g;
+  Range eta;
 };
 
 /// What is drawn of light between grains.

@@ -32,13 +32,12 @@ double seen_through(double aside, double width, bool flat, std::uint32_t sample 
   constexpr int looks = 1 << 12;
   double sum = 0.0;
   for (int i = 0; i < looks; ++i)
-    sum +=
-        gather
-            .look_into({0, half_thickness * up, up, up}, Plate(smooth, flat),
-                       {.scatterings = Scatterings::followed, .whole = true, .narrowed = Gather::narrowed(sample)},
-                       random)
-            .lights.g /
-        looks;
+    sum += gather
+               .look_into({0, half_thickness * up, up, up}, Plate(smooth, flat),
+                          {.scatterings = Scatterings::followed, .whole = true, .narrowed = Gather::narrowed(sample)},
+                          random)
+               .lights.g /
+           looks;
   return sum;
 }
 

@@ -7,10 +7,10 @@ import dataclasses
 @dataclasses.dataclass(frozen=True)
 class Measured:
     """Heaps that were held against path tracing. surface: as native.View.statistics names it. thickness: mean free
-    paths to the radius, albedo: of one scattering or of the surface, both from least to most. balls: whether grains
-    are such. gathered: whether what is seen was found by rays, or told by numbers a grain. total, blocks: the
-    largest error of the light in all, and relative L1 in blocks of 8 x 8 pixels. low_sun: the same in blocks under
-    a sun 15 degrees above the horizon, or None."""
+    paths to the radius of the ball that stands for a grain; albedo: of one scattering or of the surface; g; eta: all
+    from least to most. balls: whether grains are such. gathered: whether what is seen was found by rays, or told by
+    numbers a grain. total, blocks: the largest error of the light in all, and relative L1 in blocks of 8 x 8 pixels.
+    low_sun: the same in blocks under a sun 15 degrees above the horizon, or None."""
 
     surface: str
     thickness: tuple
@@ -20,23 +20,28 @@ class Measured:
     total: float
     blocks: float
     low_sun: float = None
+    g: tuple = (0.0, 0.0)
+    eta: tuple = (1.0, 1.0)
 
     def holds(self, stuff, exchange):
         """Whether grains of such stuff, so drawn, lie within what was measured."""
         return (stuff["surface"] == self.surface and (exchange["balls"] or not self.balls)
                 and (exchange["gathered"] or not self.gathered)
                 and all(low <= 1.02 * least and most <= 1.02 * high
-                        for (low, high), (least, most) in ((self.thickness, stuff["thickness"]),
-                                                           (self.albedo, stuff["albedo"]))))
+                        for name in ("thickness", "albedo", "g", "eta")
+                        for (low, high), (least, most) in [(getattr(self, name), stuff[name])]))
 
 
 MEASURED = (
     Measured("lambert", (0.0, 0.0), (0.8, 0.8), True, False, 0.032, 0.045),
+    Measured("lambert", (0.0, 0.0), (0.8, 0.8), False, False, 0.02, 0.03),
     Measured("index_matched", (1.0, 10.0), (0.9, 0.999), True, True, 0.03, 0.033, 0.036),
     Measured("index_matched", (1.0, 3.0), (0.9, 0.999), True, False, 0.03, 0.051, 0.05),
-    Measured("index_matched", (2.68, 6.2), (0.914, 0.991), False, True, 0.03, 0.044),
-    Measured("index_matched", (2.68, 6.2), (0.914, 0.991), False, False, 0.03, 0.052),
-    Measured("lambert_lambert", (2.68, 6.2), (0.914, 0.991), False, False, 0.042, 0.048),
+    Measured("index_matched", (2.25, 5.69), (0.914, 0.991), False, True, 0.03, 0.044),
+    Measured("index_matched", (2.25, 5.69), (0.914, 0.991), False, False, 0.03, 0.052),
+    Measured("dielectric", (0.2, 5.0), (0.8, 0.999), True, False, 0.035, 0.075, 0.12, eta=(1.3, 1.55)),
+    Measured("dielectric", (0.11, 2.9), (0.8, 0.999), False, False, 0.04, 0.09, 0.09, eta=(1.3, 1.55)),
+    Measured("lambert_lambert", (2.25, 5.69), (0.914, 0.991), False, False, 0.042, 0.048),
 )
 
 

@@ -1,0 +1,40 @@
+"""What is said of the error of light between grains: only of what was held against path tracing."""
+import importlib.util
+import pathlib
+
+import pytest
+
+PATH = pathlib.Path(__file__).resolve().parents[2] / "addon/mesograin/engine/stated_error.py"
+
+
+@pytest.fixture(scope="module", name="stated_error")
+def module():
+    spec = importlib.util.spec_from_file_location("stated_error", PATH)
+    loaded = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(loaded)
+    return loaded
+
+
+def exchange(balls=True, gathered=True, **stuff):
+    return {"balls": balls, "gathered": gathered,
+            "stuff": [{"surface": "index_matched", "thickness": (3.0, 3.0), "albedo": (0.9, 0.999), "g": (0.0, 0.0),
+                       "eta": (1.0, 1.0), **stuff}]}
+
+
+SALT = {"surface": "dielectric", "thickness": (0.3, 1.0), "albedo": (0.9, 0.99), "eta": (1.544, 1.544)}
+
+
+def test_it_is_said_of_what_was_measured(stated_error):
+    assert stated_error.sentence(exchange()).startswith("within 3% in all and 3.3% in blocks")
+    for balls in (True, False):
+        assert stated_error.sentence(exchange(balls, **SALT)).startswith("within ")
+    both = exchange()
+    both["stuff"] += exchange(**SALT)["stuff"]
+    assert float(stated_error.sentence(both).split("and ")[1].split("%")[0]) > 3.3
+
+
+@pytest.mark.parametrize("other", [{"thickness": (0.5, 3.0)}, {"thickness": (3.0, 11.0)}, {"albedo": (0.5, 0.9)},
+                                   {"g": (0.85, 0.85)}, {"g": (-0.3, 0.0)}, {"surface": "mirror"},
+                                   {**SALT, "eta": (1.1, 1.544)}, {**SALT, "eta": (1.8, 1.8)}])
+def test_nothing_is_said_of_what_was_not(stated_error, other):
+    assert "not measured" in stated_error.sentence(exchange(**other))
