@@ -1,4 +1,4 @@
-"""What stands in the places of a heap's balls: a mesh in the unit sphere for each kind of grain, and how each is turned."""
+"""What stands in the places of a heap's balls: a mesh in the unit sphere for each kind of grain, and its turn."""
 import math
 
 import numpy
