@@ -41,17 +41,28 @@ transport::StoredMedium stored_medium(const scene::Material& material) {
   return medium;
 }
 
-// Above this g similarity is more wrong than walks cost: see docs/shapes.md.
+// Beyond this g, forwards or backwards, similarity is more wrong than walks cost: see docs/shapes.md.
 constexpr double most_similar_g = 0.1;
 
-bool is_walked(const scene::Material& material) { return material.g > most_similar_g; }
+bool is_walked(const scene::Material& material) { return std::abs(material.g) > most_similar_g; }
+
+// Nearer to -1 the phase function is not known to float's last digits.
+constexpr double least_g = -0.95;
 
 // 1 - cosine of 15 degrees. Light that the peak has turned by less counts as unscattered once it is turned by more.
 constexpr double peak_versine = 0.034;
 
-// What of a Henyey-Greenstein function within peak_versine is more than at its edge.
+// What of a Henyey-Greenstein function within peak_versine is more than at its edge; backwards there is no such peak.
 void add_peak(double g, MaterialInputs& inputs) {
   const double rest = 1.0 - g;
+  if (g < 0.0) {
+    inputs.uniforms["forward.peak_versine"] = 0.0F;
+    inputs.uniforms["forward.edge"] = static_cast<float>(physics::henyey_greenstein(0.0, g, rest));
+    inputs.uniforms["forward.within"] = 0.0F;
+    inputs.uniforms["forward.peak"] = 0.0F;
+    inputs.uniforms["forward.wide_g"] = static_cast<float>(g);
+    return;
+  }
   const double at_edge = std::sqrt(rest * rest + 2.0 * g * peak_versine);
   const double edge = physics::henyey_greenstein(peak_versine, g, rest);
   const double within = rest * (1.0 + g) / (2.0 * g) * (1.0 / rest - 1.0 / at_edge);
@@ -72,7 +83,7 @@ void add_forward(const scene::Material& material, const StoredTransport& stored,
   inputs.uniforms["forward.sigma_s"] = glm::vec3(stored.unit * material.scale * material.sigma_s);
   inputs.uniforms["forward.sigma_a"] = glm::vec3(stored.unit * material.scale * material.sigma_a);
   inputs.uniforms["forward.similar_albedo"] = glm::vec3(glm::max(similar_albedo, least_albedo));
-  const double g = std::min(material.g, physics::HENYEY_GREENSTEIN_LARGEST_G);
+  const double g = std::clamp(material.g, least_g, double{physics::HENYEY_GREENSTEIN_LARGEST_G});
   inputs.uniforms["forward.g"] = static_cast<float>(g);
   inputs.uniforms["forward.one_minus_g"] = static_cast<float>(1.0 - g);
   add_peak(g, inputs);
@@ -212,7 +223,8 @@ transport::Order transport_order(const scene::Material& material, scene::MeshPoi
 
 MaterialInputs prototype_inputs(const scene::Material& material, const StoredTransport& stored) {
   MaterialInputs inputs = material_inputs(material);
-  const glm::dvec3 sigma_t = stored.unit * stored_medium(material).sigma_t;
+  const glm::dvec3 sigma_t =
+      glm::min(stored.unit * stored_medium(material).sigma_t, glm::dvec3(transport::densest_told(stored.spacing)));
   const glm::dvec3 unscattered =
       is_walked(material) ? stored.unit * material.scale * (material.sigma_a + material.sigma_s) : sigma_t;
   if (stored.mean_chord * std::min({unscattered.r, unscattered.g, unscattered.b}) < most_clear)

@@ -5,6 +5,7 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/matrix.hpp>
 #include <memory>
 
@@ -120,9 +121,20 @@ double node_spacing(const Body& body, const Quality& quality) {
   return std::cbrt(extent.x * extent.y * extent.z / quality.nodes);
 }
 
-StoredTransport compute_transport(Walks& walks, const StoredMedium& medium, const Effort& effort) {
+double densest_told(double spacing) {
+  constexpr double widest_spacing = 1.6;  // mean free paths
+  return widest_spacing / spacing;
+}
+
+double densest_told(const glm::vec3& spacing) {
+  return densest_told(std::cbrt(static_cast<double>(spacing.x) * spacing.y * spacing.z));
+}
+
+StoredTransport compute_transport(Walks& walks, const StoredMedium& asked, const Effort& effort) {
   const Body& body = walks.body();
   const Grid& grid = walks.grid();
+  StoredMedium medium = asked;
+  medium.sigma_t = glm::min(asked.sigma_t, glm::dvec3(densest_told(grid.spacing())));
   StoredTransport stored{.size = grid.size(),
                          .lower = grid.lower(),
                          .spacing = grid.spacing(),

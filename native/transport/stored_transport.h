@@ -49,6 +49,11 @@ struct StoredTransport {
 /// How far the grid's nodes will be from one another, in units of the body: the mean of all three sides.
 double node_spacing(const Body& body, const Quality& quality);
 
+/// The sigma_t of the densest medium that is told by nodes so far apart: beyond it the light just below the surface is
+/// not resolved. What is denser is told as if it were this.
+double densest_told(double spacing);
+double densest_told(const glm::vec3& spacing);
+
 /// Traces what `walks`, which have the medium's eta, do not know yet. The answer does not depend on what they know.
 StoredTransport compute_transport(Walks& walks, const StoredMedium& medium, const Effort& effort = {});
 

@@ -43,8 +43,8 @@ Quality fine(const Body& body, const StoredMedium& medium) {
   return spacing < thick_spacing ? thin : spacing < thickest_spacing ? thick : thickest;
 }
 
-// Mean free paths between nodes beyond which the light just below the surface is not resolved.
-constexpr double widest_spacing = 1.6;
+// How much denser than densest_told a medium may be that is told as if it were that.
+constexpr double most_thinned = 2.0;
 
 std::string describe_body(const Order& order) {
   Digest shape;
@@ -157,12 +157,12 @@ void Works::work(const Job& job, const std::stop_token& stop) {
     StoredMedium medium = job.order.medium;
     medium.sigma_t *= body.unit();
     const Quality quality = fine(body, medium);
-    const double most = densest(medium);
-    if (most * node_spacing(body, quality) > widest_spacing)
+    const double most = most_thinned * densest_told(node_spacing(body, quality));
+    if (densest(medium) > most)
       throw Error(
           "Light's transport is stored for grains up to about {:.0f} mean free paths across; this one has {:.0f}.",
-          2.0 * widest_spacing / node_spacing(body, quality), 2.0 * most);
-    if (most * node_spacing(body, coarse) <= widest_spacing)
+          2.0 * most, 2.0 * densest(medium));
+    if (densest(medium) <= densest_told(node_spacing(body, coarse)))
       tell(std::make_shared<StoredTransport>(
                compute_transport(*few, medium, part_of(effort, 0.2 * coarse_share, coarse_share))),
            {}, false);

@@ -105,6 +105,14 @@ def test_what_is_too_thick_is_drawn_by_model_3(cube):
     assert numpy.abs(thick - by_model_3).sum() / by_model_3.sum() < 0.01
 
 
+def test_a_channel_that_is_too_dense_is_told_as_less_dense(cube):
+    """Its depth hardly shows any more; model 3 had all three channels then."""
+    light = numpy.array(LIGHTS["front"])
+    coloured = material(sigma_s=(0.9 * SIGMA_T, 0.5 * SIGMA_T, 18.0), sigma_a=(0.1 * SIGMA_T, 0.5 * SIGMA_T, 2.0))
+    grey = picture(cube, material(), light)
+    assert numpy.abs(picture(cube, coloured, light) - grey).sum() / grey.sum() < 0.05
+
+
 def corner():
     places = numpy.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)], numpy.float32)
     return places, numpy.array([(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)], numpy.uint32)
