@@ -1,10 +1,10 @@
-// Where a medium scatters forwards: a walk from the viewer into the grain with each sample, lit at each scattering by the light that nothing
-// has scattered yet, refracted as it enters and reflected inside. Walks grow coarser by and by, and the stored source function ends them.
-// The phase function's narrow peak is told apart: light that met nothing else is followed exactly; on the way of light that has also been
+// Where a medium scatters forwards or backwards: a walk from the viewer into the grain with each sample, lit at each scattering by the light
+// that nothing has scattered yet, refracted as it enters and reflected inside. Walks grow coarser by and by, and the stored source function ends
+// them. The phase function's narrow peak is told apart: light that met nothing else is followed exactly; on the way of light that has also been
 // scattered widely the peak counts as unscattered (Iwabuchi and Suzuki, "Fast and accurate radiance calculations using truncation
 // approximation for anisotropic scattering phase functions", 2009), so that no rare walk finds as much light as thousands of others.
-// Not physical: light that has left does not come back; where light was not followed into the grain beforehand, what the surface reflected inside
-// before its first scattering comes from a sun that is some degrees wide.
+// Not physical: light that has left lights nothing that it enters again; where light was not followed into the grain beforehand, what the surface
+// reflected inside before its first scattering comes from a sun that is some degrees wide.
 //
 // Pasted into transport.glsl, whose grid it reads.
 
@@ -23,7 +23,7 @@ struct Forward {
 uniform Forward forward;
 
 const int EXACT_SCATTERINGS = 4;  // wide ones; from then on two of them with one medium, then two with one that scatters less often
-const float LEAST_KEPT = 0.1;     // of the first direction, by the mean cosine: then the stored source function tells the rest
+const float LEAST_KEPT = 0.1;     // of the first direction's axis, by the mean cosine: then the stored source function tells the rest
 const int MOST_STEPS = 40;
 const float LEAST_FLIGHT = 1e-7;       // in mean free paths
 const float LEAST_EXTINCTION = 1e-12;  // a channel of less flies through
@@ -156,7 +156,7 @@ Radiance walked_radiance(vec3 place, vec3 direction, vec3 to_light, int light) {
       if (narrow) continue;
       sigma_s = wide_sigma_s;
       ++scatterings;
-      kept *= whole ? forward.wide_g : g;
+      kept *= abs(whole ? forward.wide_g : g);
       if (coarser) {
         whole = false;
         g = mean_cosine * mean_cosine;
@@ -180,12 +180,28 @@ Radiance walked_radiance(vec3 place, vec3 direction, vec3 to_light, int light) {
     }
     float followed = max(again, LEAST_FOLLOWED * largest(left));
 #endif
-    if (cosine <= 0.0 || random.w >= followed) break;
+    if (cosine <= 0.0) break;
+    if (random.w >= followed) {
+#ifdef CONVEX
+      break;
+#else
+      float beyond = comes_in_again(place, direction);
+      if (beyond == 0.0) break;
+      left *= beyond / (1.0 - followed);
+      mirrored = false;
+      continue;
+#endif
+    }
     left *= again / followed;
     direction = direction - 2.0 * cosine * normal;
     mirrored = true;
-#else
+#elif defined(CONVEX)
     break;
+#else
+    if (comes_in_again(place, direction) == 0.0) break;
+#ifndef GREY
+    left *= 3.0 * passed / (passed.r + passed.g + passed.b);
+#endif
 #endif
   }
   return sum;

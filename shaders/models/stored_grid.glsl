@@ -91,3 +91,22 @@ float way_through(vec3 place, vec3 direction, float longest) {
   return way;
 #endif
 }
+
+#ifndef CONVEX
+// How far it is outside the grain, from where a line leaves it, to where it enters it again; negative: nowhere.
+float way_to_next_entry(vec3 place, vec3 direction) {
+  float furthest = way_to_box(place, direction);
+  float shortest = SHORTEST_STEP * shortest_spacing();
+  float way = shortest;
+  float before = 0.0;
+  bool outside = false;  // rounding may leave the beginning inside
+  for (int i = 0; i < 48 && way < furthest; ++i) {
+    float above = distance_at(place + way * direction);
+    if (above > shortest) outside = true;
+    if (outside && above <= 0.0) return mix(way - max(before, shortest), way, before / max(before - above, 1e-9));
+    before = max(above, 0.0);
+    way += max(above, shortest);
+  }
+  return -1.0;
+}
+#endif

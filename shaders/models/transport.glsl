@@ -1,11 +1,11 @@
 // The model `transport`: what light does inside this very mesh, found beforehand by rays in it and stored as the source function at nodes of a
 // grid, for light from anywhere. The view ray is followed through the grain, and once more from where it is reflected inside.
-// Not physical: a rough surface is smooth from inside; scattered light that has left does not come back; scattering is isotropic, by similarity,
-// but where it is walked.
+// Not physical: a rough surface is smooth from inside; scattered light that has left is seen through what it enters, but lights nothing there;
+// scattering is isotropic, by similarity, but where it is walked.
 //
 // What is chosen at compile time (models::transport_inputs), besides what dielectric.glsl names:
 //   CLEAR                so much crosses the grain unscattered that it is seen
-//   WALKED               light scatters forwards: what similarity does not tell is found by walks
+//   WALKED               light scatters forwards or backwards: what similarity does not tell is found by walks
 //   CONVEX               no line leaves the grain and enters it again
 //   MANY_TERMS           more of them: the grain is not of the thickest
 //   GREY                 red, green and blue are the same medium, of which one is stored
@@ -176,6 +176,33 @@ const float MOST_AGAIN = 0.6;
 
 float later_again(float again) { return min(again, MOST_AGAIN); }
 
+#ifndef CONVEX
+// How much of the radiance that goes out at a place, of a ray from the viewer, is some that came out of the grain elsewhere; the ray goes on there.
+float comes_in_again(inout vec3 place, inout vec3 direction) {
+#ifdef REFRACTION
+  vec3 normal = outwards_at(place);
+  float cosine = dot(normal, direction);
+  if (cosine <= 0.0) return 0.0;
+  float passed = 1.0 - fresnel_reflectance(min(cosine, 1.0), 1.0 / stored.eta);
+  if (passed <= 0.0) return 0.0;
+  direction = refract(direction, -normal, stored.eta);
+  float gap = way_to_next_entry(place, direction);
+  if (gap < 0.0) return 0.0;
+  place += gap * direction;
+  normal = outwards_at(place);
+  cosine = -dot(normal, direction);
+  if (cosine <= 0.0) return 0.0;
+  direction = refract(direction, normal, 1.0 / stored.eta);
+  return passed * (1.0 - fresnel_reflectance(min(cosine, 1.0), stored.eta));
+#else
+  float gap = way_to_next_entry(place, direction);
+  if (gap < 0.0) return 0.0;
+  place += gap * direction;
+  return 1.0;
+#endif
+}
+#endif
+
 #ifndef WALKED
 // A straight piece of the view ray's way through the grain.
 struct Piece {
@@ -184,44 +211,85 @@ struct Piece {
   float way;
   Spectrum left;  // of what it sends, where the ray comes out
 };
-Piece pieces[MOST_WAYS];
+#ifdef CONVEX
+const int MOST_PIECES = MOST_WAYS;
+const int MOST_LASTS = 1;
+#else
+const int WAYS_IN_NEXT = 2;  // after the view ray has left the grain and entered it again
+const int MOST_PIECES = MOST_WAYS + WAYS_IN_NEXT;
+const int MOST_LASTS = 2;
+#endif
+Piece pieces[MOST_PIECES];
 int piece_count;
-vec3 last_place;
-Spectrum beyond;  // how much the source there counts for all pieces that follow
+// From there on as if every piece were like the one before and the source as it is there.
+struct Last {
+  vec3 place;
+  Spectrum left;  // how much the source there counts for all pieces that follow
+};
+Last lasts[MOST_LASTS];
+int last_count;
 
-// Follows the view ray.
-void follow(vec3 place, vec3 direction) {
-  Spectrum left = Spectrum(1.0);
-  beyond = Spectrum(0.0);
-  for (int i = 0; i < MOST_WAYS; ++i) {
-    float way = way_through(place, direction, FAR);
-    pieces[i] = Piece(place, direction, way, left);
-    piece_count = i + 1;
 #ifdef REFRACTION
+// A piece of the view ray's way, and what comes after reflections inside.
+void follow_reflected(vec3 place, vec3 direction, float way, Spectrum left, int ways) {
+  for (int i = 0; i < ways; ++i) {
+    if (i > 0) way = way_through(place, direction, FAR);
+    pieces[piece_count] = Piece(place, direction, way, left);
+    ++piece_count;
     Spectrum passed = exp(-SPECTRUM(stored.sigma_t) * way);
     place += way * direction;
     vec3 normal = outwards_at(place);
     float cosine = dot(normal, direction);
     float again = cosine > 0.0 ? fresnel_reflectance(min(cosine, 1.0), 1.0 / stored.eta) : 0.0;
     left *= passed * again;
-    if (largest(left) < LEAST_PASSED) break;
-    // From there on as if every piece were like this one and the source as it is there.
-    last_place = place;
-    if (i + 1 == MOST_WAYS) beyond = left * (1.0 - passed) / (1.0 - later_again(again) * passed);
+    if (largest(left) < LEAST_PASSED) return;
+    if (i + 1 == ways) {
+      lasts[last_count] = Last(place, left * (1.0 - passed) / (1.0 - later_again(again) * passed));
+      ++last_count;
+    }
     direction = direction - 2.0 * cosine * normal;
+  }
+}
+
+// Follows the view ray.
+void follow(vec3 place, vec3 direction) {
+  piece_count = 0;
+  last_count = 0;
+  float way = way_through(place, direction, FAR);
+  follow_reflected(place, direction, way, Spectrum(1.0), MOST_WAYS);
+#ifndef CONVEX
+  Spectrum left = exp(-SPECTRUM(stored.sigma_t) * way);
+  place += way * direction;
+  left *= comes_in_again(place, direction);
+  if (largest(left) > LEAST_PASSED) follow_reflected(place, direction, way_through(place, direction, FAR), left, WAYS_IN_NEXT);
+#endif
+}
 #else
+// Follows the view ray, which goes straight on beyond what it leaves.
+void follow(vec3 place, vec3 direction) {
+  piece_count = 0;
+  last_count = 0;
+  Spectrum left = Spectrum(1.0);
+  for (int i = 0; i < MOST_WAYS; ++i) {
+    float way = way_through(place, direction, FAR);
+    pieces[i] = Piece(place, direction, way, left);
+    piece_count = i + 1;
+#ifdef CONVEX
     break;
+#else
+    left *= exp(-SPECTRUM(stored.sigma_t) * way);
+    place += way * direction;
+    if (largest(left) < LEAST_PASSED || comes_in_again(place, direction) == 0.0) break;
 #endif
   }
 }
+#endif
 
 Radiance radiance_inside() {
   Radiance sum = Radiance(0.0);
   for (int i = 0; i < piece_count; ++i)
     sum += pieces[i].left * march(pieces[i].place, pieces[i].direction, pieces[i].way, i == 0 ? FIRST_TAPS : FURTHER_TAPS);
-#ifdef REFRACTION
-  if (largest(beyond) > 0.0) sum += beyond * source_at(last_place);
-#endif
+  for (int i = 0; i < last_count; ++i) sum += lasts[i].left * source_at(lasts[i].place);
   return sum;
 }
 #endif
@@ -314,6 +382,9 @@ vec3 crossing_light(SurfacePoint point, Outwards outwards) {
     left *= again;
     direction = direction - 2.0 * cosine * normal;
 #else
+#ifndef CONVEX
+    if (i + 1 < MOST_WAYS && comes_in_again(place, direction) > 0.0) continue;
+#endif
     sum += left * seen_behind(to_world * direction);
     break;
 #endif
