@@ -43,12 +43,32 @@ double error_at(std::span<const automatic::Measured> table, double radius) {
   return table.back().error;
 }
 
-/// Of the channel in the middle, with scattering reduced by g.
-double mean_free_path(const Material& material) {
+/// Radii in mean free paths, with scattering reduced by g, of the channels that scatter.
+std::vector<double> radii_of(const Material& material, double volume) {
+  const double radius = std::cbrt(0.75 * volume / std::numbers::pi);
   const glm::dvec3 extinction = material.scale * (material.sigma_a + (1.0 - material.g) * material.sigma_s);
-  const double middle =
-      std::max(std::min(extinction.x, extinction.y), std::min(std::max(extinction.x, extinction.y), extinction.z));
-  return 1.0 / middle;
+  std::vector<double> radii;
+  for (int channel = 0; channel < 3; ++channel)
+    if (material.sigma_s[channel] > 0.0) radii.push_back(radius * extinction[channel]);
+  // What scatters nothing is as thick as it absorbs.
+  if (radii.empty())
+    for (int channel = 0; channel < 3; ++channel) radii.push_back(radius * extinction[channel]);
+  std::ranges::sort(radii);
+  return radii;
+}
+
+/// 1 for a sphere (the isoperimetric quotient).
+double roundness(const Shape& shape) {
+  return 36.0 * std::numbers::pi * shape.volume * shape.volume / std::pow(shape.area, 3.0);
+}
+
+/// In the mean of all channels, straight in the roundness between what was measured.
+double error_of(const automatic::OfModel& model, const std::vector<double>& radii, double roundness) {
+  const double other = std::clamp((1.0 - roundness) / (1.0 - automatic::least_measured_roundness), 0.0, 1.0);
+  double sum = 0.0;
+  for (const double radius : radii)
+    sum += (1.0 - other) * error_at(model.round, radius) + other * error_at(model.less_round, radius);
+  return sum / static_cast<double>(radii.size());
 }
 
 std::string named(Model model) {
@@ -86,30 +106,31 @@ Shape shape_of(const Mesh& mesh, const glm::dmat3& to_world) {
 }
 
 Advice advise(const Material& material, const Shape& shape) {
-  const double radius = std::cbrt(0.75 * shape.volume / std::numbers::pi) / mean_free_path(material);
-  if (!(radius > 0.0 && std::isfinite(radius) && shape.area > 0.0))
+  const std::vector<double> radii = radii_of(material, shape.volume);
+  const double radius = radii[radii.size() / 2];
+  if (!(radius > 0.0 && std::isfinite(radii.back()) && shape.area > 0.0))
     return {preferred(), 0.0,
             fmt::format("{}: nothing was measured for what encloses no volume, or is empty.", named(preferred()))};
   if (shape.closed && material.sigma_s == glm::dvec3(0.0))
     return {Model::transport, 0.0,
             fmt::format("{}: nothing is scattered, and no other model shows what is behind a clear grain of any shape.",
                         named(Model::transport))};
-  const double roundness = 36.0 * std::numbers::pi * shape.volume * shape.volume / std::pow(shape.area, 3.0);
-  const bool round = roundness > automatic::roundest_other;
-  if (round || radius > automatic::most_transported)
-    for (const auto& [model, table] : automatic::of_round)
-      if (const double error = error_at(table, radius); error <= automatic::tolerance)
-        return measured(model, error, round ? "a sphere" : "a grain too thick for transport", radius);
-  if (shape.closed && material.g > automatic::most_g)
+  const bool transported = shape.closed && radii.back() <= automatic::most_transported;
+  if (transported && std::abs(material.g) > automatic::most_g)
     return {Model::transport, automatic::forwards_error,
-            fmt::format("{}: light scatters forwards (g {:.2g}); measured {:.2g} % off on a grain of sand at g 0.85, "
+            fmt::format("{}: light scatters {} (g {:.2g}); measured {:.2g} % off on a grain of sand at g 0.85, "
                         "radius 3 mean free paths.",
-                        named(Model::transport), material.g, automatic::forwards_error)};
-  if (shape.closed) return measured(Model::transport, automatic::transport_error, "cube, flake and rice", radius);
-  return {
-      Model::model_3, automatic::model_3_error,
-      fmt::format("{}: its mesh is open, which transport cannot take; measured {:.2g} % off on cube, flake and rice.",
-                  named(Model::model_3), automatic::model_3_error)};
+                        named(Model::transport), material.g > 0.0 ? "forwards" : "backwards", material.g,
+                        automatic::forwards_error)};
+  const double round = roundness(shape);
+  for (const automatic::OfModel& model : automatic::of_models)
+    if (const double error = error_of(model, radii, round); error <= automatic::tolerance)
+      return measured(model.model, error, round > 0.99 ? "a sphere" : "grains about as round", radius);
+  if (transported) return measured(Model::transport, automatic::transport_error, "cube, flake and rice", radius);
+  return {Model::model_3, automatic::model_3_error,
+          fmt::format("{}: {}, which transport cannot take; measured {:.2g} % off on cube, flake and rice.",
+                      named(Model::model_3), shape.closed ? "it is too thick" : "its mesh is open",
+                      automatic::model_3_error)};
 }
 
 }  // namespace mesograin::scene

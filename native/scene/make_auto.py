@@ -13,9 +13,10 @@ def points(table):
 
 def header(text):
     auto = json.loads(text)
-    tables = "".join(f"inline constexpr std::array<Measured, {len(table)}> {name}{{{{{points(table)}}}}};\n"
-                     for name, table in auto["round"].items())
-    entries = "".join(f"    {{Model::{name}, {name}}},\n" for name in auto["round"])
+    shapes = {"round": auto["round"], "less_round": {name: auto["less_round"][name] for name in auto["round"]}}
+    tables = "".join(f"inline constexpr std::array<Measured, {len(table)}> {shape}_{name}{{{{{points(table)}}}}};\n"
+                     for shape, of_models in shapes.items() for name, table in of_models.items())
+    entries = "".join(f"    {{Model::{name}, round_{name}, less_round_{name}}},\n" for name in auto["round"])
     return f"""// What the choice of a model goes by. Made from addon/mesograin/schema/auto.json, the place for changes.
 #pragma once
 
@@ -27,26 +28,28 @@ def header(text):
 
 namespace mesograin::scene::automatic {{
 
-/// radius: of a round grain, in mean free paths. error: measured, in %.
+/// radius: in mean free paths. error: measured, in %.
 struct Measured {{
   double radius;
   double error;
 }};
-struct OfRound {{
+/// Of a sphere, and of grains of least_measured_roundness.
+struct OfModel {{
   Model model;
-  std::span<const Measured> measured;
+  std::span<const Measured> round;
+  std::span<const Measured> less_round;
 }};
 
 inline constexpr std::string_view name = {json.dumps(auto["name"])};
 inline constexpr double tolerance = {float(auto["tolerance"])!r};
-inline constexpr double roundest_other = {float(auto["roundest_other"])!r};
+inline constexpr double least_measured_roundness = {float(auto["less_round"]["roundness"])!r};
 inline constexpr double most_transported = {float(auto["most_transported"])!r};
 inline constexpr double transport_error = {float(auto["angular"]["transport"])!r};
 inline constexpr double most_g = {float(auto["forwards"]["most_g"])!r};
 inline constexpr double forwards_error = {float(auto["forwards"]["transport"])!r};
 inline constexpr double model_3_error = {float(auto["angular"]["model_3"])!r};
 {tables}/// The cheapest first.
-inline constexpr std::array<OfRound, {len(auto["round"])}> of_round{{{{
+inline constexpr std::array<OfModel, {len(auto["round"])}> of_models{{{{
 {entries}}}}};
 
 }}  // namespace mesograin::scene::automatic

@@ -1,10 +1,12 @@
 # Which model serves a grain of this size and shape: the cheapest that was measured to be near enough.
 """See `advise`. The numbers are those of docs/accuracy.md and docs/shapes.md: relative L1 against photons, in %.
 
-ROUND: of round grains, by radius in mean free paths. Model 1: exitance, mean over ten materials and three indices;
-model 2: pictures, mean over eta 1.3 and 1.5, three albedos and three sides. ANGULAR: of others, the mean over a cube, a
-flake and rice at a radius of 3, eta 1.3, albedo 0.9, three sides. FORWARDS: where g is more than most_g, of a grain of
-sand by `transport` at g 0.85.
+ROUND: of spheres, by radius in mean free paths. Model 1: exitance, mean over ten materials and three indices; model 2:
+pictures, mean over eta 1.3 and 1.5, three albedos and three sides (below a radius of 1 eta 1.3 alone). LESS_ROUND: of
+an ellipsoid whose isoperimetric quotient is LESS_ROUND["roundness"], and from a radius of 20 on of a grain of sand from
+the front and the side, where it is not dark. ANGULAR: of others, the mean over a cube, a flake and rice at a radius of
+3, eta 1.3, albedo 0.9, three sides. FORWARDS: where |g| is more than most_g, of a grain of sand by `transport` at g
+0.85.
 """
 
 from dataclasses import dataclass
@@ -13,6 +15,7 @@ from . import AUTO
 
 TOLERANCE = AUTO["tolerance"]
 ROUND = {model: {radius: error for radius, error in table} for model, table in AUTO["round"].items()}
+LESS_ROUND = AUTO["less_round"]
 ANGULAR = AUTO["angular"]
 FORWARDS = AUTO["forwards"]
 
