@@ -29,9 +29,10 @@ def middle_of(mesh, g, **medium):
     light = native.DirectionalLight((0.8, 0.6, 0.0), (1.0,) * 3)
     view.set_scene(native.Scene(instances=[native.Instance(mesh, material, numpy.eye(4))], lights=[light]))
     view.set_camera(native.Camera.look_at((0.0, 0.0, 100.0), (0.0,) * 3, (0.0, 1.0, 0.0), 0.8))
-    view.render(16 if g == 0.0 else 64)
+    view.render(256 if g else 16)
     assert not view.warnings
-    return float(view.read()[SIZE // 2 - 6:SIZE // 2 + 6, SIZE // 2 - 6:SIZE // 2 + 6, 0].mean())
+    inner = slice(SIZE // 2 - 12, SIZE // 2 + 12)
+    return float(view.read()[inner, inner, 0].mean())
 
 
 @pytest.mark.parametrize("medium", [{"boundary": "index_matched"}, {"eta": 1.3}], ids=["matched", "refracting"])
