@@ -189,18 +189,6 @@ TEST_F(WorksTest, LetsGoOfWalksOnceTheirBodiesAreInNoScene) {
   EXPECT_LE(works.bytes_of_walks(), WalksShelf::default_limit_of_gone) << "no order came after them";
 }
 
-TEST_F(WorksTest, TellsADenseMediumAsALessDenseOne) {
-  Works works{TransportCache(folder_)};
-  const auto told = works.ask(order());
-  finish(*told);
-  // The unit of the body is half the cube's diagonal; the final answer's nodes are nearer to one another than these.
-  Order dense = order();
-  dense.medium.sigma_t.b = 1.6 * densest_told(told->news().stored->spacing) / told->news().stored->unit;
-  const auto coloured = works.ask(dense);
-  finish(*coloured);
-  EXPECT_TRUE(coloured->news().stored) << coloured->news().unsuitable;
-}
-
 TEST_F(WorksTest, SaysWhatIsNothingForIt) {
   Works works{TransportCache(folder_)};
   const auto hole = works.ask(open());
