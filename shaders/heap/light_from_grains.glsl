@@ -61,7 +61,7 @@ vec3 light_from_grains(int object, vec3 place, vec3 normal, vec3 to_viewer) {
   int kind = int(heap_light[first + 6].x);
   int wall = int(heap_light[first + 6].y);
   if (kind < 0) return vec3(0.0);
-  float mu = dot(normal, to_viewer);
+  float mu = max(dot(normal, to_viewer), 0.0);  // a bent normal may look away
   float node = clamp(mu * float(LOBE_NODES) - 0.5, 0.0, float(LOBE_NODES - 1));
   int below = min(int(node), LOBE_NODES - 2);
   vec3 lobe = mix(heap_light[kind + 1 + below].rgb, heap_light[kind + 2 + below].rgb, node - float(below));

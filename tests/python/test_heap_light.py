@@ -285,3 +285,21 @@ def test_what_is_no_heap_pays_nothing():
     assert view.preparing is None
     view.render(1)
     assert view.statistics()["exchange"] is None
+
+
+# What is bent through the surface has a mirror direction that leaves it; it was seen through, endlessly bright or no
+# number at all.
+def test_bumps_that_look_away_from_the_viewer_are_numbers():
+    positions, normals, triangles = sphere_mesh.sphere(64, 32)
+    bumpy = native.Mesh(positions, normals, triangles, numpy.ascontiguousarray(0.5 + 0.5 * positions[:, :2]))
+    told = numpy.full((1, 1, 4), (0.8, 0.5, 0.1, 1.0), numpy.float32)
+    look = native.Material(model="lambert", reflectance=(0.8,) * 3,
+                           finish=native.Finish(normal=native.TextureMap(native.Picture(told))))
+    transforms = numpy.tile(numpy.eye(4), (9, 1, 1))
+    transforms[:, 0, 3] = 2.1 * numpy.arange(9) - 8.4
+    view = native.View(96, 16)
+    view.set_scene(native.Scene(arrays=[native.InstanceArray(bumpy, look, transforms)], exchange="order_1",
+                                world=native.World(radiance=(1.0, 1.0, 1.0))))
+    view.set_camera(native.Camera.look_at((0.0, 0.0, 60.0), (0.0, 0.0, 0.0), (0.0, 1.0, 0.0), 3.0))
+    view.render(4)
+    assert numpy.isfinite(view.read()).all()
