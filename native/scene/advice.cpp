@@ -115,7 +115,8 @@ Advice advise(const Material& material, const Shape& shape) {
     return {Model::transport, 0.0,
             fmt::format("{}: nothing is scattered, and no other model shows what is behind a clear grain of any shape.",
                         named(Model::transport))};
-  const bool transported = shape.closed && radii.back() <= automatic::most_transported;
+  const bool transported =
+      shape.closed && radius <= automatic::most_transported && radii.back() <= automatic::densest_transported;
   if (transported && std::abs(material.g) > automatic::most_g)
     return {Model::transport, automatic::forwards_error,
             fmt::format("{}: light scatters {} (g {:.2g}); measured {:.2g} % off on a grain of sand at g 0.85, "

@@ -43,7 +43,9 @@ struct OfModel {{
 inline constexpr std::string_view name = {json.dumps(auto["name"])};
 inline constexpr double tolerance = {float(auto["tolerance"])!r};
 inline constexpr double least_measured_roundness = {float(auto["less_round"]["roundness"])!r};
-inline constexpr double most_transported = {float(auto["most_transported"])!r};
+/// Mean free paths to the radius, of the channel in the middle and of the densest.
+inline constexpr double most_transported = {float(auto["most_transported"]["middle"])!r};
+inline constexpr double densest_transported = {float(auto["most_transported"]["densest"])!r};
 inline constexpr double transport_error = {float(auto["angular"]["transport"])!r};
 inline constexpr double most_g = {float(auto["forwards"]["most_g"])!r};
 inline constexpr double forwards_error = {float(auto["forwards"]["transport"])!r};

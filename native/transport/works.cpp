@@ -43,8 +43,16 @@ Quality fine(const Body& body, const StoredMedium& medium) {
   return spacing < thick_spacing ? thin : spacing < thickest_spacing ? thick : thickest;
 }
 
-// How much denser than densest_told a medium may be that is told as if it were that.
+// How much denser than densest_told one channel may be that is told as if it were that, so that the others are told at
+// all. A grain that is so dense in more of them is nearer to photons by model 3 (docs/shapes.md).
 constexpr double most_thinned = 2.0;
+
+/// Whether so dense a medium is stored, where densest_told() is `told`.
+bool is_told(const StoredMedium& medium, double told) {
+  const int too_dense =
+      (medium.sigma_t.r > told ? 1 : 0) + (medium.sigma_t.g > told ? 1 : 0) + (medium.sigma_t.b > told ? 1 : 0);
+  return too_dense == 0 || (too_dense == 1 && densest(medium) <= most_thinned * told);
+}
 
 std::string describe_body(const Order& order) {
   Digest shape;
@@ -157,11 +165,13 @@ void Works::work(const Job& job, const std::stop_token& stop) {
     StoredMedium medium = job.order.medium;
     medium.sigma_t *= body.unit();
     const Quality quality = fine(body, medium);
-    const double most = most_thinned * densest_told(node_spacing(body, quality));
-    if (densest(medium) > most)
+    const double told = densest_told(node_spacing(body, quality));
+    if (!is_told(medium, told))
       throw Error(
-          "Light's transport is stored for grains up to about {:.0f} mean free paths across; this one has {:.0f}.",
-          2.0 * most, 2.0 * densest(medium));
+          "Light's transport is stored for grains up to about {:.0f} mean free paths across, in one channel {:.0f}; "
+          "this "
+          "one has {:.0f}.",
+          2.0 * told, 2.0 * most_thinned * told, 2.0 * densest(medium));
     if (densest(medium) <= densest_told(node_spacing(body, coarse)))
       tell(std::make_shared<StoredTransport>(
                compute_transport(*few, medium, part_of(effort, 0.2 * coarse_share, coarse_share))),
