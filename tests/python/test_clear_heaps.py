@@ -379,17 +379,22 @@ def test_a_crystal_alone_absorbs_on_the_way_that_light_takes_in_it(model):
     assert shown == pytest.approx(truth, rel=0.015)
 
 
+def blocks_of_heap(kind, light, grains, samples):
+    """(12, 12, 3), of 696 such grains, `gathered`."""
+    material = heap_light.KINDS[kind]
+    view = native.View(*heap_light.SIZE)
+    view.set_scene(heap_light.scene(native, material, "model_2", heap_light.light_of(light, material), "gathered",
+                                    grains))
+    view.set_camera(heap_light.camera(native))
+    view.render(samples)
+    return heap_light.blocks(view.read()[..., :3])
+
+
 # 696 of .2 mean free paths, turned any way round, under a sun of 20 degrees, as mesograin-referee render has them (2048
 # paths, its noise in blocks 2.7 %). Measured: 1.009, 6.4 %; with suns spread over 30 degrees by flat facets 35.
 def test_cubes_glint_where_they_do():
     truth = numpy.loadtxt(DATA / "cubes_clear_s45.csv", delimiter=",")
-    material = heap_light.KINDS["clear"]
-    view = native.View(*heap_light.SIZE)
-    view.set_scene(heap_light.scene(native, material, "model_2", heap_light.light_of("sun", material), "gathered",
-                                    "cubes"))
-    view.set_camera(heap_light.camera(native))
-    view.render(32)
-    found = heap_light.blocks(view.read())[..., 1]
+    found = blocks_of_heap("clear", "sun", "cubes", 32)[..., 1]
     assert found.sum() == pytest.approx(truth.sum(), rel=0.03)
     assert numpy.abs(found - truth).sum() < 0.08 * truth.sum()
 
@@ -399,12 +404,6 @@ def test_cubes_glint_where_they_do():
 # Measured: 1.012, 1.021, .982, 2.9 %.
 def test_flakes_absorb_what_they_do():
     truth = numpy.loadtxt(DATA / "flakes_coloured_sky.csv", delimiter=",").reshape(12, 12, 3)
-    material = heap_light.KINDS["coloured, eta 1.5"]
-    view = native.View(*heap_light.SIZE)
-    view.set_scene(heap_light.scene(native, material, "model_2", heap_light.light_of("sky", material), "gathered",
-                                    "flakes"))
-    view.set_camera(heap_light.camera(native))
-    view.render(16)
-    found = heap_light.blocks(view.read()[..., :3])
+    found = blocks_of_heap("coloured, eta 1.5", "sky", "flakes", 16)
     assert found.sum(axis=(0, 1)) == pytest.approx(truth.sum(axis=(0, 1)), rel=0.04)
     assert numpy.abs(found - truth).sum() < 0.05 * truth.sum()
