@@ -119,7 +119,8 @@ Gather::Gather(Heap heap, std::shared_ptr<const Found> found)
       light_(found_->light),
       space_(found_->space),
       image_(image_of(heap_)),
-      draws_(draws_of(heap_, image_)) {
+      draws_(draws_of(heap_, image_)),
+      seen_by_camera_(heap_.world.seen_by_camera()) {
   lights_.reserve(heap_.lights.size());
   for (const scene::Light& light : heap_.lights) lights_.push_back(lights::pack(light, heap_.anchor));
 }
@@ -204,7 +205,8 @@ Gather::All Gather::look_at_all(std::uint32_t grain, const glm::vec3& place, con
   all.scattered /= static_cast<float>(rays);
   Ray through = ray_through(grain, normal, towards);
   all.others = glm::max(all.others + space_.seen_along(through, light_->sent, random), 0.0F);
-  all.world = through.weight * glm::vec3(lights::radiance(heap_.world, glm::dvec3(through.direction)));
+  all.world = through.weight * glm::vec3(lights::radiance(seen_by_camera_, glm::dvec3(through.direction)));
+  if (heap_.world.film_transparent) all.film = (through.weight.r + through.weight.g + through.weight.b) / 3.0F;
   return all;
 }
 

@@ -43,6 +43,7 @@ class Gather {
     glm::vec3 others{0.0F};     ///< grains and walls, scattered or straight through it
     glm::vec3 scattered{0.0F};  ///< lights and the world, scattered in it
     glm::vec3 world{0.0F};      ///< straight through it
+    float film = 0.0F;          ///< the share of a transparent film, which is seen instead; the mean of the channels
   };
 
   /// The same with what comes straight from lights, and the world behind it. `place`: of the surface that is seen, from
@@ -144,6 +145,7 @@ class Gather {
   const Space& space_;                               // of found_
   std::shared_ptr<const lights::WorldLight> image_;  // the world, or null
   std::vector<Draw> draws_;
+  scene::Backdrop seen_by_camera_;
   std::vector<lights::DeviceLight> lights_;  // of the heap, its places from the anchor
 };
 

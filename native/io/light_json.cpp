@@ -188,12 +188,13 @@ std::vector<Light> read_lights(const Node& root) {
 }
 
 World read_world(const Node& node, const std::filesystem::path& folder) {
-  node.require_object(
-      std::array<std::string_view, 5>{"radiance_linear_rgb", "image", "world_to_image", "seen", "backdrop"},
-      provenance_keys);
+  node.require_object(std::array<std::string_view, 6>{"radiance_linear_rgb", "image", "world_to_image", "seen",
+                                                      "backdrop", "film_transparent"},
+                      provenance_keys);
   World world;
   read_around(world, node, folder);
   if (node.has("seen")) world.seen = node["seen"].boolean();
+  if (node.has("film_transparent")) world.film_transparent = node["film_transparent"].boolean();
   if (node.has("backdrop")) {
     const Node backdrop = node["backdrop"];
     backdrop.require_object(std::array<std::string_view, 3>{"radiance_linear_rgb", "image", "world_to_image"});

@@ -69,6 +69,7 @@ class Writer {
   Json world(const World& world) {
     Json json = around(world, "world.exr");
     json["seen"] = world.seen;
+    if (world.film_transparent) json["film_transparent"] = true;
     if (world.backdrop) json["backdrop"] = around(*world.backdrop, "backdrop.exr");
     return json;
   }

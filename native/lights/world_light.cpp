@@ -26,15 +26,25 @@ std::pair<std::size_t, double> invert(const Number* sums, std::size_t count, dou
   return {index, width > 0.0 ? std::clamp((wanted - before) / width, 0.0, 1.0) : 0.5};
 }
 
+// around: a scene::World or scene::Backdrop.
+template <typename Around>
+glm::dvec3 radiance_around(const Around& around, const glm::dvec3& direction) {
+  if (!around.image) return around.radiance;
+  const scene::Surroundings& image = *around.image;
+  const glm::dvec2 place = equirectangular(glm::normalize(around.world_to_image * direction));
+  const auto row = static_cast<std::size_t>(texel(place.y, image.height()));
+  const auto column = static_cast<std::size_t>(texel(place.x, image.width()));
+  return around.radiance * glm::dvec3(image.texels()[row * static_cast<std::size_t>(image.width()) + column]);
+}
+
 }  // namespace
 
 glm::dvec3 radiance(const scene::World& world, const glm::dvec3& direction) {
-  if (!world.image) return world.radiance;
-  const scene::Surroundings& image = *world.image;
-  const glm::dvec2 place = equirectangular(glm::normalize(world.world_to_image * direction));
-  const auto row = static_cast<std::size_t>(texel(place.y, image.height()));
-  const auto column = static_cast<std::size_t>(texel(place.x, image.width()));
-  return world.radiance * glm::dvec3(image.texels()[row * static_cast<std::size_t>(image.width()) + column]);
+  return radiance_around(world, direction);
+}
+
+glm::dvec3 radiance(const scene::Backdrop& backdrop, const glm::dvec3& direction) {
+  return radiance_around(backdrop, direction);
 }
 
 WorldLight::WorldLight(scene::World world) : world_(std::move(world)) {

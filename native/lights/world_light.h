@@ -12,6 +12,7 @@ namespace mesograin::lights {
 
 /// Linear RGB that comes from a direction (unit length, towards the world); the image's nearest texel.
 glm::dvec3 radiance(const scene::World& world, const glm::dvec3& direction);
+glm::dvec3 radiance(const scene::Backdrop& backdrop, const glm::dvec3& direction);
 
 /// Draws directions with the image's luminance times the solid angle of its texels as density (Pharr, Jakob and
 /// Humphreys, "Physically Based Rendering", 3rd edition, section 14.2.4), evenly without an image.

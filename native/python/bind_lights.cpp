@@ -155,19 +155,21 @@ void bind_world(py::module_& module) {
   py::class_<scene::World>(module, "World", "What is all around the scene.")
       .def(py::init([](const Triple& radiance, std::shared_ptr<Surroundings> image,
                        const std::optional<Array<double>>& rotation, bool seen,
-                       const std::optional<scene::Backdrop>& backdrop) {
-             return validated(
-                 scene::World{to_vector(radiance), std::move(image), to_rotation(rotation), seen, backdrop});
+                       const std::optional<scene::Backdrop>& backdrop, bool film_transparent) {
+             return validated(scene::World{to_vector(radiance), std::move(image), to_rotation(rotation), seen, backdrop,
+                                           film_transparent});
            }),
            py::arg("radiance") = Triple{1.0, 1.0, 1.0}, py::arg("image") = py::none(), py::arg("rotation") = py::none(),
-           py::arg("seen") = false, py::arg("backdrop") = py::none(),
+           py::arg("seen") = false, py::arg("backdrop") = py::none(), py::arg("film_transparent") = false,
            "radiance: linear RGB, multiplies the image, a Surroundings; rotation: (3, 3), from the world's directions "
            "to "
            "the image's; seen: behind the grains, else the picture is transparent there; backdrop: what is seen "
-           "instead, a Backdrop.")
+           "instead, a Backdrop; film_transparent: where grains that do not refract show the world, the picture is "
+           "transparent as well, and alpha is no longer coverage.")
       .def_property_readonly("radiance", [](const scene::World& w) { return to_triple(w.radiance); })
       .def_property_readonly("has_image", [](const scene::World& w) { return w.image != nullptr; })
       .def_readonly("seen", &scene::World::seen)
+      .def_readonly("film_transparent", &scene::World::film_transparent)
       .def(
           "look",
           [](const scene::World& w, const Triple& direction) {

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
+#include <optional>
 
 #include "render/cast_work.h"
 #include "render/lit_place.h"
@@ -58,6 +60,31 @@ std::vector<bool> units_that_are_lights(const Content& content, const Lighting& 
 
 std::size_t number_of(const glm::vec4& facing) { return static_cast<std::size_t>(std::abs(facing.w)) - 1; }
 
+// Others that share a draw's number by which rays know it are met as it is: they are parts of one object.
+bool is_part(const Content& content, std::size_t number) {
+  const std::size_t instances = content.instances() != nullptr ? content.instances()->count() : 0;
+  return number >= instances && content.draws()[number - instances].part;
+}
+
+// What stands behind a draw, all of which lies before what it shows.
+std::optional<HitSurface> behind(const CastContent& cast, const Content& content, const LitPlace& from,
+                                 const glm::vec3& look, std::size_t number) {
+  casting::SingleRay ray{from.place, look};
+  if (!is_part(content, number)) ray.from = from.object;
+  // A ray enters and leaves what is no more folded than that.
+  constexpr int most_passed = 16;
+  for (int passed = 0; passed < most_passed; ++passed) {
+    const std::optional<casting::Hit> hit = cast.first_hit(ray);
+    if (!hit) return std::nullopt;
+    const HitSurface surface = hit_surface(cast, content, look, *hit);
+    if (number_of(surface.normal) != number) return surface;
+    ray.origin += hit->distance * look;
+    ray.from = from.object;
+    ray.own = from.clearance;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 bool CastMirrors::cast(const CastContent& cast, const Content& content, const Exchange& exchange,
@@ -72,7 +99,7 @@ bool CastMirrors::cast(const CastContent& cast, const Content& content, const Ex
     casting::Packet packet;
     casting::Hits hits;
     std::size_t places[casting::rays_in_packet];
-    bool inside[casting::rays_in_packet] = {};
+    bool inside[casting::rays_in_packet] = {};  // the picture, and not yet found
     bool any = false;
     for (unsigned ray = 0; ray < casting::rays_in_packet; ++ray) {
       const glm::ivec2 pixel = corner + glm::ivec2(static_cast<int>(ray) % across, static_cast<int>(ray) / across);
@@ -83,7 +110,13 @@ bool CastMirrors::cast(const CastContent& cast, const Content& content, const Ex
       const glm::vec4& facing = seen.normals[place];
       if (looks[place].w == 0.0F || facing.w == 0.0F || (!world && told.all(number_of(facing)))) continue;
       const LitPlace from = lit_place(content, seen.positions[place], facing, seen.viewer_of(place));
-      any = set_off(packet, ray, from, glm::vec3(looks[place])) || any;
+      const glm::vec3 look(looks[place]);
+      if (glm::dot(look, from.normal) >= 0.0F) {
+        any = set_off(packet, ray, from, look) || any;
+      } else if (const std::optional<HitSurface> surface = behind(cast, content, from, look, number_of(facing))) {
+        found_.put(place, *surface, 0.0F);
+        inside[ray] = false;
+      }
     }
     if (any) cast.first_hits(packet, hits);
     for (unsigned ray = 0; ray < casting::rays_in_packet; ++ray) {

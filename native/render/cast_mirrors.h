@@ -1,4 +1,5 @@
-// What surfaces of facets mirror of other objects, found by a ray from each pixel along the direction that it drew.
+// What surfaces of facets mirror of other objects, and others show straight through them, found by a ray from each
+// pixel along the direction that it drew.
 #pragma once
 
 #include <glm/vec4.hpp>

@@ -140,6 +140,11 @@ bool Content::facets(const std::function<bool(std::size_t unit)>& of) const {
   return false;
 }
 
+bool Content::any_shows_behind() const {
+  if ((instances_ ? instances_->count() : 0) + draws_.size() < 2) return false;
+  return std::any_of(draws_.begin(), draws_.end(), [](const Draw& draw) { return draw.material->shows_behind(); });
+}
+
 void Content::find_shadows() {
   shadows_ = (instances_ ? instances_->count() : 0) + draws_.size() > 1 ||
              std::any_of(draws_.begin(), draws_.end(), [this](const Draw& draw) { return shades_itself(draw); });

@@ -99,6 +99,12 @@ class Content {
   /// Whether any material wears pictures.
   bool textured() const { return textured_; }
 
+  /// Whether what stands behind is seen straight through a single draw.
+  bool shows_behind(std::size_t unit) const { return draw(unit) != nullptr && material(unit).shows_behind(); }
+
+  /// Whether any does, and there may be something behind it.
+  bool any_shows_behind() const;
+
   /// Whether any of these units has facets that mirror.
   bool facets(const std::function<bool(std::size_t unit)>& of) const;
 

@@ -292,7 +292,14 @@ const gl::Program& DeviceCache::shading(const DeviceMaterial& material, const Sh
   if (shading.shadows == Shadows::cast) defines.emplace_back("CAST_SHADOWS");
   if (shading.exchange) defines.emplace_back("EXCHANGE");
   if (shading.gathered) defines.emplace_back("GATHERED");
-  if (shading.world && material.has("CLEAR")) defines.emplace_back("WORLD");
+  const bool straight = material.shows_behind() && !shading.mirrored && !shading.unwrapped;
+  const bool film = straight && shading.film_transparent;
+  const bool backdrop = straight && shading.backdrop;
+  const bool any_behind = shading.world || film || backdrop || shading.sees_behind;
+  if (any_behind && material.has("CLEAR")) defines.emplace_back("WORLD");
+  if (film) defines.emplace_back("FILM_TRANSPARENT");
+  if (backdrop) defines.emplace_back("BACKDROP");
+  if (shading.sees_behind) defines.emplace_back("SEES_BEHIND");
   if (shading.mirrors_world && material.facets()) defines.emplace_back("MIRRORS_WORLD");
   if (shading.lights_at_place) defines.emplace_back("LIGHTS_AT_PLACE");
   if (shading.near_lights) defines.emplace_back("NEAR_LIGHTS");

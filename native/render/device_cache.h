@@ -36,15 +36,18 @@ struct Shading {
   bool instanced = false;  ///< one of an array of instances
   bool mirrored = false;   ///< seen in another surface
   Shadows shadows = Shadows::none;
-  bool exchange = false;         ///< light goes from grain to grain
-  bool gathered = false;         ///< and was gathered for each pixel
-  bool world = false;            ///< there is a world to be seen through it
-  bool mirrors_world = false;    ///< or in its facets, and what stands before it
-  bool lights_at_place = false;  ///< the place that is shaded draws its own directions of lights that have a place
-  bool near_lights = false;      ///< such lights send each point of a grain that has light maps what they send there
-  bool lights_about = false;     ///< and are so near that it matters where light comes in
-  bool summed = false;           ///< what is stored of a prototype was summed for each light
-  bool together = false;         ///< and for all of them together
+  bool exchange = false;          ///< light goes from grain to grain
+  bool gathered = false;          ///< and was gathered for each pixel
+  bool world = false;             ///< there is a world to be seen through it
+  bool backdrop = false;          ///< and the camera sees it otherwise, through what does not refract, too
+  bool film_transparent = false;  ///< or as a transparent film
+  bool sees_behind = false;       ///< what stands there before that is found by rays
+  bool mirrors_world = false;     ///< or in its facets, and what stands before it
+  bool lights_at_place = false;   ///< the place that is shaded draws its own directions of lights that have a place
+  bool near_lights = false;       ///< such lights send each point of a grain that has light maps what they send there
+  bool lights_about = false;      ///< and are so near that it matters where light comes in
+  bool summed = false;            ///< what is stored of a prototype was summed for each light
+  bool together = false;          ///< and for all of them together
   std::optional<Portion> portion{};  ///< told alone
 };
 
@@ -70,6 +73,9 @@ class DeviceMaterial {
 
   /// Whether its surface is of facets that mirror, and they are seen.
   bool facets() const { return facets_; }
+
+  /// Whether what is behind it is seen straight through it.
+  bool shows_behind() const { return has("CLEAR") && !has("REFRACTION"); }
 
   /// Whether its model reads light maps.
   bool light_maps() const { return light_maps_; }

@@ -153,8 +153,10 @@ Sample Frame::begin_sample(const GoOn& go_on) {
                 .denoises = scene_.denoise,
                 .go_on = go_on};
   if (unwrapping_) return sample;
-  sample.mirrors =
-      arrays_.mirrors(*content_, lighting_.world().shines(), [&](std::size_t unit) { return sample.asks_model(unit); });
+  // Of what light goes between it is known otherwise what is seen behind.
+  const bool behind = !exchange_.any() && content_->any_shows_behind();
+  sample.mirrors = arrays_.mirrors(*content_, lighting_.world().shines(), behind,
+                                   [&](std::size_t unit) { return sample.asks_model(unit); });
   if (sample.mirrors == Mirrors::hindered && !targets_->mirror)
     targets_->mirror.emplace(targets_->sample, targets_->depth);
   return sample;
@@ -206,7 +208,8 @@ bool Frame::add_portions(Sample sample) {
       if ((units > most_in_stencil || mirror_.ran()) && !surfaces_.run(sample, arrays_, first)) return false;
       shade_.shade_seen(sample, shadows_, gather_, first);
     }
-    if (portion == Portion::specular && !mirror_.run(sample, arrays_, surfaces_, shadows_, shade_)) return false;
+    const bool looks_on = portion == Portion::specular || portion == Portion::transmission;
+    if (looks_on && !mirror_.run(sample, arrays_, surfaces_, shadows_, shade_)) return false;
     accumulate_.run(*targets_, *told.sum, told.samples == 0);
     ++told.samples;
   }

@@ -48,8 +48,15 @@ Surroundings::Surroundings(int width, int height, std::vector<glm::vec3> texels)
               index % width, index / width, wrong->r, wrong->g, wrong->b);
 }
 
+Backdrop World::seen_by_camera() const {
+  if (film_transparent) return {};
+  return seen && backdrop ? *backdrop : Backdrop{radiance, image, world_to_image};
+}
+
 void validate(const World& world) {
   validate_around(world);
+  if (world.film_transparent && world.seen)
+    throw Error("A world is seen or its film is transparent, not both: set seen or film_transparent to false.");
   if (world.backdrop) validate_around(*world.backdrop);
 }
 

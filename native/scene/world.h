@@ -41,6 +41,10 @@ struct World {
   glm::dmat3 world_to_image{1.0};      ///< rotates or mirrors a direction before it is looked up
   bool seen = false;                   ///< behind the grains; else the picture is transparent there
   std::optional<Backdrop> backdrop{};  ///< seen instead, if it is seen
+  bool film_transparent = false;       ///< the picture is where grains that do not refract show the world, too
+
+  /// What a camera sees of it, straight on and through grains that do not refract.
+  Backdrop seen_by_camera() const;
 
   /// Whether any light comes from it.
   bool shines() const { return radiance != glm::dvec3(0.0); }

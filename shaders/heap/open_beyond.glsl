@@ -3,17 +3,45 @@
 // What is chosen at compile time:
 //   EXCHANGE             that is known (native/heap/links.h); else none does
 //   GATHERED             what is seen through some grains was gathered for each pixel, the world with it
+//   BACKDROP             the camera, which looks straight through the grain, sees the world otherwise than it lights
+//   FILM_TRANSPARENT     or not at all: what it sees of it makes the picture transparent
+//   SEES_BEHIND          something else may stand there: a later pass looks
 #include "heap/light_from_grains.glsl"
 #include "scene/grain.glsl"
 #include "scene/world.glsl"
 
-// Of each part of what crosses.
+#ifdef BACKDROP
+uniform vec3 backdrop_radiance;
+uniform int backdrop_has_image;
+uniform mat3 world_to_backdrop;
+uniform sampler2D backdrop_image;
+#endif
+
+// Of each part of what crosses and is refracted.
 vec3 seen_behind(vec3 direction) {
   if (looked_through()) return vec3(1.0);
 #ifdef WORLD
   return seen_of_world(direction);
 #else
   return vec3(0.0);
+#endif
+}
+
+// Of what goes on straight on towards what the camera sees, `left` of it.
+vec3 seen_straight_on(vec3 left, vec3 direction) {
+#ifdef FILM_TRANSPARENT
+  film_seen = (left.r + left.g + left.b) / 3.0;
+  vec3 radiance = vec3(0.0);
+#elif defined(BACKDROP)
+  vec3 radiance = left * radiance_around(backdrop_radiance, backdrop_has_image, world_to_backdrop, backdrop_image, direction);
+#else
+  vec3 radiance = left * seen_behind(direction);
+#endif
+#ifdef SEES_BEHIND
+  mirrored = Mirrored(portion(TRANSMISSION_PORTION, radiance), portion(TRANSMISSION_PORTION, left), direction);
+  return vec3(0.0);
+#else
+  return radiance;
 #endif
 }
 

@@ -51,7 +51,7 @@ vec3 crossing_light(SurfacePoint point, Outwards outwards) {
   }
   return sum;
 #else
-  return left * seen_behind(-point.to_viewer);
+  return seen_straight_on(left, -point.to_viewer);
 #endif
 }
 #endif

@@ -34,6 +34,10 @@ struct Outwards {
 
 uniform int light_count;
 
+#ifdef FILM_TRANSPARENT
+float film_seen = 0.0;  // the share of the film's background in the pixel, the mean of the channels as Cycles has it
+#endif
+
 // Once for all lights.
 Outwards look_outwards(SurfacePoint point);
 

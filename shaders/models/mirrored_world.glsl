@@ -11,6 +11,12 @@
 #include "physics/ggx.glsl"
 #include "scene/world.glsl"
 
+struct Mirrored {
+  vec3 radiance;  // of the world, if nothing stands in the way
+  vec3 passed;    // what the radiance of an object that does is multiplied by
+  vec3 from;      // unit length
+};
+
 #ifdef MIRRORS_WORLD
 // Of the facets at the point that was looked at last; models define both.
 float facet_alpha();
@@ -24,12 +30,6 @@ float share_of_light(SurfacePoint point, LightSample light, float mu_o) {
   float own = ggx_mirrored_density(ggx_distribution(point.normal, sum * inversesqrt(max(dot(sum, sum), 1e-12)), alpha), mu_o, alpha);
   return light.density / (light.density + own);
 }
-
-struct Mirrored {
-  vec3 radiance;  // of the world, if nothing stands in the way
-  vec3 passed;    // what the radiance of an object that does is multiplied by
-  vec3 from;      // unit length
-};
 
 #ifdef SHADOWS
 // What a surface mirrors this much of, a ray always follows; what it mirrors less of, as often as it is less, to count as much more (Arvo and

@@ -385,7 +385,7 @@ vec3 crossing_light(SurfacePoint point, Outwards outwards) {
 #ifndef CONVEX
     if (i + 1 < MOST_WAYS && comes_in_again(place, direction) > 0.0) continue;
 #endif
-    sum += left * seen_behind(to_world * direction);
+    sum += seen_straight_on(left, to_world * direction);
     break;
 #endif
   }

@@ -15,6 +15,7 @@
 //   PORTION              of all that, one thing alone is told (models/portions.glsl)
 //   MIRRORS_WORLD        the surface has facets, and there is something to be mirrored; where anything may stand in the way, it is for a later
 //                        pass to add
+//   SEES_BEHIND          the surface does not refract, and what is seen straight through it is for that pass, too
 //   FACETS_ALONE         the surface is of facets alone
 //   MIRRORED             the viewer is another surface, a pixel each
 
@@ -181,8 +182,9 @@ vec3 locally_lit(SurfacePoint point, Outwards outwards) {
 vec3 emitted();
 #endif
 
-#if defined(MIRRORS_WORLD) && defined(SHADOWS)
-Mirrored mirrored;
+#if (defined(MIRRORS_WORLD) && defined(SHADOWS)) || defined(SEES_BEHIND)
+#define LOOKS_ON
+Mirrored mirrored = Mirrored(vec3(0.0), vec3(0.0), vec3(0.0));
 #endif
 
 // Of what a look finds through a surface at grazing.
@@ -217,6 +219,7 @@ vec3 lit_point(SurfacePoint point) {
 #ifdef SHADOWS
   mirrored = mirrored_world(point, outwards.mu);
   mirrored.radiance = portion(SPECULAR_PORTION, mirrored.radiance);
+  mirrored.passed = portion(SPECULAR_PORTION, mirrored.passed);
 #else
   sum += portion(SPECULAR_PORTION, mirrored_world(point, outwards.mu).radiance);
 #endif

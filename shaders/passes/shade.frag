@@ -13,8 +13,8 @@ uniform sampler2D surface_coordinates;  // xy: UV; zw: a packed tangent
 #endif
 
 layout(location = 0) out vec4 radiance;
-#if defined(MIRRORS_WORLD) && defined(SHADOWS)
-layout(location = 1) out vec4 mirrored_radiance;  // of the world, if nothing stands in the way
+#ifdef LOOKS_ON
+layout(location = 1) out vec4 mirrored_radiance;  // of the world, if nothing stands in the way; w: what alpha then lacks, negative
 layout(location = 2) out vec4 mirrored_from;      // w: 1 where there is any
 layout(location = 3) out vec4 mirrored_passed;    // what an object's radiance is multiplied by
 #endif
@@ -57,10 +57,16 @@ void main() {
   radiance = vec4(lit_point(point) * texelFetch(mirror_passes, ivec2(gl_FragCoord.xy), 0).rgb, 0.0);
 #else
   radiance = vec4(PORTION == NORMAL_PORTION ? point.normal : lit_point(point), 1.0);
+#if defined(FILM_TRANSPARENT) && !defined(LOOKS_ON)
+  radiance.a -= film_seen;
 #endif
-#if defined(MIRRORS_WORLD) && defined(SHADOWS)
+#endif
+#ifdef LOOKS_ON
   bool any_mirrored = max(mirrored.passed.r, max(mirrored.passed.g, mirrored.passed.b)) > 0.0;
   mirrored_radiance = vec4(mirrored.radiance, 0.0);
+#ifdef FILM_TRANSPARENT
+  mirrored_radiance.a -= film_seen;
+#endif
   mirrored_passed = vec4(mirrored.passed, 0.0);
   mirrored_from = vec4(mirrored.from, any_mirrored ? 1.0 : 0.0);
 #endif

@@ -6,10 +6,13 @@ uniform int has_image;
 uniform mat3 world_to_image;
 uniform sampler2D world_image;
 
-vec3 seen_of_world(vec3 direction) {
-  vec3 colour = has_image != 0 ? textureLod(world_image, equirectangular(world_to_image * direction), 0.0).rgb : vec3(1.0);
-  return world_radiance * colour;
+// `radiance` is multiplied by a picture of all directions, if there is one.
+vec3 radiance_around(vec3 radiance, int with_image, mat3 to_image, sampler2D image, vec3 direction) {
+  if (with_image == 0) return radiance;
+  return radiance * textureLod(image, equirectangular(to_image * direction), 0.0).rgb;
 }
+
+vec3 seen_of_world(vec3 direction) { return radiance_around(world_radiance, has_image, world_to_image, world_image, direction); }
 
 // Of the world's directions in a sample, by how bright it is, per steradian: the image's luminance times this, or without an image this.
 uniform float world_density;

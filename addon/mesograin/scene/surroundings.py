@@ -21,7 +21,8 @@ class WorldValues:
     """radiance: linear RGB, multiplies the image. image: native.Surroundings, equal by identity, or None; image_name,
     image_digest: of Blender's image. rotation: from the world's directions to the image's, 9 numbers, row by row.
     seen: in the picture. suns: lights.SunValues of those in its skies, which are not in the image. backdrop: None, or
-    WorldValues of what a camera sees instead."""
+    WorldValues of what a camera sees instead. film_transparent: where it is shown
+    straight on, through grains as well, the picture is transparent."""
 
     radiance: tuple = (0.0, 0.0, 0.0)
     image: object = None
@@ -31,13 +32,18 @@ class WorldValues:
     seen: bool = False
     suns: tuple = ()
     backdrop: object = None
+    film_transparent: bool = False
 
     @property
     def shines(self):
         return any(self.radiance)
 
+    def before_film(self):
+        """It lights, and shows where grains refract it, and nowhere else."""
+        return dataclasses.replace(self, seen=False, film_transparent=True)
+
     def to_native(self, native):
-        return native.World(**self.around(), seen=self.seen,
+        return native.World(**self.around(), seen=self.seen, film_transparent=self.film_transparent,
                             backdrop=self.backdrop and native.Backdrop(**self.backdrop.around()))
 
     def around(self):
@@ -48,9 +54,10 @@ class WorldValues:
 def read(scene, side=SIDE, layer=None):
     """(WorldValues, sentences about what is left out) of a scene's world, or of that of its view layer. side: of what
     is painted, in texels."""
+    transparent = scene.render.film_transparent
     world = layer and getattr(layer, "world_override", None) or scene.world
     if world is None or (layer and not layer.use_sky):
-        return WorldValues(), ()
+        return WorldValues(film_transparent=transparent), ()
     values, sentences = _read_checked(world, side)
     seen, hidden_from = values, _hidden_from(world)
     if "camera" in hidden_from:
@@ -67,7 +74,8 @@ def read(scene, side=SIDE, layer=None):
     if _has_volume(world):
         sentences = (*sentences, f"World '{world.name}' has a volume, which is left out.")
     # Where nothing shines the picture is black, whether the world is drawn or not.
-    return dataclasses.replace(values, seen=seen.shines and not scene.render.film_transparent), sentences
+    return dataclasses.replace(values, seen=(seen.shines or values.shines) and not transparent,
+                               film_transparent=transparent), sentences
 
 
 def _read_checked(world, side, from_camera=False):

@@ -34,8 +34,9 @@ bool ArrayVisibility::traces(const Content& content) const {
   return casts(content) || (content.instances() == nullptr && casting::available());
 }
 
-Mirrors ArrayVisibility::mirrors(const Content& content, bool world,
+Mirrors ArrayVisibility::mirrors(const Content& content, bool world, bool behind,
                                  const std::function<bool(std::size_t unit)>& asks) const {
+  if (behind && traces(content)) return Mirrors::hindered;
   if (!content.facets(asks)) return Mirrors::none;
   if (!content.shadows()) return world ? Mirrors::unhindered : Mirrors::none;
   return traces(content) ? Mirrors::hindered : Mirrors::none;

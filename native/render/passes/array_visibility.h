@@ -33,8 +33,9 @@ class ArrayVisibility {
   bool traces(const Content& content) const;
 
   /// What surfaces of facets can do to find what they mirror, of those units whose models are asked. `world`: there is
-  /// one to be mirrored.
-  Mirrors mirrors(const Content& content, bool world, const std::function<bool(std::size_t unit)>& asks) const;
+  /// one to be mirrored. `behind`: what stands behind others is looked for, too.
+  Mirrors mirrors(const Content& content, bool world, bool behind,
+                  const std::function<bool(std::size_t unit)>& asks) const;
 
   /// Makes ready what the passes of this sample need of the arrays.
   void prepare(const Sample& sample);

@@ -95,7 +95,7 @@ bool GatherPass::run(const Sample& sample, const ArrayVisibility& arrays, Surfac
         const heap::Gather::All found =
             gather->look_at_all(*grain, glm::vec3(seen.positions[i]), normal, towards, rays_a_sample, random);
         others_[i] = glm::vec4(found.others, 1.0F);
-        lights_[i] = glm::vec4(found.world, 0.0F);
+        lights_[i] = glm::vec4(found.world, found.film);
         scattered_[i] = glm::vec4(found.scattered, 0.0F);
         if (alone) lights_[i] += glm::vec4(gather->lit_behind(*grain, normal, towards, random), 0.0F);
       } else if (all) {

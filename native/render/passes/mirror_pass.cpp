@@ -18,7 +18,8 @@ bool MirrorPass::run(const Sample& sample, const ArrayVisibility& arrays, Surfac
   const auto start = std::chrono::steady_clock::now();
   looks_.resize(static_cast<std::size_t>(sample.size.x) * static_cast<std::size_t>(sample.size.y));
   sample.targets.mirror->shade.read(&looks_.front().x, 2);
-  const bool world = sample.lighting.world().shines();
+  const scene::World& around = sample.lighting.world();
+  const bool world = around.shines() || around.backdrop || around.film_transparent;
   if (!cast_.cast(arrays.tree(), sample.content, sample.exchange, sample.lighting, surfaces.seen(sample), looks_,
                   sample.go_on))
     return false;

@@ -26,11 +26,24 @@ void set_world(const gl::Program& program, const Lighting& lighting) {
   set_around(program, lighting.world(), lighting.world_image());
 }
 
+bool shows_backdrop(const Lighting& lighting) { return lighting.world().seen && lighting.world().backdrop; }
+
+// Behind everything.
 void set_seen_world(const gl::Program& program, const Lighting& lighting) {
-  if (lighting.world().backdrop)
+  if (shows_backdrop(lighting))
     set_around(program, *lighting.world().backdrop, lighting.backdrop_image());
   else
     set_world(program, lighting);
+}
+
+// Through a grain that does not refract.
+void offer_backdrop(const gl::Program& program, const Lighting& lighting) {
+  if (!shows_backdrop(lighting)) return;
+  const gl::Texture* image = lighting.backdrop_image();
+  program.offer("backdrop_radiance", glm::vec3(lighting.world().backdrop->radiance));
+  program.offer("backdrop_has_image", static_cast<int>(image != nullptr));
+  program.offer("world_to_backdrop", glm::mat3(lighting.world().backdrop->world_to_image));
+  if (image != nullptr) program.offer("backdrop_image", *image);
 }
 
 // Draws on no pixel that a single draw's bounds do not cover; everywhere if they reach behind the camera, and for a
@@ -117,17 +130,19 @@ void ShadePass::shade_seen(const Sample& sample, const ShadowPass& shadows, cons
       continue;
     }
     const DeviceMaterial& material = sample.content.material(unit);
+    const bool looks_on = sample.mirrors == Mirrors::hindered && sample.portion != Portion::normal;
+    const bool sees_behind = looks_on && !sample.exchange.any() && sample.content.shows_behind(unit);
     const gl::Program& program =
         prepare(sample, unit,
                 {.instanced = sample.content.draw(unit) == nullptr,
                  .shadows = sample.portion == Portion::normal ? Shadows::none : shadows.kind(sample.content),
                  .gathered = gathered.ran() && sample.exchange.any(),
+                 .sees_behind = sees_behind,
                  .mirrors_world = sample.mirrors != Mirrors::none && sample.portion != Portion::normal,
                  .portion = sample.portion});
     shadows.bind(program);
     gathered.bind(program);
-    const bool mirrors = sample.mirrors == Mirrors::hindered && material.facets() && sample.portion != Portion::normal;
-    (mirrors ? sample.targets.mirror->shade : sample.targets.shade).bind();
+    (looks_on && (material.facets() || sees_behind) ? sample.targets.mirror->shade : sample.targets.shade).bind();
     confine_to(sample, unit);
     shade_unit(sample, program, unit, stencil_mark(unit, first));
   }
@@ -205,6 +220,8 @@ const gl::Program& ShadePass::prepare(const Sample& sample, std::size_t unit, Sh
   const bool world = sample.lighting.world().shines();
   shading.exchange = sample.exchange.any();
   shading.world = world;
+  shading.backdrop = shows_backdrop(sample.lighting);
+  shading.film_transparent = sample.lighting.world().film_transparent;
   shading.lights_at_place = sample.lights_at_place(material, shading.instanced);
   shading.near_lights = sample.lighting.any_local() && material.light_maps();
   shading.lights_about = sample.lights_about(unit);
@@ -222,6 +239,7 @@ const gl::Program& ShadePass::prepare(const Sample& sample, std::size_t unit, Sh
     set_world(program, sample.lighting);
     program.set("world_density", static_cast<float>(sample.lights.world_density));
   }
+  offer_backdrop(program, sample.lighting);
   program.offer("sample_index", static_cast<int>(sample.index));
   program.offer("taps", taps_);
   if (sample.exchange.any()) sample.exchange.bind();

@@ -30,8 +30,8 @@ class Ours:
         scene = export.read_scene(depsgraph, meshes.MeshCache(), varied=False)
         if exchange:
             scene = dataclasses.replace(scene, exchange=exchange)
-        # What is behind the grains is no part of a comparison: alpha tells where they are.
-        self._scene = dataclasses.replace(scene, world=dataclasses.replace(scene.world, seen=False))
+        # What is behind the grains is no part of a comparison: Cycles' film is transparent, too.
+        self._scene = dataclasses.replace(scene, world=scene.world.before_film())
         self._views = self._all_views = [native.View(*size, seed=seed) for seed in range(parts)]
         self._camera = export.camera_from_scene(depsgraph, *size, sharp=True)
         self.warnings = scene.warnings

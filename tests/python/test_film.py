@@ -1,0 +1,190 @@
+"""A transparent film, and a world that the camera sees otherwise: what goes straight through grains shows them."""
+
+import math
+
+import mesograin_native as native
+import numpy
+import pytest
+from test_heap_light import ROUND
+
+SIZE = 32
+SIGMA_A, SIGMA_S = (0.1, 0.2, 0.3), (0.2, 0.2, 0.2)
+SIGMA_T = numpy.add(SIGMA_A, SIGMA_S)
+FILM = native.World(radiance=(0.3, 0.6, 1.0), film_transparent=True)
+DARK_FILM = native.World(radiance=(0.0, 0.0, 0.0), film_transparent=True)
+
+
+def medium(model, **more):
+    return native.Material(model=model, sigma_a=SIGMA_A, sigma_s=SIGMA_S,
+                           **{"boundary": "index_matched", **more})
+
+
+def place(x, y, z):
+    matrix = numpy.eye(4)
+    matrix[:3, 3] = x, y, z
+    return matrix
+
+
+def wall(y, half=8.0):
+    corners = numpy.float32([(-half, y, -half), (half, y, -half), (half, y, half), (-half, y, half)])
+    return native.Mesh(corners, numpy.float32([(0, -1, 0)] * 4), numpy.uint32([(0, 1, 2), (0, 2, 3)]))
+
+
+def parallel(half):
+    """Along +y, which is as far from what is seen as a camera is that sees it from the front."""
+    world_to_camera = numpy.float64([(1, 0, 0, 0), (0, 0, 1, 0), (0, -1, 0, -20), (0, 0, 0, 1)])
+    camera_to_clip = numpy.diag([1.0 / half, 1.0 / half, -2.0 / 40.0, 1.0])
+    camera_to_clip[2, 3] = -1.0
+    return native.Camera(world_to_camera, camera_to_clip)
+
+
+def picture(world, instances=(), arrays=(), exchange="heaps", half=1.25, samples=16, lights=(), view=None):
+    view = view or native.View(SIZE, SIZE)
+    view.set_scene(native.Scene(instances=list(instances), arrays=list(arrays), world=world, exchange=exchange,
+                                lights=list(lights)))
+    view.set_camera(parallel(half))
+    view.render(samples)
+    return view.read()
+
+
+def transmittances(half, spheres=1):
+    """(SIZE, SIZE, 3): the mean over each pixel of exp(-sigma_t d), d across unit spheres one behind the other."""
+    side = (numpy.arange(8 * SIZE) + 0.5) / (4 * SIZE) - 1.0
+    x, z = numpy.meshgrid(half * side, half * side)
+    way = 2.0 * spheres * numpy.sqrt(numpy.maximum(1.0 - x * x - z * z, 0.0))
+    passed = numpy.exp(-way[..., None] * SIGMA_T)
+    return passed.reshape(SIZE, 8, SIZE, 8, 3).mean(axis=(1, 3))
+
+
+def inside(half):
+    """(SIZE, SIZE) bool: off the rim, which a mesh has elsewhere."""
+    side = (numpy.arange(SIZE) + 0.5) / (0.5 * SIZE) - 1.0
+    x, z = numpy.meshgrid(half * side, half * side)
+    return numpy.hypot(x, z) < 0.9
+
+
+# Cycles' alpha is 1 less the mean of the channels' transmittances. Measured: within .006; 1 before.
+@pytest.mark.parametrize("model", ["model_2", "model_3", "transport"])
+@pytest.mark.parametrize("world", [FILM, DARK_FILM])
+def test_what_crosses_a_grain_makes_the_film_transparent(model, world):
+    pixels = picture(world, [native.Instance(ROUND, medium(model))])
+    passed = transmittances(1.25)
+    within = inside(1.25)
+    numpy.testing.assert_allclose(pixels[within, 3], 1.0 - passed[within].mean(axis=-1), atol=0.02)
+
+
+# The rest is what it scatters: over a backdrop the film is the picture that has it.
+@pytest.mark.parametrize("model", ["model_2", "model_3", "transport"])
+def test_a_film_and_what_crosses_are_the_whole_picture(model):
+    grain = [native.Instance(ROUND, medium(model))]
+    film = picture(FILM, grain)
+    whole = picture(native.World(radiance=(0.3, 0.6, 1.0), seen=True), grain)
+    passed = transmittances(1.25)
+    within = inside(1.25)
+    numpy.testing.assert_allclose(film[within, :3] + passed[within] * (0.3, 0.6, 1.0), whole[within, :3], atol=0.02)
+    assert whole[within, 3].min() == 1.0
+    assert (film[within, :3].mean(axis=0) < 0.6 * whole[within, :3].mean(axis=0)).all()
+
+
+def of_two(world, exchange):
+    places = numpy.array([place(0, 0, 0), place(0, 3, 0)])
+    return picture(world, arrays=[native.InstanceArray(ROUND, medium("model_2"), places)], exchange=exchange)
+
+
+# One behind the other; their light is followed.
+@pytest.mark.parametrize("exchange", ["heaps", "gathered", "off"])
+def test_grains_of_an_array_are_crossed_one_after_the_other(exchange):
+    passed = transmittances(1.25, spheres=2)
+    within = inside(1.25)
+    numpy.testing.assert_allclose(of_two(FILM, exchange)[within, 3], 1.0 - passed[within].mean(axis=-1), atol=0.02)
+
+
+# Or told by a few numbers, which know roughly how much of the world is seen.
+@pytest.mark.parametrize("exchange", ["heaps", "off", "order_1"])
+def test_the_film_lacks_as_much_as_the_world_gives(exchange):
+    film = of_two(native.World(film_transparent=True), exchange)
+    whole = of_two(native.World(seen=True), exchange)
+    within = inside(1.25)
+    crossed = (whole - film)[within, :3].mean(axis=-1)
+    assert crossed.mean() > 0.2
+    numpy.testing.assert_allclose(1.0 - film[within, 3], crossed, atol=0.01)
+
+
+@pytest.mark.parametrize("material", [medium("model_2", boundary="dielectric", eta=1.5),
+                                      medium("transport", boundary="dielectric", eta=1.5),
+                                      native.Material(model="lambert")])
+def test_what_refracts_or_is_opaque_covers_the_film(material):
+    pixels = picture(FILM, [native.Instance(ROUND, material)])
+    assert pixels[inside(1.25), 3].min() == 1.0
+
+
+# As Cycles has it: its film shows no world, and a ground behind a grain is no film. Measured: 1 and within .001.
+@pytest.mark.parametrize("model", ["model_2", "model_3", "transport"])
+@pytest.mark.parametrize("world", [DARK_FILM, native.World(radiance=(0.0, 0.0, 0.0))])
+def test_what_stands_behind_a_grain_is_seen_through_it(model, world):
+    grain = native.Instance(ROUND, medium(model))
+    shining = native.Material(model="lambert", reflectance=(0.0,) * 3, finish=native.Finish(radiance=(1.0, 0.5, 0.2)))
+    view = native.View(SIZE, SIZE)
+    # Of one transform, as parts of an object are.
+    pixels = picture(world, [grain, native.Instance(wall(4.0), shining)], view=view)
+    passed = transmittances(1.25)
+    within = inside(1.25)
+    numpy.testing.assert_allclose(pixels[..., 3], 1.0, atol=1e-6)
+    numpy.testing.assert_allclose(pixels[within, :3], passed[within] * (1.0, 0.5, 0.2), atol=0.02)
+    # Half of the picture: the film is seen through the other half.
+    beside = native.Instance(wall(4.0), shining, place(8.0, 0.0, 0.0))
+    view.set_portions(["transmission", "emission"])
+    pixels = picture(world, [grain, beside], view=view)
+    through = view.read_portion("transmission")[..., :3]
+    left = within & (numpy.arange(SIZE) < SIZE // 2 - 1)
+    right = within & (numpy.arange(SIZE) > SIZE // 2)
+    expected = 1.0 - passed[left].mean(axis=-1) if world.film_transparent else 1.0
+    numpy.testing.assert_allclose(pixels[left, 3], expected, atol=0.02)
+    numpy.testing.assert_allclose(pixels[right, :3], passed[right] * (1.0, 0.5, 0.2), atol=0.02)
+    numpy.testing.assert_allclose(through[right], pixels[right, :3], atol=1e-6)
+    assert pixels[left, :3].max() < 1e-6
+
+
+# Measured in Cycles 3.4.1: camera rays that a volume did not scatter are camera rays.
+@pytest.mark.parametrize("many", [False, True])
+@pytest.mark.parametrize("backdrop", [native.Backdrop(radiance=(1.0, 0.2, 0.0)), native.Backdrop(
+    image=native.Surroundings(numpy.float32([[(1.0, 0.2, 0.0)] * 4] * 2)))])
+def test_the_backdrop_is_seen_through_grains_that_do_not_refract(many, backdrop):
+    places = numpy.array([place(0, 0, 0), place(40, 0, 0)])
+    if many:
+        things = {"arrays": [native.InstanceArray(ROUND, medium("model_2"), places)]}
+    else:
+        things = {"instances": [native.Instance(ROUND, medium("model_2"))]}
+    pixels = picture(native.World(radiance=(0.0, 0.0, 0.5), seen=True, backdrop=backdrop), **things)
+    passed = transmittances(1.25)
+    within = inside(1.25)
+    numpy.testing.assert_allclose(pixels[within, :2], passed[within, :2] * (1.0, 0.2), atol=0.02)
+    scattered = pixels[within, 2].mean()
+    assert 0.01 < scattered < 0.25, "what it scatters is the world's light"
+    numpy.testing.assert_allclose(pixels[0, 0], (1.0, 0.2, 0.0, 1.0), atol=1e-6)
+
+
+def test_what_refracts_shows_the_world_that_lights():
+    glass = native.Material(model="model_2", sigma_a=(0.0,) * 3, sigma_s=(1e-6,) * 3, boundary="dielectric", eta=1.5)
+    world = native.World(radiance=(0.0, 0.0, 0.5), seen=True, backdrop=native.Backdrop(radiance=(1.0, 0.0, 0.0)))
+    pixels = picture(world, [native.Instance(ROUND, glass)])
+    assert pixels[inside(1.25), 0].max() < 1e-3
+    assert pixels[inside(1.25), 2].mean() == pytest.approx(0.5, abs=0.02)
+
+
+def test_a_world_is_seen_or_its_film_transparent():
+    with pytest.raises(native.Error, match="not both"):
+        native.World(seen=True, film_transparent=True)
+
+
+def test_a_film_is_kept_in_files(tmp_path):
+    native.write_scene(str(tmp_path / "scene.json"),
+                       native.Scene(instances=[native.Instance(ROUND, medium("model_2"))], world=FILM),
+                       parallel(1.25), (SIZE, SIZE))
+    scene, camera, _ = native.load_scene(str(tmp_path / "scene.json"))
+    assert scene.world.film_transparent and not scene.world.seen
+    view = native.View(SIZE, SIZE)
+    view.set_scene(scene)
+    view.set_camera(camera)
+    view.render(4)
+    assert math.isclose(view.read()[SIZE // 2, SIZE // 2, 3], 1.0 - numpy.exp(-2.0 * SIGMA_T).mean(), abs_tol=0.02)
