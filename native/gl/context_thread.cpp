@@ -4,6 +4,7 @@
 #include <epoxy/gl.h>
 
 #include <algorithm>
+#include <chrono>
 #include <memory>
 
 #include "base/error.h"
@@ -24,6 +25,8 @@ std::unique_ptr<ContextThread>& instance_slot() {
 
 // Asked by work on the thread, which must not wait for shut_down(), which waits for it.
 thread_local ContextThread* own = nullptr;
+
+constexpr std::chrono::milliseconds look_again(20);
 
 const char* error_name(GLenum error) {
   switch (error) {
@@ -83,13 +86,34 @@ ContextThread::~ContextThread() {
   if (thread_.joinable()) thread_.join();
 }
 
-void ContextThread::enqueue(Queue& queue, Work work) {
-  {
-    const std::lock_guard lock(mutex_);
-    if (stopping_) throw Error("The renderer has been shut down; start it again before asking for more.");
-    queue.push_back(std::move(work));
+void ContextThread::require_running() const {
+  if (stopping_) throw Error("The renderer has been shut down; start it again before asking for more.");
+}
+
+ContextThread::Job ContextThread::next_job() {
+  std::unique_lock lock(mutex_);
+  for (;;) {
+    if (!queue_.empty()) {
+      Job job = std::move(queue_.front());
+      queue_.pop_front();
+      return job;
+    }
+    if (stopping_ && steps_.empty()) return nullptr;
+    const auto is_urgent = [](const Step& each) { return each.urgent() && each.ready(); };
+    const auto is_next = [this](const Step& each) { return stopping_ || each.ready(); };
+    auto next = std::find_if(steps_.begin(), steps_.end(), is_urgent);
+    if (next == steps_.end()) next = std::find_if(steps_.begin(), steps_.end(), is_next);
+    if (next != steps_.end()) {
+      Job job = std::move(next->run);
+      steps_.erase(next);
+      return job;
+    }
+    // Nobody tells when a step becomes ready.
+    if (steps_.empty())
+      wake_.wait(lock);
+    else
+      wake_.wait_for(lock, look_again);
   }
-  wake_.notify_one();
 }
 
 void ContextThread::loop(std::promise<DeviceInfo> started) {
@@ -102,21 +126,9 @@ void ContextThread::loop(std::promise<DeviceInfo> started) {
     started.set_exception(std::current_exception());
     return;
   }
-  for (;;) {
-    std::function<void()> work;
-    {
-      std::unique_lock lock(mutex_);
-      wake_.wait(lock, [this] { return stopping_ || !queue_.empty() || !steps_.empty(); });
-      Queue& queue = queue_.empty() ? steps_ : queue_;
-      if (queue.empty()) break;
-      const auto urgent =
-          std::find_if(queue.begin(), queue.end(), [](const Work& each) { return each.urgent && each.urgent(); });
-      const auto next = urgent == queue.end() ? queue.begin() : urgent;
-      work = std::move(next->run);
-      queue.erase(next);
-    }
-    work();
-    work = nullptr;
+  while (Job job = next_job()) {
+    job();
+    job = nullptr;
     collect_gl_errors();
   }
   companions_.clear();

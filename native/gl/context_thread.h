@@ -46,7 +46,7 @@ class ContextThread {
     using Result = std::invoke_result_t<Work>;
     auto task = std::make_shared<std::packaged_task<Result()>>(std::forward<Work>(work));
     std::future<Result> result = task->get_future();
-    enqueue(queue_, {[task] { (*task)(); }});
+    enqueue(queue_, Job([task] { (*task)(); }));
     return result;
   }
 
@@ -57,11 +57,15 @@ class ContextThread {
   }
 
   /// Calls `step` on the thread over and over until it returns something, which is the result. Whatever else is posted
-  /// goes before the next step of anybody, and a step that is `urgent` by then before those of others. What it throws
-  /// ends it, and so does shut_down(): the future throws it.
+  /// goes before the next step of anybody, and a step that is `urgent` by then before those of others. One that is not
+  /// `ready` is passed over until it is; both are asked on the thread and must not wait. What a step throws ends it,
+  /// and so does shut_down(): the future throws it.
   template <typename Result>
-  std::future<Result> repeat(std::function<std::optional<Result>()> step, std::function<bool()> urgent) {
-    auto repetition = std::make_shared<Repetition<Result>>(Repetition<Result>{std::move(step), std::move(urgent), {}});
+  std::future<Result> repeat(
+      std::function<std::optional<Result>()> step, std::function<bool()> urgent,
+      std::function<bool()> ready = [] { return true; }) {
+    auto repetition = std::make_shared<Repetition<Result>>(
+        Repetition<Result>{std::move(step), std::move(urgent), std::move(ready), {}});
     std::future<Result> result = repetition->result.get_future();
     enqueue_step(std::move(repetition));
     return result;
@@ -86,6 +90,7 @@ class ContextThread {
   struct Repetition {
     std::function<std::optional<Result>()> step;
     std::function<bool()> urgent;
+    std::function<bool()> ready;
     std::promise<Result> result;
   };
 
@@ -95,7 +100,9 @@ class ContextThread {
   void enqueue_step(std::shared_ptr<Repetition<Result>> repetition) {
     const auto take_step = [this, repetition] {
       try {
-        if (std::optional<Result> result = repetition->step())
+        // One that is not ready is taken to be shut down, which the queue says.
+        std::optional<Result> result = repetition->ready() ? repetition->step() : std::nullopt;
+        if (result)
           repetition->result.set_value(*std::move(result));
         else
           enqueue_step(repetition);
@@ -103,24 +110,39 @@ class ContextThread {
         repetition->result.set_exception(std::current_exception());
       }
     };
-    enqueue(steps_, {take_step, repetition->urgent});
+    enqueue(steps_, Step{take_step, repetition->urgent, repetition->ready});
   }
 
-  struct Work {
-    std::function<void()> run;
-    std::function<bool()> urgent{};
+  using Job = std::function<void()>;
+  struct Step {
+    Job run;
+    std::function<bool()> urgent;
+    std::function<bool()> ready;
   };
-  using Queue = std::deque<Work>;
 
-  void enqueue(Queue& queue, Work work);
+  template <typename Each>
+  void enqueue(std::deque<Each>& queue, Each work) {
+    {
+      const std::lock_guard lock(mutex_);
+      require_running();
+      queue.push_back(std::move(work));
+    }
+    wake_.notify_one();
+  }
+
+  /// Throws Error after shut_down().
+  void require_running() const;
+
+  /// Waits for it; empty once all is done that was asked for before shut_down().
+  Job next_job();
   void loop(std::promise<DeviceInfo> started);
   void collect_gl_errors();
 
   DeviceInfo device_info_;
   std::mutex mutex_;
   std::condition_variable wake_;
-  Queue queue_;
-  Queue steps_;  // taken while there is nothing else
+  std::deque<Job> queue_;
+  std::deque<Step> steps_;  // taken while there is nothing else
   std::vector<std::string> gl_errors_;
   std::map<std::type_index, std::shared_ptr<void>> companions_;
   bool stopping_ = false;

@@ -84,10 +84,10 @@ void render(render::View& view, int samples) {
   done.get();
 }
 
-// A scene that is being taken, for a caller who has something else to do.
+// A scene or a camera that is being taken, for a caller who has something else to do.
 class Taking {
  public:
-  Taking(render::View& view, scene::Scene scene) : done_(view.start_scene(std::move(scene))) {}
+  explicit Taking(std::shared_future<void> done) : done_(std::move(done)) {}
 
   bool wait(std::optional<double> seconds) const { return wait_for(done_, seconds); }
   bool done() const { return wait(0.0); }
@@ -114,14 +114,34 @@ class News {
 // waits for it.
 class Rendering {
  public:
-  Rendering(render::View& view, int samples) : seconds_(view.start(samples)) {}
+  Rendering(render::View& view, int samples, bool read)
+      : picture_(read ? std::make_shared<render::Picture>() : nullptr), seconds_(view.start(samples, picture_)) {}
 
   bool wait(std::optional<double> seconds) const { return wait_for(seconds_, seconds); }
   bool done() const { return wait(0.0); }
   double result() const { return seconds_.get(); }
+  const std::shared_ptr<render::Picture>& picture() const { return picture_; }
 
  private:
+  std::shared_ptr<render::Picture> picture_;
   std::shared_future<double> seconds_;
+};
+
+// A picture being read, for a caller who has something else to do.
+class Reading {
+ public:
+  explicit Reading(render::View& view) : done_(view.start_read(picture_)) {}
+
+  bool wait(std::optional<double> seconds) const { return wait_for(done_, seconds); }
+  bool done() const { return wait(0.0); }
+  std::shared_ptr<render::Picture> result() const {
+    done_.get();
+    return picture_;
+  }
+
+ private:
+  std::shared_ptr<render::Picture> picture_ = std::make_shared<render::Picture>();
+  std::shared_future<void> done_;
 };
 
 float* pixels_of(const render::View& view, Pixels& out) {
@@ -250,16 +270,33 @@ py::dict statistics(render::View& view) {
   }());
 }
 
-py::dict read_told(render::View& view, Pixels out) {
-  float* pixels = pixels_of(view, out);
-  const render::View::Told told = [&] {
-    const py::gil_scoped_release release;
-    return view.read_told(pixels);
-  }();
+/// None if it was not read.
+py::object of_picture(const std::shared_ptr<render::Picture>& picture) {
+  if (!picture || picture->pixels.empty()) return py::none();
+  const std::vector<py::ssize_t> shape{picture->height, picture->width, 4};
+  // Its memory, not a copy: numpy holds the picture for as long as it needs it.
+  const py::capsule holder(new std::shared_ptr<render::Picture>(picture),
+                           [](void* held) { delete static_cast<std::shared_ptr<render::Picture>*>(held); });
   py::dict result;
-  result["timings"] = of_timings(told.timings);
-  result["statistics"] = of_statistics(told.statistics);
+  result["pixels"] = Pixels(shape, picture->pixels.data(), holder);
+  result["timings"] = of_timings(picture->timings);
+  result["statistics"] = of_statistics(picture->statistics);
   return result;
+}
+
+py::object drawn(const Rendering& rendering) {
+  {
+    const py::gil_scoped_release release;
+    rendering.wait(std::nullopt);
+  }
+  return of_picture(rendering.picture());
+}
+
+py::object result_of(const Reading& reading) {
+  return of_picture([&] {
+    const py::gil_scoped_release release;
+    return reading.result();
+  }());
 }
 
 void set_bake(render::View& view, std::vector<std::size_t> instances, const std::string& view_from) {
@@ -326,12 +363,23 @@ void bind_view(py::module_& module) {
       .def("wait", &Rendering::wait, py::arg("seconds") = py::none(), Release(),
            "Waits for their end, if `seconds` is given at most so long; whether it has come.")
       .def("result", &Rendering::result, Release(),
-           "Waits for their end; the seconds that they took. Raises Error as View.render() does.");
-  py::class_<Taking>(module, "Taking", "A scene that View.start_scene() gave the view.")
+           "Waits for their end; the seconds that they took. Raises Error as View.render() does.")
+      .def(
+          "picture", &drawn,
+          "Waits for their end; as Reading.result(), of View.start(read=True). None if they were cancelled or failed.");
+  py::class_<Reading>(module, "Reading", "A picture that View.start_read() reads.")
+      .def_property_readonly("done", &Reading::done, "Whether it is read, or has failed.")
+      .def("wait", &Reading::wait, py::arg("seconds") = py::none(), Release(),
+           "Waits for that, if `seconds` is given at most so long; whether it has come.")
+      .def("result", &result_of,
+           "Waits for that: {'pixels': as View.read() gives them, 'timings': and 'statistics': as View's, of the same "
+           "samples}.");
+  py::class_<Taking>(module, "Taking", "A scene or a camera that the view was given without waiting.")
       .def_property_readonly("done", &Taking::done, "Whether the view has it, or it has failed.")
       .def("wait", &Taking::wait, py::arg("seconds") = py::none(), Release(),
            "Waits for that, if `seconds` is given at most so long; whether it has come.")
-      .def("result", &Taking::result, Release(), "Waits for that. Raises Error as View.set_scene() does.");
+      .def("result", &Taking::result, Release(),
+           "Waits for that. Raises Error as View.set_scene() or View.set_camera() does.");
   py::class_<News>(module, "News", "What View.start_news() takes in.")
       .def_property_readonly("done", &News::done, "Whether that is done, or has failed.")
       .def("wait", &News::wait, py::arg("seconds") = py::none(), Release(),
@@ -351,7 +399,8 @@ void bind_view(py::module_& module) {
       .def("set_scene", &render::View::set_scene, py::arg("scene"), Release(),
            "Restarts the accumulation. Meshes and materials already on the device are not sent again.")
       .def(
-          "start_scene", [](render::View& view, scene::Scene scene) { return Taking(view, std::move(scene)); },
+          "start_scene",
+          [](render::View& view, scene::Scene scene) { return Taking(view.start_scene(std::move(scene))); },
           py::arg("scene"), Release(),
           "As set_scene(), without waiting: gives the Taking under way. Whatever else is asked of the view waits for "
           "it.")
@@ -368,6 +417,13 @@ void bind_view(py::module_& module) {
           "be cast.")
       .def("set_camera", &render::View::set_camera, py::arg("camera"), Release(),
            "Restarts the accumulation; sends nothing.")
+      .def(
+          "start_camera",
+          [](render::View& view, const scene::Camera& camera, int width, int height) {
+            return Taking(view.start_camera(camera, width, height));
+          },
+          py::arg("camera"), py::arg("width"), py::arg("height"), Release(),
+          "As resize() and set_camera(), without waiting: gives the Taking under way, as start_scene().")
       .def(
           "set_moment",
           [](render::View& view, const scene::Camera& camera, const std::optional<scene::Scene>& scene) {
@@ -413,8 +469,10 @@ void bind_view(py::module_& module) {
       .def("render", &render, py::arg("samples") = 1,
            "Adds samples to the mean. Ctrl-C or cancel() ends it after the sample under way.")
       .def(
-          "start", [](render::View& view, int samples) { return Rendering(view, samples); }, py::arg("samples") = 1,
-          Release(), "As render(), without waiting: gives the Rendering under way.")
+          "start", [](render::View& view, int samples, bool read) { return Rendering(view, samples, read); },
+          py::arg("samples") = 1, py::arg("read") = false, Release(),
+          "As render(), without waiting: gives the Rendering under way, which has the picture, too, if it is to be "
+          "read.")
       .def("cancel", &render::View::cancel,
            "Ends a render() of another thread, or what start() began, amid its current sample.")
       .def_property_readonly("samples", &render::View::samples, "Samples in the mean so far.")
@@ -435,9 +493,9 @@ void bind_view(py::module_& module) {
            "that round, 'gathered': whether rays of the last sample found more of some grains that are seen, 'stuff': "
            "[{'surface', 'thickness', 'albedo', 'g', 'eta'}] of what they are made of, all but the first from least to "
            "most; thickness in mean free paths to the radius, albedo of one scattering}}.")
-      .def("read_told", &read_told, py::arg("out"),
-           "As read(), and what is told of the same samples: {'timings', 'statistics'}. One after the other each would "
-           "wait for the sample under way.")
+      .def(
+          "start_read", [](render::View& view) { return Reading(view); }, Release(),
+          "As read(), without waiting: gives the Reading under way, of the samples that are drawn so far.")
       .def("read_surfaces", &read_surfaces,
            "What rays through the pixels' middles meet, whatever the samples so far: {'position': (height, width, 4) "
            "float32, in the world, and 1, or 0 where they meet nothing; 'normal': (height, width, 3), of unit length, "

@@ -17,10 +17,21 @@
 
 namespace mesograin::render {
 
+/// A picture as it was read, with what is told of the same samples.
+struct Picture {
+  int width = 0;
+  int height = 0;
+  std::vector<float> pixels;  ///< as View::read() fills them; none before it was read
+  std::vector<PassTiming> timings;
+  Statistics statistics;
+};
+
 /// May be used from any thread, by one at a time, except cancel() and samples(), which may be called at any time.
 /// Every call posts to the context's thread, which draws started samples one by one: what reads this view, and all that
-/// is asked of others, comes in between them, what changes this view after the last. Throws Error for what cannot be
-/// drawn, always before anything changes.
+/// is asked of others, comes in between them, what changes this view after the last. What is called start_... only
+/// posts, if nothing that was started before is under way, and so do the constructor and the destructor: the context's
+/// thread may be held for a minute by a program that it compiles for somebody else. Throws Error for what cannot be
+/// drawn, always before anything changes; what keeps a view from being made is thrown by the first call that waits.
 class View {
  public:
   /// Light's transport in meshes and light between grains are computed for seconds, elsewhere. A patient view draws
@@ -41,6 +52,9 @@ class View {
 
   /// Restarts the accumulation and sends nothing.
   void set_camera(const scene::Camera& camera);
+
+  /// As resize() and set_camera(), without waiting; as start_scene().
+  std::shared_future<void> start_camera(const scene::Camera& camera, int width, int height);
 
   /// Another moment of the exposure: what set_scene() took elsewhere, if a scene is given, seen through this camera.
   /// Samples from now on are added to those before. Light between grains stays each grain's own as it was found for
@@ -89,30 +103,24 @@ class View {
   void render(int samples);
 
   /// As render(), without waiting; the future is ready when the samples are drawn or were cancelled, and holds the
-  /// seconds that they took.
-  std::shared_future<double> start(int samples);
+  /// seconds that they took. A `picture` is read after the last of them, and is not if they were cancelled.
+  std::shared_future<double> start(int samples, std::shared_ptr<Picture> picture = nullptr);
 
   /// Ends each start() and render() under way after its current sample; without one it does nothing.
   void cancel();
 
   /// Samples in the mean so far.
-  int samples() const { return *samples_; }
+  int samples() const { return shared_->samples; }
 
-  int width() const { return width_; }
-  int height() const { return height_; }
+  int width() const { return shared_->width; }
+  int height() const { return shared_->height; }
 
   /// Fills (height, width, 4) floats: linear RGB premultiplied by coverage, and coverage; first row at the top, which
   /// in a bake is v = 1.
   void read(float* pixels);
 
-  struct Told {
-    std::vector<PassTiming> timings;
-    Statistics statistics;
-  };
-
-  /// As read(), and what timings() and statistics() tell of the same samples: who asks one after the other waits for
-  /// the sample under way each time.
-  Told read_told(float* pixels);
+  /// As read(), without waiting: the picture is read when the future is ready.
+  std::shared_future<void> start_read(std::shared_ptr<Picture> picture);
 
   /// What rays through the pixels' middles meet, whatever the samples so far: (height, width, 4) floats, where in the
   /// world, and 1, or 0 where they meet nothing; and (height, width, 3), the normal on the side that is seen. First row
@@ -129,24 +137,35 @@ class View {
   static Sent sent();
 
  private:
+  /// What the context's thread writes; outlives the view where work that it began is under way.
+  struct Shared {
+    std::atomic<int> width;
+    std::atomic<int> height;
+    std::atomic<int> samples = 0;
+    std::atomic<std::uint64_t> cancelled = 0;  ///< how many of those started are to end
+    // The thread's until a scene that is being taken is.
+    std::vector<std::shared_ptr<const transport::Computation>> computations;
+    std::shared_ptr<const heap::Solving> solving;  ///< null where no light goes from grain to grain
+  };
+
   std::uint64_t id_;
-  int width_;
-  int height_;
   bool patient_;
-  // The thread's until a scene that is being taken is.
-  std::vector<std::shared_ptr<const transport::Computation>> computations_;
-  std::shared_ptr<const heap::Solving> solving_;  // null where no light goes from grain to grain
-  std::shared_future<void> taking_;               // a scene; not valid before the first
-  std::shared_future<bool> news_;                 // being taken in; not valid before the first
-  std::shared_ptr<std::atomic<int>> samples_ = std::make_shared<std::atomic<int>>(0);
+  std::shared_ptr<Shared> shared_;
+  std::shared_future<void> made_;
+  std::shared_future<void> taking_;       // a scene; not valid before the first
+  std::shared_future<void> moving_;       // a camera being taken; not valid before the first
+  std::shared_future<bool> news_;         // being taken in; not valid before the first
   std::shared_future<double> under_way_;  // what was started last; not valid before
   std::atomic<std::uint64_t> started_ = 0;
-  // How many of those started are to end.
-  std::shared_ptr<std::atomic<std::uint64_t>> cancelled_ = std::make_shared<std::atomic<std::uint64_t>>(0);
 
+  template <typename Work>
+  auto post(Work&& work);
+  template <typename Work>
+  auto ask(Work&& work);
   template <typename Change>
   auto change(Change&& work);
   void wait_for_scene() const;
+  void wait_for_changes() const;
 };
 
 }  // namespace mesograin::render

@@ -86,6 +86,19 @@ def test_no_label_of_a_grain_is_cut_off(material, model):
     assert width(models.CHOICES[model].label) < WHOLE
 
 
+@pytest.mark.parametrize("way", ["coefficients", "look"])
+@pytest.mark.parametrize("across", [190, 220, 260, 333, 500])
+def test_what_three_numbers_are_is_read_at_any_width(material, way, across):
+    """190 pixels are what Blender's default layout leaves on a screen 1280 wide; labels have two fifths of a panel."""
+    material.mesograin.model, material.mesograin_look.way = "model_2", way
+    drawn = draw(panels.MESOGRAIN_PT_material, material=material, region=types.SimpleNamespace(width=across))
+    for name in {"coefficients": ("sigma_s", "sigma_a"), "look": ("Path",)}[way]:
+        beside = f"{name} R" in drawn.labels
+        assert beside == (name == "Path" or across >= 260) and beside != (name in drawn.said)
+        assert not beside or width(f"{name} R") <= 0.4 * (across - 75)
+    assert drawn.labels.count("R") == sum(name in drawn.said for name in ("sigma_s", "sigma_a", "Path"))
+
+
 @pytest.mark.parametrize("source", ["RANGE", "ATTRIBUTE"])
 @pytest.mark.parametrize("model", ["lambert", "model_2"])
 def test_no_label_of_grains_that_vary_is_cut_off(material, model, source):

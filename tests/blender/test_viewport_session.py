@@ -2,6 +2,7 @@
 import random
 import threading
 import time
+import weakref
 
 import bpy
 import numpy as np
@@ -31,6 +32,9 @@ class Slow:
     def result(self):
         self._task.result()
         return self._seconds
+
+    def picture(self):
+        return self._task.picture()
 
 
 class Withheld:
@@ -99,6 +103,46 @@ class Telling:
         return Taken.Taking(self._view.start_news(), self.open)
 
 
+class Late:
+    """A native.View whose scenes, cameras and news are never taken by the redraw that asks for them."""
+
+    class Taking:
+        def __init__(self, taking):
+            self._taking, self._asked = taking, False
+
+        def wait(self, seconds=None):
+            asked, self._asked = self._asked, True
+            return asked and self._taking.wait()
+
+        def result(self):
+            return self._taking.result()
+
+    def __init__(self, view):
+        self._view = view
+
+    def __getattr__(self, name):
+        found = getattr(self._view, name)
+        if name not in ("start_scene", "start_camera", "start_news"):
+            return found
+        return lambda *arguments: Late.Taking(found(*arguments))
+
+
+@pytest.fixture
+def busy_device(native):
+    """A native.Rendering of another view whose one sample holds the device's thread for seconds, as a program does that
+    is being compiled, until a test has asked all it wants of others. Nothing else may be asked of the device before."""
+    if native.device_info()["hardware"]:
+        pytest.skip("a GPU is through too soon")
+    square = native.Mesh([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]], None, [[0, 1, 2], [0, 2, 3]])
+    material = native.Material(model="model_3", sigma_s=(4.0, 4.0, 4.0), sigma_a=(0.1, 0.1, 0.1))
+    view = native.View(64, 64)
+    view.set_scene(native.Scene(instances=[native.Instance(square, material, np.eye(4))],
+                                lights=[native.DirectionalLight((0.0, 0.0, 1.0), (1.0, 1.0, 1.0))]))
+    view.set_camera(native.Camera.look_at((0.0, 0.0, 1.5), (0.0, 0.0, 0.0), (0.0, 1.0, 0.0), 40.0))
+    view.set_taps(1 << 16)
+    return lambda: view.start(1)
+
+
 @pytest.fixture
 def drag(native, blend_files, monkeypatch):
     """drag(sample_seconds, redraw_seconds): a new reflectance for each redraw, which takes as long, or with None as
@@ -111,7 +155,8 @@ def drag(native, blend_files, monkeypatch):
     def run(sample_seconds, redraw_seconds):
         session = viewport.Session()
         sessions.append(session)
-        monkeypatch.setattr(viewport, "_start", lambda view, samples: Slow(view.start(samples), sample_seconds))
+        monkeypatch.setattr(viewport, "_start",
+                            lambda view, samples: Slow(view.start(samples, read=True), sample_seconds))
         returned = []
         for change in range(CHANGES):
             grain.reflectance = (reflectance(change),) * 3
@@ -121,6 +166,8 @@ def drag(native, blend_files, monkeypatch):
             picture = session.advance(64)
             returned.append(None if picture is None else picture.copy())
             if redraw_seconds is None:
+                while session._task is None:  # the scene is still being taken: the machine does other things
+                    session._apply()
                 session._task.wait()
             else:
                 time.sleep(redraw_seconds)
@@ -153,6 +200,25 @@ def test_a_drag_faster_than_the_samples_shows_one_for_each_sample(drag):
     returned, _ = drag(sample_seconds=0.2, redraw_seconds=0.05)
     shown = [picture for picture in returned if picture is not None]
     assert shown, "changes throw away every sample under way"
+
+
+@pytest.mark.parametrize("dragged", ["camera", "scene", "both"])
+def test_a_drag_whose_changes_are_taken_late_shows_pictures_before_its_end(drag, native, dragged):
+    """As beside an F12 whose samples take longer than a redraw waits."""
+    _, session = drag(sample_seconds=0.0, redraw_seconds=0.0)
+    session._view = Late(session._view)
+    shown = 0
+    for step in range(CHANGES):
+        if dragged != "camera":
+            bpy.data.materials["Translucent"].mesograin.reflectance = (reflectance(step),) * 3
+            session.set_scene(export.read_scene(bpy.context.evaluated_depsgraph_get(), meshes.MeshCache()))
+        if dragged != "scene":
+            eye = (0.0, 0.0, 9.0 + step)
+            session.set_camera(native.Camera.look_at(eye, (0.0, 0.0, 0.0), (0.0, 1.0, 0.0), 45.0), *SIZE)
+        shown += session.advance(64) is not None
+        if session._task is not None:
+            session._task.wait()
+    assert shown >= CHANGES // 4
 
 
 def test_after_a_drag_the_last_change_is_shown(drag):
@@ -239,6 +305,56 @@ def test_no_redraw_waits_for_news_to_be_taken(drag, native):
     np.testing.assert_allclose(session.picture(), right.read(), atol=1e-5)
 
 
+def test_no_call_of_a_session_waits_for_a_device_that_is_busy(drag, native, busy_device):
+    """Neither one of a session that draws already, as where F12 compiles a program beside a viewport, nor of a new one,
+    nor the end of one."""
+    _, session = drag(sample_seconds=0.0, redraw_seconds=0.0)
+    while session.busy or session.samples < 2:
+        session.advance(2)
+    begun, ended = viewport.Session(), viewport.Session()
+    held = busy_device()
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    values = export.read_scene(depsgraph, meshes.MeshCache())
+    for step in range(3):
+        camera = native.Camera.look_at((0.0, 0.0, 9.0 + step), (0.0, 0.0, 0.0), (0.0, 1.0, 0.0), 45.0)
+        for each in (session, begun, ended):
+            each.set_scene(values)
+            each.set_camera(camera, 40 + step, 30)  # and a window that is resized
+            assert each.advance(2) is None and each.busy and not each.waits
+            assert each.picture() is None and each.warnings == () and each.awaited == () and each.seconds_behind > 0.0
+    session.set_scene(export.read_scene(depsgraph, meshes.MeshCache()))
+    gone = weakref.ref(ended)
+    del ended, each
+    assert gone() is None, "Blender lets go of an engine, and nothing else ends its session"
+    assert not held.done, "something waited for the device"
+    right = native.View(42, 30)
+    right.set_scene(export.scene_from_depsgraph(depsgraph)[0])
+    right.set_camera(camera)
+    right.render(2)
+    for each in (session, begun):
+        while each.busy or each.samples < 2:
+            each.advance(2)
+        np.testing.assert_allclose(each.picture(), right.read(), atol=1e-5)
+    begun.stop()
+
+
+def test_samples_that_a_busy_device_goes_on_with_after_they_were_given_up_are_not_shown(drag, native, busy_device):
+    _, session = drag(sample_seconds=0.0, redraw_seconds=0.0)
+    while session.busy or session.samples < 2:
+        session.advance(2)
+    shown = session.picture().copy()
+    held = busy_device()
+    assert session.advance(session.samples + 1) is None and session.busy  # another one, which waits for the device
+    bpy.data.materials["Translucent"].mesograin.reflectance = (0.1,) * 3
+    session.set_scene(export.read_scene(bpy.context.evaluated_depsgraph_get(), meshes.MeshCache()))
+    assert session.advance(2) is None and session.samples == 0 and not held.done
+    pictures = []
+    while session.busy or session.samples < 2:
+        picture = session.advance(2)
+        pictures += [] if picture is None else [picture.copy()]
+    assert all(brightness(picture) < 0.5 * brightness(shown) for picture in pictures)
+
+
 def test_an_error_of_what_was_shown_before_is_not_that_of_what_is_shown(drag, native, monkeypatch):
     _, session = drag(sample_seconds=0.0, redraw_seconds=0.02)
     session.advance(64)
@@ -248,7 +364,7 @@ def test_an_error_of_what_was_shown_before_is_not_that_of_what_is_shown(drag, na
             super().result()
             raise native.Error("The device is gone: find it.")
 
-    monkeypatch.setattr(viewport, "_start", lambda view, samples: Failed(view.start(samples), 0.0))
+    monkeypatch.setattr(viewport, "_start", lambda view, samples: Failed(view.start(samples, read=True), 0.0))
     camera = native.Camera.look_at((0.0, 0.0, 9.0), (0.0, 0.0, 0.0), (0.0, 1.0, 0.0), 45.0)
     session.set_camera(camera, *SIZE)
     with pytest.raises(native.Error, match="The device is gone"):

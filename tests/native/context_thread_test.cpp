@@ -3,11 +3,15 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <functional>
 #include <future>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
+
+#include "base/error.h"
 
 namespace mesograin::gl {
 namespace {
@@ -33,6 +37,34 @@ TEST(ContextThreadTest, WhatIsPostedGoesBeforeStepsAndUrgentStepsBeforeOthers) {
   posted.get();
   EXPECT_TRUE(urgent.get() && patient.get() && other.get());
   EXPECT_EQ(order, "puuabab");
+}
+
+TEST(ContextThreadTest, AStepThatIsNotReadyHoldsUpNobodyAndIsTakenOnceItIs) {
+  ContextThread& thread = ContextThread::instance();
+  std::atomic<bool> ready = false;
+  std::string order;
+  const auto repeat = [&](char name, std::function<bool()> is_ready) {
+    return thread.repeat<bool>(
+        [&order, name] {
+          order += name;
+          return std::optional(true);
+        },
+        [] { return false; }, std::move(is_ready));
+  };
+  std::future<bool> waiting = repeat('w', [&] { return ready.load(); });
+  EXPECT_TRUE(repeat('o', [] { return true; }).get());
+  thread.run([&] { order += 'p'; });
+  EXPECT_EQ(order, "op");
+  ready = true;  // which nobody tells the thread
+  EXPECT_TRUE(waiting.get());
+  EXPECT_EQ(order, "opw");
+}
+
+TEST(ContextThreadTest, ShutDownEndsAStepThatNeverBecomesReady) {
+  std::future<bool> endless = ContextThread::instance().repeat<bool>([] { return std::optional(true); },
+                                                                     [] { return false; }, [] { return false; });
+  ContextThread::shut_down();
+  EXPECT_THROW(endless.get(), Error);
 }
 
 TEST(ContextThreadTest, WhatAStepThrowsEndsItAndIsHandedOn) {

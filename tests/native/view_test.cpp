@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <future>
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <thread>
 
 #include "expect_error.h"
@@ -277,9 +279,10 @@ TEST_F(ViewTest, ReadingWaitsForTheSampleUnderWayAndNotForAll) {
   EXPECT_FLOAT_EQ(pixel(pixels, 64, 32, 32)[0], 0.5F);
   EXPECT_FALSE(drawing.timings().empty());
   EXPECT_EQ(drawing.statistics().instances, 0U);
-  std::fill(pixels.begin(), pixels.end(), 0.0F);
-  EXPECT_EQ(drawing.read_told(pixels.data()).timings.size(), 2U);
-  EXPECT_FLOAT_EQ(pixel(pixels, 64, 32, 32)[0], 0.5F);
+  const auto told = std::make_shared<Picture>();
+  drawing.start_read(told).get();
+  EXPECT_EQ(told->timings.size(), 2U);
+  EXPECT_FLOAT_EQ(pixel(told->pixels, 64, 32, 32)[0], 0.5F);
   EXPECT_NE(done.wait_for(std::chrono::seconds(0)), std::future_status::ready);
   drawing.cancel();
   EXPECT_GT(done.get(), 0.0);
@@ -408,6 +411,52 @@ TEST_F(ViewTest, WhatCannotBeDrawnIsRefusedAndChangesNothing) {
   expect_error([&] { view.resize(0, 5); }, "between 1 and");
   expect_error([&] { view.resize(1 << 20, 5); }, "between 1 and");
   EXPECT_FLOAT_EQ(pixel(picture(view), 16, 8, 8)[0], 0.5F);
+}
+
+TEST_F(ViewTest, WhatOnlyStartsDoesNotWaitForAThreadThatIsBusy) {
+  View drawn(16, 16, 0, false);
+  drawn.set_scene(one_square_);
+  drawn.set_camera(straight_camera());
+  drawn.render(1);
+  std::promise<void> open;
+  const auto held = gl::ContextThread::instance().post([&] { open.get_future().wait(); });
+  // Would hang here for ever if one of these waited.
+  auto made = std::make_unique<View>(16, 16, 0, false);
+  const auto picture = std::make_shared<Picture>();
+  const auto earlier = std::make_shared<Picture>();
+  const auto early = drawn.start_read(earlier);
+  const auto taking = made->start_scene(one_square_);
+  const auto moving = drawn.start_camera(straight_camera(), 8, 4);
+  const auto samples = drawn.start(2, picture);
+  auto ended = std::make_unique<View>(16, 16, 0, false);
+  ended->start_scene(one_square_);
+  ended.reset();
+  EXPECT_EQ(drawn.preparing(), std::nullopt);
+  drawn.cancel();
+  const auto again = std::make_shared<Picture>();
+  const auto more = drawn.start(2, again);
+  EXPECT_NE(samples.wait_for(std::chrono::seconds(0)), std::future_status::ready);
+  open.set_value();
+  taking.get();
+  moving.get();
+  early.get();
+  samples.get();
+  more.get();
+  EXPECT_TRUE(picture->pixels.empty()) << "these were cancelled";
+  EXPECT_EQ(earlier->width, 16);
+  ASSERT_EQ(again->width * again->height, 32);
+  EXPECT_EQ(drawn.width(), 8);
+  EXPECT_EQ(drawn.samples(), 2);
+  std::vector<float> read(8 * 4 * 4);
+  drawn.read(read.data());
+  EXPECT_EQ(again->pixels, read);
+  EXPECT_FLOAT_EQ(pixel(read, 8, 4, 2)[0], 0.5F);
+}
+
+TEST_F(ViewTest, WhatKeepsAViewFromBeingMadeIsSaidByTheFirstCallThatWaits) {
+  View view(1 << 20, 1 << 20);
+  expect_error([&] { view.set_scene(one_square_); }, "1048576");
+  expect_error([&] { view.render(1); }, "1048576");
 }
 
 }  // namespace

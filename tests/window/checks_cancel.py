@@ -6,6 +6,22 @@ import bpy
 import numpy as np
 from mesograin.engine import status
 
+DISTANCES = (6.0, 5.0, 4.0)
+
+
+def hold_device(window):
+    """A native.Rendering whose one sample holds the device's thread for many seconds, as a program does that is being
+    compiled: nothing can end it before."""
+    native = window.native
+    square = native.Mesh([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]], None, [[0, 1, 2], [0, 2, 3]])
+    material = native.Material(model="model_3", sigma_s=(4.0, 4.0, 4.0), sigma_a=(0.1, 0.1, 0.1))
+    view = native.View(144, 144)
+    view.set_scene(native.Scene(instances=[native.Instance(square, material, np.eye(4))],
+                                lights=[native.DirectionalLight((0.0, 0.0, 1.0), (1.0, 1.0, 1.0))]))
+    view.set_camera(native.Camera.look_at((0.0, 0.0, 1.5), (0.0, 0.0, 0.0), (0.0, 1.0, 0.0), 40.0))
+    view.set_taps(1 << 16)
+    return view, view.start(1)
+
 
 def press_escape():
     """Without a window manager nobody but us gives Blender's window the focus."""
@@ -43,3 +59,40 @@ def check_escape_ends_a_render_at_once_and_keeps_what_it_has(window):
     status.clear()
     picture = yield from window.converged_picture(area)
     window.assert_same(picture, window.expected_picture(area))
+
+
+def check_the_window_and_escape_answer_while_the_device_is_busy(window):
+    """As where F12, or another viewport, compiles a program. A GPU is through with what is to keep it busy too soon."""
+    area = yield from window.open("sphere")
+    yield from window.converged_picture(area)
+    if window.native.device_info()["hardware"]:
+        return
+    space = area.spaces.active
+    bpy.context.preferences.view.render_display_type = "NONE"
+    bpy.context.scene.render.resolution_x = bpy.context.scene.render.resolution_y = 64
+    bpy.context.scene.mesograin.samples = 4
+    status.clear()
+    view, held = hold_device(window)
+    for distance in DISTANCES:
+        space.region_3d.view_distance = distance
+        yield from window.seconds(0.1)
+    bpy.data.materials["Translucent"].mesograin.reflectance = (0.3, 0.4, 0.5)
+    yield from window.press_f12(area)
+    yield from window.until(lambda: bpy.app.is_job_running("RENDER"))
+    space.shading.type = "SOLID"  # ends a session, and begins one
+    yield from window.seconds(0.2)
+    space.shading.type = "RENDERED"
+    yield from window.seconds(0.2)
+    press_escape()
+    yield from window.until(lambda: not bpy.app.is_job_running("RENDER"))
+    assert not held.done, "something waited for the device"
+    assert status.get(status.RENDER) == status.Status(), "the picture was drawn, or what ended it is an error"
+    assert status.get(status.VIEWPORT) is None and window.session(area).seconds_behind > 0.0, "nothing was drawn yet"
+    yield from window.until(lambda: held.done, timeout=600.0)
+    del view
+    picture = yield from window.converged_picture(area)
+    window.assert_same(picture, window.expected_picture(area))
+    status.clear()
+    yield from window.press_f12(area)
+    yield from window.until(lambda: status.get(status.RENDER) is not None and not bpy.app.is_job_running("RENDER"))
+    assert status.get(status.RENDER).samples == 4 and status.complaints() == []

@@ -16,6 +16,8 @@ from .pace import Pace
 # How long a final render may go without looking whether it was cancelled, and without showing how far it is.
 POLL_SECONDS = 0.05
 SHOW_SECONDS = 0.5
+# How long a cancelled one waits for its last samples: a program that is being compiled cannot be given up.
+GRACE_SECONDS = 2.0
 # How often a viewport that waits for light between grains is asked for news. Redraws for that would take the processor
 # from what is waited for: Blender's own cost more than ours.
 LOOK_SECONDS = 0.05
@@ -23,6 +25,10 @@ LOOK_SECONDS = 0.05
 BEHIND_SECONDS = 1.0
 
 _sessions = weakref.WeakSet()
+
+
+class _GivenUp(Exception):
+    """Of a final render that was cancelled while the device did not answer: it ends with what it has shown."""
 
 
 class MesograinRenderEngine(bpy.types.RenderEngine):
@@ -50,6 +56,8 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
     def render(self, depsgraph):
         try:
             self._render(depsgraph)
+        except _GivenUp:
+            status.put(status.RENDER, status.Status())
         except _sentences() as error:
             self._complain(status.RENDER, status.Status(error=str(error)))
 
@@ -63,7 +71,7 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
         warnings = exposure.values.warnings
         view = native.View(region.width, region.height)
         still = exposure.native_scene(exposure.values)
-        view.set_scene(still)
+        self._result(view.start_scene(still), view)
         view.set_portions(passes.portions(depsgraph.view_layer))
         for warning in warnings:
             self.report({"WARNING"}, warning)
@@ -72,7 +80,7 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
         eyes = _eyes(depsgraph.scene.render)
         for number, name in enumerate(eyes):
             read_camera = functools.partial(self._camera, depsgraph, width, height, region, name)
-            view.set_camera(read_camera())
+            self._result(view.start_camera(read_camera(), region.width, region.height), view)
             passes.add(self, depsgraph.view_layer)
             result = self.begin_result(0, 0, region.width, region.height, layer=depsgraph.view_layer.name, view=name)
             try:
@@ -86,6 +94,9 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
                     beside = passes.pixels(view, depsgraph.view_layer, exposure, read_camera)
                     for name_, pixels in beside.items():
                         _set_pass(result, name_, pixels)
+            except _GivenUp:
+                self.end_result(result)
+                raise
             except Exception:  # whatever it is: Blender must not be left with a result that never ends
                 self.end_result(result, cancel=True)
                 raise
@@ -119,7 +130,7 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
                 reached += count
                 while view.samples < reached and not self.test_break():
                     chunk_started = time.perf_counter()
-                    self._wait(view, view.start(min(chunk, reached - view.samples)))
+                    self._draw(view, min(chunk, reached - view.samples))
                     now = time.perf_counter()
                     pace.note(view.samples, now)
                     if now - chunk_started < POLL_SECONDS:
@@ -131,16 +142,30 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
                 if self.test_break():
                     return
 
-    def _wait(self, view, task):
-        """Until a view's task ends, or is cancelled by the artist."""
+    def _draw(self, view, samples):
+        """Until they are drawn, or cancelled by the artist."""
         patience = waiting.Waiting()
-        while not task.wait(POLL_SECONDS):
-            if self.test_break():
-                view.cancel()
+
+        def tell():
             share = view.preparing
             if share is not None:
                 self.update_stats("", patience.sentence(view.awaited, share, time.perf_counter()))
-        task.result()
+
+        self._result(view.start(samples), view, tell)
+
+    def _result(self, task, view, tell=lambda: None):
+        """Of a task of the view. Other views may hold its thread for long: the artist's wish to cancel is seen
+        meanwhile. Raises _GivenUp where it cannot be followed soon."""
+        cancelled = None
+        while not task.wait(POLL_SECONDS):
+            now = time.perf_counter()
+            if cancelled is None and self.test_break():
+                view.cancel()
+                cancelled = now
+            if cancelled is not None and now - cancelled > GRACE_SECONDS:
+                raise _GivenUp
+            tell()
+        return task.result()
 
     def _sign(self, metadata):
         """metadata: {field: text} that goes into the picture's file."""
@@ -148,9 +173,8 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
         for field, text in metadata.items():
             whole.stamp_data_add_field(field, text)
 
-    @staticmethod
-    def _show(result, view, opaque):
-        pixels = view.read()
+    def _show(self, result, view, opaque):
+        pixels = self._result(view.start_read(), view)["pixels"]
         if opaque:
             pixels[..., 3] = 1.0  # premultiplied, so this is the picture over black
         _set_pass(result, "Combined", pixels)

@@ -17,7 +17,9 @@ FADE_SECONDS = 0.3
 
 
 class Session:
-    """Owned by one engine and used from Blender's main thread. Samples are drawn on the native module's thread. One of
+    """Owned by one engine and used from Blender's main thread, which never waits for the native module's thread longer
+    than PATIENCE_SECONDS: it may be held by a program that it compiles for a minute, for this view or another. All that
+    is asked of the view is posted there, and what is still under way at the next redraw is asked for then. One of
     Python's would crash Blender now and then: before Python 3.12 its operators take another thread's hold of the
     interpreter for their own. Holds no reference into Blender."""
 
@@ -29,15 +31,18 @@ class Session:
         self.stopped = False
         self._values = None  # of the scene that was last asked for
         self._camera = None
+        self._size = (1, 1)  # that was last asked for
         self._next_scene = self._next_camera = None  # asked for, and not yet the view's
-        self._taking = None  # a scene that the view is being given, or news that it takes in
-        self._takes_news = False  # which of the two
+        self._taking = None  # a scene or a camera that the view is being given, or news that it takes in
+        self._took = None  # what goes on once that is done: no method of this object, which would keep it alive
         self._view = None
-        self._pixels = None
+        self._read = None  # the picture last read, as native.Reading's
+        self._pixels = None  # the same, as it is displayed
         self._kept = None  # (picture, samples) that is finished, and not yet returned
         self._seen = False  # whether a picture of the view's scene and camera was returned
         self._restarted = 0.0  # when the view's picture was last begun
         self._task = None
+        self._given_up = False  # whether that is to be heard of no more
         self._preparing = False  # whether more may become known of what the view draws
         self._fade = None  # (picture before that, when the other's first was read)
         self._chunk = 1
@@ -50,24 +55,24 @@ class Session:
         self._values = None  # an error below leaves nothing that the next update could take for shown
         self._next_scene = values.to_native()
         self._values = values
-        self._ensure_view(1, 1)
         self._change()
 
     def set_camera(self, camera, width, height):
         """Takes a native.Camera and the region's size in pixels; restarts the picture if either is new."""
-        if self._camera is not None and camera == self._camera and (width, height) == self.size:
+        size = (width, height)
+        if self._camera is not None and camera == self._camera and size == self._size:
             return
-        self._ensure_view(width, height)
-        if (width, height) != self.size:
+        if size != self._size:
             self._interrupt()  # a picture of another size is none to be shown
             self._kept = None
-            self._view.resize(width, height)
+        self._size = size
         self._camera = self._next_camera = camera
         self._change()
 
     @property
     def size(self):
-        return self._view.width, self._view.height
+        """(width, height) in pixels, as last asked for."""
+        return self._size
 
     @property
     def values(self):
@@ -90,7 +95,7 @@ class Session:
             if self._task.wait(PATIENCE_SECONDS):
                 self._finish()
         elif self._fade:
-            self._kept = self._read(), self._view.samples
+            self._kept = self._displayed(), self._view.samples
         elif self._preparing:
             time.sleep(PATIENCE_SECONDS)
         if self._kept is None:
@@ -99,8 +104,8 @@ class Session:
         return picture
 
     def picture(self):
-        """The picture as it is, as `advance` returns it; waits for samples under way. None before the first."""
-        return self._read() if self._seen and self._taking is None else None
+        """The picture that `advance` returned last, as it did. None before the first of what was asked for."""
+        return self._displayed() if self._seen and self._taking is None else None
 
     @property
     def busy(self):
@@ -125,17 +130,22 @@ class Session:
     @property
     def preparing(self):
         """The share that is done of what will make the picture better; None if there is nothing."""
-        return self._view.preparing if self._taking is None else 0.0
+        return self._view.preparing if self._is_at_hand else 0.0
 
     @property
     def awaited(self):
         """What that is, as native.View's."""
-        return tuple(self._view.awaited) if self._taking is None else ()
+        return tuple(self._view.awaited) if self._is_at_hand else ()
 
     @property
     def warnings(self):
         """Sentences on what is not drawn by the model asked for."""
-        return tuple(self._view.warnings) if self._taking is None else ()
+        return tuple(self._view.warnings) if self._is_at_hand else ()
+
+    @property
+    def _is_at_hand(self):
+        """Whether the view tells at once of what its scene waits for."""
+        return self._view is not None and (self._taking is None or self._took is Session._took_camera)
 
     def __del__(self):
         # Blender lets go of an engine, and so of its session, without a call that could be relied upon.
@@ -145,13 +155,10 @@ class Session:
         """Ends the work under way and frees the view; the session cannot be used afterwards."""
         self._interrupt()
         self._preparing = False
-        self._view = self._taking = self._values = self._next_scene = self._next_camera = self._kept = None
+        self._view = self._task = self._taking = self._took = None
+        self._values = self._next_scene = self._next_camera = self._kept = None
         self.cache.forget()
         self.stopped = True
-
-    def _ensure_view(self, width, height):
-        if self._view is None:
-            self._view = native_module.get().View(width, height, patient=False)
 
     def _change(self):
         """Makes what was asked for the view's as soon as may be. In a drag a change comes for each redraw: were samples
@@ -164,43 +171,66 @@ class Session:
         self._apply()
 
     def _apply(self):
-        """Makes what was asked for the view's, if no samples are under way, and goes on. A scene of very many instances
-        takes the view a while, which no redraw waits for."""
-        if self._task is not None or not self._take_scene():
-            return
-        if self._next_camera is not None:
-            self._view.set_camera(self._next_camera)
-            self._next_camera = None
-            self._begin()
-        self._keep_busy()
+        """Makes what was asked for the view's, if no samples are under way, and goes on."""
+        if self._task is None and self._hand_over():
+            self._keep_busy()
 
-    def _take_scene(self):
-        """Whether the view has the scene that was asked for last, and all news begun. Raises native.Error as
-        View.set_scene."""
-        while self._taking is not None or self._next_scene is not None:
-            if self._taking is None:
-                self._taking, self._next_scene = self._view.start_scene(self._next_scene), None
+    def _hand_over(self):
+        """Whether the view has the scene and the camera that were asked for last, and all news begun, or samples were.
+        Raises native.Error as View.set_scene."""
+        while self._taking is not None or self._next_scene is not None or self._next_camera is not None:
+            late = self._taking is not None
+            if not late:
+                self._take_next()
             if not self._taking.wait(PATIENCE_SECONDS):
                 return False
-            self._took()
+            self._went_over()
+            # Where a change comes for each redraw, and is taken later than that, no picture would ever be begun.
+            if late and not self._seen and (self._view.width, self._view.height) == self._size:
+                self._draw()
+                if self._task is not None:
+                    return True
         return True
 
-    def _took(self):
+    def _take_next(self):
+        if self._view is None:
+            self._view = native_module.get().View(1, 1, patient=False)
+        if self._next_scene is not None:
+            taking, self._next_scene = self._view.start_scene(self._next_scene), None
+            self._take(taking, Session._took_scene)
+        else:
+            taking, self._next_camera = self._view.start_camera(self._next_camera, *self._size), None
+            self._take(taking, Session._took_camera)
+
+    def _take(self, taking, took):
+        self._taking, self._took = taking, took
+
+    def _went_over(self):
         """Goes on with what the view has taken. Raises native.Error as View.set_scene."""
-        taking, self._taking = self._taking, None
-        takes_news, self._takes_news = self._takes_news, False
-        if takes_news:
-            if taking.result():
-                before = self._pixels.copy() if self._seen else None
-                self._restart()
-                self._fade = None if before is None else (before, None)
-            return
+        (taking, self._taking), (took, self._took) = (self._taking, None), (self._took, None)
+        took(self, taking)
+
+    def _took_scene(self, taking):
         try:
             taking.result()
         except native_module.get().Error:
             self._values = None  # the next update takes nothing for shown
             raise
         self._begin()
+
+    def _took_camera(self, taking):
+        try:
+            taking.result()
+        except native_module.get().Error:
+            self._camera = None
+            raise
+        self._begin()
+
+    def _took_news(self, news):
+        if news.result():
+            before = self._pixels.copy() if self._seen else None
+            self._restart()
+            self._fade = None if before is None else (before, None)
 
     def _begin(self):
         self._preparing = True
@@ -211,40 +241,53 @@ class Session:
             return
         if self._task is None and self._preparing:
             self._preparing = self._view.preparing is not None  # asked first, so that the last news is not missed
-            self._taking, self._takes_news = self._view.start_news(), True
+            self._take(self._view.start_news(), Session._took_news)
             if not self._taking.wait(PATIENCE_SECONDS):  # that of a million grains takes a second
                 return
-            self._took()
-        if self._task is None and self._camera is not None and self._view.samples < self._target:
+            self._went_over()
+        if self._task is None:
+            self._draw()
+
+    def _draw(self):
+        if self._camera is not None and self._view.samples < self._target:
             count = min(self._chunk, self._target - self._view.samples)
             self._task = _start(self._view, count)
 
     def _finish(self):
         """Keeps the picture of the task that is done, and goes on. Raises native.Error if it failed."""
         try:
-            self._kept = self._take()
-            self._seen = True
+            self._kept = self._end()
+            self._seen = self._kept is not None
         finally:
             self._apply()
 
     def _keep(self):
-        """As `_take`, for what a change has made old: an error in it is old, too."""
+        """As `_end`, for what a change has made old: an error in it is old, too."""
         try:
-            self._kept = self._take()
+            self._kept = self._end() or self._kept
         except native_module.get().Error:
             self._kept = None
 
-    def _take(self):
-        """(picture, samples) of the task that is done. Raises native.Error if it failed."""
+    def _end(self):
+        """(picture, samples) of the task that is done, or None if it was given up. Raises native.Error if it failed."""
         task, self._task = self._task, None
+        given_up, self._given_up = self._given_up, False
+        if given_up:
+            return None
         self._adapt(task.result())
-        return self._read(), self._view.samples
+        self._read = task.picture()
+        told = self._read
+        self.timings = tuple((timing["pass"], timing["milliseconds"]) for timing in told["timings"])
+        self.exchange = status.exchange(told["statistics"])
+        return self._displayed(), self._view.samples
 
     def _interrupt(self):
+        """Gives up the samples under way. They may end later than here: no change is the view's before."""
         if self._task is not None:
             self._view.cancel()
-            self._task.wait()
-            self._task = None
+            self._given_up = True
+            if self._task.wait(PATIENCE_SECONDS):
+                self._end()
         self._restart()
 
     def _restart(self):
@@ -261,14 +304,12 @@ class Session:
         elif seconds > PATIENCE_SECONDS and self._chunk > 1:
             self._chunk //= 2
 
-    def _read(self):
-        width, height = self.size
-        if self._pixels is None or self._pixels.shape[:2] != (height, width):
-            self._pixels = np.empty((height, width, 4), dtype=np.float32)
-        told = self._view.read_told(self._pixels)
-        self.timings = tuple((timing["pass"], timing["milliseconds"]) for timing in told["timings"])
-        self.exchange = status.exchange(told["statistics"])
-        np.minimum(self._pixels, LARGEST_DISPLAYED, out=self._pixels)
+    def _displayed(self):
+        """The picture last read, as it may be shown."""
+        read = self._read["pixels"]
+        if self._pixels is None or self._pixels.shape != read.shape:
+            self._pixels = np.empty_like(read)
+        np.minimum(read, LARGEST_DISPLAYED, out=self._pixels)
         if self._fade:
             self._fade_over()
         return self._pixels
@@ -284,4 +325,4 @@ class Session:
 
 
 def _start(view, samples):
-    return view.start(samples)
+    return view.start(samples, read=True)

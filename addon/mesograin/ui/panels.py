@@ -8,11 +8,9 @@ from ..engine import engine, passes, status
 from ..scene import export, plain_materials
 from ..schema import models, parameters
 from . import conversion, look, named_things, presets
+from .widths import CHARACTER_WIDTH, MARGINS, width
 
 ENGINES = {engine.MesograinRenderEngine.bl_idname}
-# At a UI scale of 1, in pixels: the average width of a character, and what margins and an icon take of a panel's width.
-CHARACTER_WIDTH = 6.5
-MARGINS = 75
 # What is left for text of one of a popover's units of width, 20 pixels.
 POPOVER_UNIT = 17
 MEDIUM = ("sigma_s", "sigma_a", "scale", "g", "profile")
@@ -27,7 +25,7 @@ def draw_sentence(layout, context, sentence, icon="ERROR", units=None):
     if units:
         pixels = units * POPOVER_UNIT
     else:
-        pixels = (context.region.width if context.region else 300) / context.preferences.system.ui_scale - MARGINS
+        pixels = width(context) - MARGINS
     columns = max(8, int(pixels / CHARACTER_WIDTH))
     column = layout.column(align=True)
     column.scale_y = 0.8
@@ -131,11 +129,11 @@ class MESOGRAIN_PT_material(MesograinPanel, bpy.types.Panel):
         row.prop(said, "way", expand=True)
         sigma_t = [(sigma_s + sigma_a) * grain.scale for sigma_s, sigma_a in zip(grain.sigma_s, grain.sigma_a)]
         if said.way == "look":
-            look.draw(layout, said)
+            look.draw(layout, context, said)
             units = f"Path in mm; sigma_t {', '.join(f'{value:.3g}' for value in sigma_t)} per mm"
         else:
-            look.draw_channels(layout, grain, "sigma_s", "sigma_s")
-            look.draw_channels(layout, grain, "sigma_a", "sigma_a")
+            look.draw_channels(layout, context, grain, "sigma_s", "sigma_s")
+            look.draw_channels(layout, context, grain, "sigma_a", "sigma_a")
             layout.prop(grain, "scale")
             paths = ", ".join(f"{1.0 / value:.3g}" if value > 0.0 else "endless" for value in sigma_t)
             units = f"sigma per mm; mean free path {paths} mm"
