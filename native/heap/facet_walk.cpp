@@ -89,6 +89,12 @@ bool enters(const glm::vec3& normal, float alpha, double eta, glm::vec3& travell
 
 }  // namespace
 
+std::optional<End> Facets::end(std::uint32_t grain, const glm::vec3& origin, const glm::vec3& direction) const {
+  const std::optional<Meeting> met = inside(grain, origin, direction);
+  if (!met) return std::nullopt;
+  return End{glm::distance(origin, met->place), met->wall};
+}
+
 std::optional<Passage> walk_facets(const Optics& optics, float radius, const SeenFacet& seen, const Facets& facets,
                                    Scatterings scatterings, Random& random) {
   const glm::vec3 place = seen.place;

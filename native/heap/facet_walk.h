@@ -19,6 +19,12 @@ struct Finish {
   bool correlated;  ///< masking and shadowing of its facets
 };
 
+/// Of a straight way through a grain.
+struct End {
+  float distance;
+  bool wall;  ///< that reaches into the grain
+};
+
 /// Grains' surfaces as they are, and walls, as rays (directions of unit length) meet them.
 class Facets {
  public:
@@ -30,6 +36,9 @@ class Facets {
   /// What is met from inside a grain: its own facets, or a wall that reaches into it.
   virtual std::optional<Meeting> inside(std::uint32_t grain, const glm::vec3& origin,
                                         const glm::vec3& direction) const = 0;
+
+  /// Where only that matters: how far it is from inside a grain to where it ends, in less time.
+  virtual std::optional<End> end(std::uint32_t grain, const glm::vec3& origin, const glm::vec3& direction) const;
 
   /// What is met from a grain's surface on: others, and walls.
   virtual std::optional<Meeting> beyond(std::uint32_t grain, const glm::vec3& origin,
@@ -56,6 +65,7 @@ struct Passage {
   std::optional<Meeting> wall{};  ///< where it ends, if that is in the grain
   float length = 0.0F;            ///< of its way in the grain
   bool flat = false;              ///< the facet by which it leaves, if it has entered
+  glm::vec3 normal{0.0F};         ///< of a cosine lobe in which it leaves; else 0
 };
 
 /// What becomes of a view ray that is scattered.

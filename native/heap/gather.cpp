@@ -50,57 +50,6 @@ Optics glass(Optics optics) {
   return optics;
 }
 
-/// What one direction of a light makes a walk send back: of all places that ask for it one is looked at, the likelier
-/// the more it found.
-class Asking {
- public:
-  explicit Asking(const lights::LightDraw& light)
-      : to_light_(light.to_light),
-        irradiance_(light.irradiance),
-        reach_(static_cast<float>(std::min(light.reach, 1e30))) {}
-
-  /// Where light is scattered in the unit sphere, `direction` before the scattering.
-  void ask(const Optics& optics, const glm::vec3& place, const glm::vec3& direction, const glm::vec3& weight,
-           transport::Random& random) {
-    const float along = glm::dot(place, to_light_);
-    const float chord = -along + std::sqrt(std::max(along * along + 1.0F - glm::dot(place, place), 0.0F));
-    const auto g = static_cast<float>(optics.g);
-    // Henyey and Greenstein 1941, eq. 2.
-    const float square = 1.0F + g * g - 2.0F * g * glm::dot(direction, to_light_);
-    const float phase = (1.0F - g * g) / (4.0F * std::numbers::pi_v<float> * square * std::sqrt(square));
-    const glm::vec3 light = phase * weight * irradiance_ * glm::exp(-glm::vec3(optics.sigma_t) * chord);
-    const float mean = (light.r + light.g + light.b) / 3.0F;
-    if (!(mean > 0.0F)) return;
-    all_ += mean;
-    if (random.uniform() * all_ >= mean) return;
-    looked_at_ = glm::normalize(place + chord * to_light_);
-    colour_ = light / mean;
-  }
-
-  /// Where light leaves evenly at a normal.
-  void ask_surface(const glm::vec3& normal, const glm::vec3& weight) {
-    const float cosine = std::max(glm::dot(normal, to_light_), 0.0F) / std::numbers::pi_v<float>;
-    colour_ = cosine * weight * irradiance_;
-    all_ = cosine > 0.0F ? 1.0F : 0.0F;
-    looked_at_ = normal;
-  }
-
-  /// `aside`: of the grain's surface from the sphere's.
-  glm::vec3 found(const Space& space, std::uint32_t grain, const glm::vec3& aside) const {
-    if (!(all_ > 0.0F)) return glm::vec3(0.0F);
-    Ray ray{space.place(space.grains()[grain], looked_at_) + aside, to_light_, glm::vec3(1.0F)};
-    return all_ * colour_ * space.passed(ray, reach_);
-  }
-
- private:
-  glm::vec3 to_light_;
-  glm::vec3 irradiance_;
-  float reach_;
-  float all_ = 0.0F;
-  glm::vec3 looked_at_{0.0F};
-  glm::vec3 colour_{0.0F};
-};
-
 }  // namespace
 
 /// What takes time to find.
@@ -162,52 +111,6 @@ glm::vec3 Gather::look(std::uint32_t grain, const glm::vec3& normal, const glm::
   Ray through = ray_through(grain, normal, towards);
   sum += space_.seen_along(through, light_->sent, random);
   return glm::max(sum, 0.0F);
-}
-
-bool Gather::sees_all(std::uint32_t grain) const {
-  const Surface surface = heap_.grains.kinds[space_.grains()[grain].kind].surface;
-  return surface == Surface::index_matched || surface == Surface::lambert_lambert;
-}
-
-Gather::All Gather::look_at_all(std::uint32_t grain, const glm::vec3& place, const glm::vec3& normal,
-                                const glm::vec3& towards, int rays, transport::Random& random) const {
-  // What leaves a facet goes on from where it is, not from the one point of the sphere that faces as it does.
-  const glm::vec3 aside = place - space_.grains()[grain].radius * normal;
-  const Optics& optics = heap_.grains.kinds[space_.grains()[grain].kind];
-  const float mu = std::clamp(glm::dot(normal, towards), 0.0F, 1.0F);
-  const TurnedFrame frame(normal, -towards);
-  All all;
-  for (int i = 0; i < rays; ++i) {
-    std::vector<Asking> asking;
-    asking.reserve(draws_.size());
-    const glm::dvec3 middle = heap_.anchor + glm::dvec3(space_.grains()[grain].middle);
-    for (const Draw& draw : draws_) asking.emplace_back(draw(middle, {random.uniform(), random.uniform()}));
-    const auto ask = [&](const glm::vec3& place, const glm::vec3& direction, const glm::vec3& weight) {
-      for (Asking& of : asking) of.ask(optics, frame * place, frame * direction, weight, random);
-    };
-    const std::optional<Outcome> outcome =
-        walk(optics, Sense::from_viewer, mu, random, optics.transparent() ? Scattered(ask) : Scattered());
-    for (Asking& of : asking) {
-      if (outcome && !optics.transparent()) of.ask_surface(frame * outcome->normal, outcome->weight);
-      all.scattered += of.found(space_, grain, aside);
-    }
-    if (!outcome) continue;
-    const Grain& seen = space_.grains()[grain];
-    const glm::vec3 leaves_at =
-        space_.this_side(seen.middle + place, space_.place(seen, frame * outcome->normal) + aside);
-    Ray ray{leaves_at, frame * outcome->direction, outcome->weight};
-    if (const std::optional<glm::vec3> sent = sent_along(ray, random))
-      all.others += *sent;
-    else
-      all.scattered += even_world(ray);
-  }
-  all.others /= static_cast<float>(rays);
-  all.scattered /= static_cast<float>(rays);
-  Ray through = ray_through(grain, normal, towards);
-  all.others = glm::max(all.others + space_.seen_along(through, light_->sent, random), 0.0F);
-  all.world = through.weight * glm::vec3(lights::radiance(seen_by_camera_, glm::dvec3(through.direction)));
-  if (heap_.world.film_transparent) all.film = (through.weight.r + through.weight.g + through.weight.b) / 3.0F;
-  return all;
 }
 
 bool Gather::sees_into(std::uint32_t grain) const {

@@ -16,6 +16,8 @@
 
 namespace mesograin::heap {
 
+class Asking;
+
 class Gather {
  public:
   /// `light`: the heap's.
@@ -51,9 +53,14 @@ class Gather {
   All look_at_all(std::uint32_t grain, const glm::vec3& place, const glm::vec3& normal, const glm::vec3& towards,
                   int rays, transport::Random& random) const;
 
+  /// The same through its own facets, and past those of others; nothing, where it does not end behind that place.
+  std::optional<All> look_at_all(const SeenFacet& seen, const Facets& facets, int rays,
+                                 transport::Random& random) const;
+
   /// Of a heap that exchanges no light: what lights do in the grain that is seen straight through this one.
   glm::vec3 lit_behind(std::uint32_t grain, const glm::vec3& normal, const glm::vec3& towards,
                        transport::Random& random) const;
+  glm::vec3 lit_behind(const SeenFacet& seen, const Facets& facets, transport::Random& random) const;
 
   /// Whether so much crosses this grain, whose surface refracts, that look_into() shows more of it.
   bool sees_into(std::uint32_t grain) const;
@@ -135,6 +142,31 @@ class Gather {
   /// What a world without a picture sends to the end of it.
   glm::vec3 even_world(const Ray& ray) const;
   Ray ray_through(std::uint32_t grain, const glm::vec3& normal, const glm::vec3& towards) const;
+  /// The world or the film, where a straight way through a grain has left the heap.
+  void show_what_is_behind(const Ray& through, All& all) const;
+  /// One direction of each light, as it comes to a grain.
+  std::vector<Asking> asking(std::uint32_t grain, transport::Random& random) const;
+  /// Of a grain's medium, per unit of the heap's lengths.
+  glm::vec3 sigma_t(std::uint32_t grain) const;
+  bool is_transparent(std::uint32_t grain) const;
+  /// Whether a walk tells what lights do in a grain.
+  bool is_lit(std::uint32_t grain) const;
+  /// Where a way straight through a grain ends, from a place of its surface or in it; nothing, if there is none.
+  std::optional<End> end_across(std::uint32_t grain, const glm::vec3& place, const glm::vec3& direction,
+                                const Facets& facets) const;
+  /// What is left of light there.
+  glm::vec3 left_across(std::uint32_t grain, const std::optional<End>& end) const;
+  /// And on through others, on the way from a grain's surface to a light.
+  glm::vec3 passed_between(std::uint32_t grain, glm::vec3 place, const glm::vec3& to_light, float reach,
+                           const Facets& facets) const;
+  /// What is sent from where a ray has met something.
+  glm::vec3 sent_by(const Meeting& meeting, Ray& ray, transport::Random& random) const;
+  /// Of a transparent grain on the way: what it sends and what crosses it, or one of the two, drawn.
+  enum class Crossings { all, drawn };
+  /// What others send along a ray from a grain's surface, straight through those that let it; `wall`: what it meets
+  /// first, if that is known. Leaves it what weight leaves the heap.
+  glm::vec3 seen_between(std::uint32_t grain, std::optional<Meeting> wall, Crossings crossings, Ray& ray,
+                         const Facets& facets, transport::Random& random) const;
 
   struct Found;
   Gather(Heap heap, std::shared_ptr<const Found> found);

@@ -20,12 +20,8 @@ using transport::Random;
 constexpr int most_steps = 1 << 16;
 
 glm::vec3 cosine_lobe(const glm::vec3& normal, Random& random) {
-  const float cosine = std::sqrt(1.0F - random.uniform());
-  const float sine = std::sqrt(std::max(0.0F, (1.0F - cosine) * (1.0F + cosine)));
-  const float azimuth = 2.0F * std::numbers::pi_v<float> * random.uniform();
-  glm::vec3 first, second;
-  transport::make_frame(normal, first, second);
-  return cosine * normal + sine * (std::cos(azimuth) * first + std::sin(azimuth) * second);
+  const float u = random.uniform();
+  return transport::cosine_lobe(normal, u, random.uniform());
 }
 
 Outcome mirrored(const Optics& optics, const glm::vec3& travelling, Random& random) {

@@ -114,7 +114,8 @@ class Gatherer {
     const double radius = ball.w * shape(*mesh).radius_over_reach;
     roles.emplace_back();
     if (!shape(*mesh).grain || !(radius > 0.0)) return;
-    balls = balls && shape(*mesh).roundness > roundness_of_balls;
+    roles.back().ball = shape(*mesh).roundness > roundness_of_balls;
+    balls = balls && roles.back().ball;
     roles.back().grain = static_cast<std::uint32_t>(grains.grains.size());
     // The mean way of light through a body is 4 V / A, whatever its shape and however it scatters, so that what a grain
     // absorbs is right if the ball's is as long (Blanco and Fournier, "An invariance property of diffusive random

@@ -79,6 +79,9 @@ class Exchange {
   const heap::Gather* gather() const { return gather_.get(); }
   bool gathers_all() const { return gathers_; }
 
+  /// Whether all grains are about as round as a sphere.
+  bool balls() const { return balls_; }
+
   /// Whether all light of the object of this number is gathered, and no model is asked; `traced`: rays can be followed
   /// through all of the content.
   bool gathers_all_of(std::size_t number, bool traced) const;
@@ -87,6 +90,7 @@ class Exchange {
   struct Role {
     std::optional<std::uint32_t> grain;  ///< which of its grains
     std::optional<std::uint32_t> wall;   ///< which of its walls
+    bool ball = false;                   ///< of a grain: it is about as round as a sphere
 
     bool operator==(const Role&) const = default;
   };

@@ -27,6 +27,16 @@ inline void make_frame(const glm::vec3& axis, glm::vec3& first, glm::vec3& secon
   second = {b, sign + axis.y * axis.y * a, -axis.y};
 }
 
+/// About a normal, the likelier the larger its cosine.
+inline glm::vec3 cosine_lobe(const glm::vec3& normal, float u, float v) {
+  const float cosine = std::sqrt(1.0F - u);
+  const float sine = std::sqrt(std::max(0.0F, (1.0F - cosine) * (1.0F + cosine)));
+  const float azimuth = 2.0F * std::numbers::pi_v<float> * v;
+  glm::vec3 first, second;
+  make_frame(normal, first, second);
+  return cosine * normal + sine * (std::cos(azimuth) * first + std::sin(azimuth) * second);
+}
+
 /// The direction after a scattering with Henyey and Greenstein's phase function (its inverted distribution: Witt,
 /// "Multiple scattering in reflection nebulae", 1977, eq. 19).
 inline glm::vec3 scattered(const glm::vec3& direction, float g, float u, float v) {

@@ -43,7 +43,7 @@ Mirrors ArrayVisibility::mirrors(const Content& content, bool world, bool behind
 }
 
 void ArrayVisibility::prepare(const Sample& sample) {
-  if ((sample.cast || sample.looks_into_clear() || sample.mirrors == Mirrors::hindered) && !tree_)
+  if ((sample.cast || sample.looks_into_facets() || sample.mirrors == Mirrors::hindered) && !tree_)
     tree_ = std::make_unique<CastContent>(sample.cache, sample.content);
   const Instances* instances = sample.content.instances();
   if (instances == nullptr || selection_) return;

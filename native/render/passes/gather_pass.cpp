@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include "render/cast_work.h"
-#include "render/clear_looks.h"
+#include "render/content_facets.h"
 #include "render/pixel_rays.h"
 #include "render/surfaces.h"
 
@@ -27,7 +27,7 @@ void upload(std::optional<gl::Texture>& texture, const glm::ivec2& size, const s
 
 /// Each look goes through another place of the pixel, as far as the grain is seen there.
 heap::Gather::Through into_clear(const heap::SeenFacet& seen, const PixelRays& rays, const glm::dvec2& pixel,
-                                 const heap::Gather& gather, const ClearLooks& clear, int looks,
+                                 const heap::Gather& gather, const ContentFacets& clear, int looks,
                                  const heap::Gather::Look& how, transport::Random& random) {
   heap::Gather::Through sum;
   for (int look = 0; look < looks; ++look) {
@@ -51,20 +51,23 @@ bool GatherPass::run(const Sample& sample, const ArrayVisibility& arrays, Surfac
   ran_ = sample.gathers;
   if (!ran_) return true;
   const auto start = std::chrono::steady_clock::now();
-  std::optional<ClearLooks> clear;
-  if (sample.looks_into_clear()) clear.emplace(arrays.tree(), sample.content, sample.exchange);
+  std::optional<ContentFacets> facets;
+  if (sample.looks_into_facets()) facets.emplace(arrays.tree(), sample.content, sample.exchange);
   const SeenSurfaces seen = surfaces.seen(sample);
   const std::vector<Exchange::Role>& roles = sample.exchange.roles();
   others_.assign(seen.normals.size(), glm::vec4(0.0F));
   lights_.assign(seen.normals.size(), glm::vec4(0.0F));
   scattered_.assign(seen.normals.size(), glm::vec4(0.0F));
   mirrored_.assign(seen.normals.size(), glm::vec4(0.0F));
+  const bool clear = facets && gather->sees_into_any();
   if (clear) highlights_.assign(seen.normals.size(), glm::vec4(0.0F));
   const auto width = static_cast<std::size_t>(sample.size.x);
   const PixelRays pixel_rays(anchor_to_clip(sample.content, sample.camera), sample.size, glm::dvec2(0.0),
                              sample.content.instances() != nullptr ? sample.content.instances()->bounds() : Bounds{});
   const std::size_t instances = sample.content.instances() != nullptr ? sample.content.instances()->count() : 0;
   const auto pixel_at = [&](std::size_t i) { return glm::dvec2(i % width, i / width); };
+  // A picture's first sample, which a drag shows, costs half as much by balls; what that is off goes with the others.
+  const bool first_look = sample.index == 0;
   const float narrowed = heap::Gather::narrowed(sample.index);
   const std::uint64_t seed = (static_cast<std::uint64_t>(sample.seed) << 32U) + sample.index;
   const bool whole = cast_rows(sample.size.y, sample.go_on, [&](int first, int end) {
@@ -83,21 +86,28 @@ bool GatherPass::run(const Sample& sample, const ArrayVisibility& arrays, Surfac
         const heap::Gather::Look how{all || all_told ? heap::Scatterings::followed : heap::Scatterings::end, all_told,
                                      !all_told && number >= instances, narrowed};
         const heap::Gather::Through into =
-            into_clear({*grain, place, normal, towards}, pixel_rays, pixel_at(i), *gather, *clear,
+            into_clear({*grain, place, normal, towards}, pixel_rays, pixel_at(i), *gather, *facets,
                        all ? rays_a_sample : rays_into_clear, how, random);
         others_[i] = glm::vec4(into.others, how.alone ? 2.0F : 1.0F);
         lights_[i] = glm::vec4(into.lights, 0.0F);
         scattered_[i] = glm::vec4(into.scattered, 0.0F);
         mirrored_[i] = glm::vec4(into.mirrored, 0.0F);
         if (how.whole)
-          highlights_[i] = glm::vec4(gather->highlights({*grain, place, normal, towards}, *clear, random), 0.0F);
+          highlights_[i] = glm::vec4(gather->highlights({*grain, place, normal, towards}, *facets, random), 0.0F);
       } else if (sample.gathers_all_of(number)) {
-        const heap::Gather::All found =
-            gather->look_at_all(*grain, glm::vec3(seen.positions[i]), normal, towards, rays_a_sample, random);
-        others_[i] = glm::vec4(found.others, 1.0F);
-        lights_[i] = glm::vec4(found.world, found.film);
-        scattered_[i] = glm::vec4(found.scattered, 0.0F);
-        if (alone) lights_[i] += glm::vec4(gather->lit_behind(*grain, normal, towards, random), 0.0F);
+        const heap::SeenFacet at{*grain, place, normal, towards};
+        std::optional<heap::Gather::All> found;
+        const bool by_facets = facets && !roles[number].ball && !first_look;
+        if (by_facets) found = gather->look_at_all(at, *facets, rays_a_sample, random);
+        if (!found)
+          found = gather->look_at_all(*grain, glm::vec3(seen.positions[i]), normal, towards, rays_a_sample, random);
+        others_[i] = glm::vec4(found->others, 1.0F);
+        lights_[i] = glm::vec4(found->world, found->film);
+        scattered_[i] = glm::vec4(found->scattered, 0.0F);
+        if (alone)
+          lights_[i] += glm::vec4(
+              by_facets ? gather->lit_behind(at, *facets, random) : gather->lit_behind(*grain, normal, towards, random),
+              0.0F);
       } else if (all) {
         others_[i] = glm::vec4(gather->look(*grain, normal, towards, rays_a_sample, random), 1.0F);
       }

@@ -66,8 +66,10 @@ struct Sample {
   /// Whether it matters to a unit of the content where the light of a lamp comes in.
   bool lights_about(std::size_t unit) const;
 
-  /// Whether clear grains are seen into through their own facets.
-  bool looks_into_clear() const { return gathers && traced && exchange.gather()->sees_into_any(); }
+  /// Whether any grains are seen into through their own facets.
+  bool looks_into_facets() const {
+    return gathers && traced && (exchange.gather()->sees_into_any() || !exchange.balls());
+  }
 
   /// Whether all light of an object that is seen is gathered; its unit's others are then, too.
   bool gathers_all_of(std::size_t number) const;

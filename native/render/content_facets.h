@@ -1,4 +1,4 @@
-// How looks into clear grains go on through a view's content: to a grain's own facets, and to what stands around it.
+// How looks into grains go on through a view's content: to a grain's own facets, and to what stands around it.
 #pragma once
 
 #include <cstddef>
@@ -15,9 +15,9 @@
 namespace mesograin::render {
 
 /// All that is given must outlive it.
-class ClearLooks : public heap::Facets {
+class ContentFacets : public heap::Facets {
  public:
-  ClearLooks(const CastContent& cast, const Content& content, const Exchange& exchange);
+  ContentFacets(const CastContent& cast, const Content& content, const Exchange& exchange);
 
   /// A grain where it is seen along a ray (direction of unit length); nothing where something else is.
   std::optional<heap::SeenFacet> seen_along(std::uint32_t grain, const glm::vec3& origin,
@@ -25,6 +25,7 @@ class ClearLooks : public heap::Facets {
 
   std::optional<heap::Meeting> inside(std::uint32_t grain, const glm::vec3& origin,
                                       const glm::vec3& direction) const override;
+  std::optional<heap::End> end(std::uint32_t grain, const glm::vec3& origin, const glm::vec3& direction) const override;
   std::optional<heap::Meeting> beyond(std::uint32_t grain, const glm::vec3& origin,
                                       const glm::vec3& direction) const override;
   heap::Finish finish(std::uint32_t grain) const override;
@@ -35,6 +36,12 @@ class ClearLooks : public heap::Facets {
                                float clearance) const;
   /// How far from a place on an object's surface a ray no longer meets that place.
   float clear_of(std::size_t object, const glm::vec3& place) const;
+  /// Where a ray meets one instance from inside, or from `clearance` on from its surface.
+  std::optional<casting::Hit> own_hit(std::size_t object, const glm::vec3& origin, const glm::vec3& direction,
+                                      float clearance) const;
+  /// The wall that it meets before that.
+  std::optional<heap::Meeting> wall_before(const std::optional<casting::Hit>& own, const glm::vec3& origin,
+                                           const glm::vec3& direction) const;
   Hit place_of(const casting::Hit& hit, const glm::vec3& origin, const glm::vec3& direction) const;
   std::optional<heap::Meeting> wall_at(const Hit& hit, const glm::vec3& direction) const;
   std::size_t instances() const;

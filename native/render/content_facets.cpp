@@ -1,5 +1,5 @@
 // Rays one by one: they go nowhere near each other.
-#include "render/clear_looks.h"
+#include "render/content_facets.h"
 
 #include <algorithm>
 #include <cmath>
@@ -25,7 +25,7 @@ constexpr int most_passed = 16;
 
 }  // namespace
 
-struct ClearLooks::Hit {
+struct ContentFacets::Hit {
   std::size_t object;
   glm::vec3 place;  // from the anchor
   glm::vec3 normal;
@@ -33,23 +33,23 @@ struct ClearLooks::Hit {
   bool flat;
 };
 
-ClearLooks::ClearLooks(const CastContent& cast, const Content& content, const Exchange& exchange)
+ContentFacets::ContentFacets(const CastContent& cast, const Content& content, const Exchange& exchange)
     : cast_(cast), content_(content), roles_(exchange.roles()) {
   // Grains are counted in the order of the objects.
   for (std::size_t object = 0; object < roles_.size(); ++object)
     if (roles_[object].grain) objects_.push_back(object);
 }
 
-std::size_t ClearLooks::instances() const {
+std::size_t ContentFacets::instances() const {
   return content_.instances() != nullptr ? content_.instances()->count() : 0;
 }
 
-float ClearLooks::clear_of(std::size_t object, const glm::vec3& place) const {
+float ContentFacets::clear_of(std::size_t object, const glm::vec3& place) const {
   return std::max(clear_of_itself * content_.receiver(object).ball.w, rounding * glm::length(place));
 }
 
-std::optional<ClearLooks::Hit> ClearLooks::first_hit(const glm::vec3& origin, const glm::vec3& direction,
-                                                     std::size_t from, float clearance) const {
+std::optional<ContentFacets::Hit> ContentFacets::first_hit(const glm::vec3& origin, const glm::vec3& direction,
+                                                           std::size_t from, float clearance) const {
   casting::SingleRay ray{origin, direction};
   if (from < instances())
     ray.from = static_cast<std::uint32_t>(from);
@@ -61,33 +61,51 @@ std::optional<ClearLooks::Hit> ClearLooks::first_hit(const glm::vec3& origin, co
   return place_of(*hit, origin, direction);
 }
 
-ClearLooks::Hit ClearLooks::place_of(const casting::Hit& hit, const glm::vec3& origin,
-                                     const glm::vec3& direction) const {
+ContentFacets::Hit ContentFacets::place_of(const casting::Hit& hit, const glm::vec3& origin,
+                                           const glm::vec3& direction) const {
   const HitSurface surface = hit_surface(cast_, content_, direction, hit);
   const glm::vec4& facing = surface.normal;
   return {static_cast<std::size_t>(std::abs(facing.w)) - 1, origin + hit.distance * direction, glm::vec3(facing),
           facing.w > 0.0F, surface.flat};
 }
 
-std::optional<heap::SeenFacet> ClearLooks::seen_along(std::uint32_t grain, const glm::vec3& origin,
-                                                      const glm::vec3& direction) const {
+std::optional<heap::SeenFacet> ContentFacets::seen_along(std::uint32_t grain, const glm::vec3& origin,
+                                                         const glm::vec3& direction) const {
   const std::optional<Hit> hit = first_hit(origin, direction, nothing, 0.0F);
   if (!hit || hit->object != objects_[grain] || !hit->front) return std::nullopt;
   return heap::SeenFacet{grain, hit->place, hit->normal, -direction};
 }
 
-std::optional<heap::Meeting> ClearLooks::inside(std::uint32_t grain, const glm::vec3& origin,
-                                                const glm::vec3& direction) const {
+std::optional<casting::Hit> ContentFacets::own_hit(std::size_t object, const glm::vec3& origin,
+                                                   const glm::vec3& direction, float clearance) const {
+  return cast_.instances()->hit_of(static_cast<std::uint32_t>(object), {origin, direction}, clearance);
+}
+
+std::optional<heap::Meeting> ContentFacets::wall_before(const std::optional<casting::Hit>& own, const glm::vec3& origin,
+                                                        const glm::vec3& direction) const {
+  casting::SingleRay ray{origin, direction};
+  if (own) ray.farthest = own->distance;
+  const std::optional<casting::Hit> before = cast_.first_hit_of_draws(ray);
+  return before ? wall_at(place_of(*before, origin, direction), direction) : std::nullopt;
+}
+
+std::optional<heap::End> ContentFacets::end(std::uint32_t grain, const glm::vec3& origin,
+                                            const glm::vec3& direction) const {
+  const std::size_t object = objects_[grain];
+  if (object >= instances()) return Facets::end(grain, origin, direction);
+  const std::optional<casting::Hit> own = own_hit(object, origin, direction, clear_of(object, origin));
+  if (const std::optional<heap::Meeting> wall = wall_before(own, origin, direction))
+    return heap::End{glm::distance(origin, wall->place), true};
+  return own ? std::optional(heap::End{own->distance, false}) : std::nullopt;
+}
+
+std::optional<heap::Meeting> ContentFacets::inside(std::uint32_t grain, const glm::vec3& origin,
+                                                   const glm::vec3& direction) const {
   const std::size_t object = objects_[grain];
   const float clearance = clear_of(object, origin);
   if (object < instances()) {
-    const std::optional<casting::Hit> own =
-        cast_.instances()->hit_of(static_cast<std::uint32_t>(object), {origin, direction}, clearance);
-    casting::SingleRay ray{origin, direction};
-    if (own) ray.farthest = own->distance;
-    if (const std::optional<casting::Hit> before = cast_.first_hit_of_draws(ray))
-      if (const std::optional<heap::Meeting> wall = wall_at(place_of(*before, origin, direction), direction))
-        return wall;
+    const std::optional<casting::Hit> own = own_hit(object, origin, direction, clearance);
+    if (const std::optional<heap::Meeting> wall = wall_before(own, origin, direction)) return wall;
     if (!own) return std::nullopt;
     const Hit hit = place_of(*own, origin, direction);
     if (hit.front) return std::nullopt;
@@ -103,8 +121,8 @@ std::optional<heap::Meeting> ClearLooks::inside(std::uint32_t grain, const glm::
   return heap::Meeting{false, grain, hit->place, hit->normal, hit->flat};
 }
 
-std::optional<heap::Meeting> ClearLooks::beyond(std::uint32_t grain, const glm::vec3& origin,
-                                                const glm::vec3& direction) const {
+std::optional<heap::Meeting> ContentFacets::beyond(std::uint32_t grain, const glm::vec3& origin,
+                                                   const glm::vec3& direction) const {
   const std::size_t object = objects_[grain];
   // What it lies on begins where it ends.
   std::optional<Hit> hit = first_hit(origin - clear_of(object, origin) * direction, direction, object, 0.0F);
@@ -118,14 +136,14 @@ std::optional<heap::Meeting> ClearLooks::beyond(std::uint32_t grain, const glm::
   return std::nullopt;
 }
 
-std::optional<heap::Meeting> ClearLooks::wall_at(const Hit& hit, const glm::vec3& direction) const {
+std::optional<heap::Meeting> ContentFacets::wall_at(const Hit& hit, const glm::vec3& direction) const {
   const std::optional<std::uint32_t>& wall = roles_[hit.object].wall;
   if (!wall) return std::nullopt;
   const bool against = glm::dot(hit.normal, direction) < 0.0F;
   return heap::Meeting{true, *wall, hit.place, against ? hit.normal : -hit.normal};
 }
 
-heap::Finish ClearLooks::finish(std::uint32_t grain) const {
+heap::Finish ContentFacets::finish(std::uint32_t grain) const {
   const std::size_t object = objects_[grain];
   const scene::Material& material = object < instances() ? content_.instances()->group_of(object).source
                                                          : content_.draws()[object - instances()].look;
