@@ -190,6 +190,13 @@ def facets(node):
     return {"facets_keep_energy": True} if node.distribution == "MULTI_GGX" else {}
 
 
+def rough_diffuse_keeps_energy():
+    """Whether Cycles' rough Diffuse node has the light of further bounces between its facets, too."""
+    import bpy
+
+    return bpy.app.version >= (4, 2, 0)
+
+
 def bumps():
     """How bent normals shade, as native.Finish has it: as facets do, and nothing bends them back, where a material may
     do without such a correction. Blender 4.3 leaves them bent too, but shades by the cubic: 0.4 to 0.8 % apart."""

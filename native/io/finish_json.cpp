@@ -24,7 +24,8 @@ constexpr std::array map_names{std::pair{"reflectance_map", &Finish::reflectance
                                std::pair{"emission_map", &Finish::emission}};
 constexpr std::array number_names{
     std::pair{"metallicity", &Finish::metallicity}, std::pair{"normal_strength", &Finish::normal_strength},
-    std::pair{"coat", &Finish::coat}, std::pair{"coat_roughness", &Finish::coat_roughness}};
+    std::pair{"coat", &Finish::coat}, std::pair{"coat_roughness", &Finish::coat_roughness},
+    std::pair{"diffuse_roughness", &Finish::diffuse_roughness}};
 constexpr std::array switch_names{
     std::pair{"retro_reflective", &Finish::retro_reflective}, std::pair{"coat_shades_base", &Finish::coat_shades_base},
     std::pair{"metal_whitens", &Finish::metal_whitens}, std::pair{"facets_keep_energy", &Finish::facets_keep_energy},

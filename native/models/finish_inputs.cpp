@@ -64,6 +64,7 @@ void add_finish(const scene::Material& material, MaterialInputs& inputs) {
   if (finish.facets_keep_energy) inputs.defines.emplace_back("FACETS_KEEP_ENERGY");
   if (finish.facets_shade_bumps) inputs.defines.emplace_back("FACETS_SHADE_BUMPS");
   if (finish.retro_reflective) inputs.defines.emplace_back("RETRO_REFLECTIVE");
+  if (finish.diffuse_roughness > 0.0 && !finish.retro_reflective) inputs.defines.emplace_back("ROUGH_DIFFUSE");
   const bool metallic = metallicity > 0.0 || finish.metallic.picture;
   if (metallic) inputs.defines.emplace_back("METALLIC");
   inputs.facets = metallic || finish.coat > 0.0;
@@ -73,6 +74,7 @@ void add_finish(const scene::Material& material, MaterialInputs& inputs) {
   if (material.masking == scene::Masking::separable && !metal) inputs.defines.emplace_back("MASKING_SEPARABLE");
   inputs.uniforms["material.reflectance"] = glm::vec3(material.reflectance);
   inputs.uniforms["material.roughness"] = static_cast<float>(roughness);
+  inputs.uniforms["material.diffuse_roughness"] = static_cast<float>(finish.diffuse_roughness);
   inputs.uniforms["material.metallicity"] = static_cast<float>(metallicity);
   inputs.uniforms["material.coat"] = static_cast<float>(finish.coat);
   inputs.uniforms["material.normal_strength"] = static_cast<float>(finish.normal_strength);

@@ -91,7 +91,8 @@ void bind_finish(py::module_& module) {
                taken += take(name, *map);
              for (const auto& [name, number] :
                   {std::pair{"metallicity", &finish.metallicity}, std::pair{"normal_strength", &finish.normal_strength},
-                   std::pair{"coat", &finish.coat}, std::pair{"coat_roughness", &finish.coat_roughness}})
+                   std::pair{"coat", &finish.coat}, std::pair{"coat_roughness", &finish.coat_roughness},
+                   std::pair{"diffuse_roughness", &finish.diffuse_roughness}})
                taken += take(name, *number);
              for (const auto& [name, chosen] : {std::pair{"retro_reflective", &finish.retro_reflective},
                                                 std::pair{"coat_shades_base", &finish.coat_shades_base},
@@ -112,7 +113,9 @@ void bind_finish(py::module_& module) {
            "reflectance, roughness, metallic, normal, emission: TextureMaps; metallicity=0: the share that is a "
            "conductor; normal_strength=1; coat=0: reflectance of the dielectric over the rest, seen straight on, with "
            "coat_roughness=0.5, the square root of the GGX alpha; coat_shades_base=False: what the coat reflects is "
-           "lost to what lies under it; retro_reflective=False: diffuse as Burley has it; metal_whitens=False: the "
+           "lost to what lies under it; retro_reflective=False: diffuse as Burley has it; diffuse_roughness=0: else as "
+           "Oren "
+           "and Nayar have it; metal_whitens=False: the "
            "conductor's reflectance rises to 1 at grazing (Schlick); facets_keep_energy=False: what one bounce off "
            "facets loses is sent on in their lobe (Turquin); facets_shade_bumps=False: what a bent normal shades of "
            "itself is masked as facets are (Estevez et al.), and nothing bends it back, else by Cycles' former cubic; "

@@ -44,6 +44,7 @@ void validate(const Finish& finish) {
   require_share("metallicity", finish.metallicity);
   require_share("coat", finish.coat);
   require_share("coat_roughness", finish.coat_roughness);
+  require_share("diffuse_roughness", finish.diffuse_roughness);
   if (!(finish.normal_strength >= 0.0 && std::isfinite(finish.normal_strength)))
     throw Error("A finish's normal_strength must be finite and at least 0; got {}.", finish.normal_strength);
   for (int channel = 0; channel < 3; ++channel)

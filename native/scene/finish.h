@@ -63,6 +63,7 @@ struct Finish {
   double coat = 0.0;                ///< reflectance of the dielectric over the diffuse share, seen straight on
   double coat_roughness = 0.5;      ///< as roughness
   bool retro_reflective = false;    ///< diffuse as Burley (2012) has it, not Lambertian
+  double diffuse_roughness = 0.0;   ///< else as Oren and Nayar (1994) have it, in Fujii's form; 0: Lambertian
   bool coat_shades_base = false;    ///< what the coat reflects is lost to what lies under it
   bool metal_whitens = false;       ///< the conductor's reflectance rises to 1 at grazing (Schlick 1994)
   bool facets_keep_energy = false;  ///< what one bounce off facets loses is sent on in their lobe (Turquin 2019)

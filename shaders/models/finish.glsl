@@ -11,6 +11,7 @@
 //   FACET_ENERGY        there is a table of what one bounce sends
 //   FACETS_SHADE_BUMPS  what a bent normal shades of itself is masked as facets are
 //   RETRO_REFLECTIVE    the diffuse share is Burley's
+//   ROUGH_DIFFUSE       or Oren's and Nayar's
 //   EMITS               it sends out light
 #include "models/interface.glsl"
 #include "models/mirrored_world.glsl"
@@ -24,6 +25,7 @@ struct Material {
   vec3 reflectance;
   float roughness;  // the square root of alpha
   float metallicity;
+  float diffuse_roughness;
   float coat;       // reflectance seen straight on
   float coat_mean;  // reflectance of light from everywhere
   float normal_strength;
@@ -244,6 +246,16 @@ float facets(SurfacePoint point, vec3 half_vector, float mu_i, float mu_o) {
 }
 #endif
 
+#ifdef ROUGH_DIFFUSE
+// Over Lambert's, after one bounce in V-shaped cavities (Oren and Nayar, "Generalization of Lambert's Reflectance Model", 1994): Fujii, "A tiny
+// improvement of Oren-Nayar reflectance model", 2012, with a roughness from 0 to 1. `cosine`: between light and viewer.
+float oren_nayar(float mu_i, float mu_o, float cosine) {
+  float aside = cosine - mu_i * mu_o;
+  if (aside > 0.0) aside /= max(max(mu_i, mu_o), 1e-6);
+  return (1.0 + material.diffuse_roughness * aside) / (1.0 + (0.5 - 2.0 / (3.0 * PI)) * material.diffuse_roughness);
+}
+#endif
+
 vec3 evaluate_model(SurfacePoint point, Outwards outwards, LightSample light) {
   float mu_i = dot(point.normal, light.to_light);
 #ifdef NORMAL_MAP
@@ -261,6 +273,14 @@ vec3 evaluate_model(SurfacePoint point, Outwards outwards, LightSample light) {
   // Burley, "Physically Based Shading at Disney", 2012, section 5.3.
   float at_grazing = 0.5 + 2.0 * mu_h * mu_h * sqrt(point_alpha);
   diffuse *= (1.0 + (at_grazing - 1.0) * pow(1.0 - diffuse_mu_i, 5.0)) * (1.0 + (at_grazing - 1.0) * pow(1.0 - mu_o, 5.0));
+#endif
+#ifdef ROUGH_DIFFUSE
+#ifdef NORMAL_MAP
+  float diffuse_mu_o = max(dot(bent_normal, point.to_viewer), 0.0);
+#else
+  float diffuse_mu_o = mu_o;
+#endif
+  diffuse *= oren_nayar(max(diffuse_mu_i, 0.0), diffuse_mu_o, dot(light.to_light, point.to_viewer));
 #endif
   diffuse *= base_seen * max(diffuse_mu_i, 0.0);
 #ifdef METALLIC

@@ -348,3 +348,20 @@ def test_hue_apart_and_joined_again(paint, render):
     texture(paint, apart.inputs["Color"], image=lines("Lines"))
     stage(paint, "plane")
     assert_as_in_cycles(render)
+
+
+@pytest.mark.parametrize("roughness", [0.3, 1.0])
+def test_a_rough_diffuse_surface_is_as_in_cycles(paint, render, roughness):
+    """As Oren and Nayar have it."""
+    if compat.rough_diffuse_keeps_energy():
+        pytest.skip("this Blender's Cycles has the light of further bounces, too")
+    node = surface(paint)
+    node.inputs["Color"].default_value, node.inputs["Roughness"].default_value = (0.8, 0.5, 0.3, 1.0), roughness
+    stage(paint, "sphere")
+    add_sun((-1.0, 0.2, 0.1), 2.0)
+    assert_as_in_cycles(render, 0.005)
+
+
+def test_what_wears_no_material_is_as_in_cycles(paint, render):
+    stage(paint, "sphere").data.materials.clear()
+    assert_as_in_cycles(render, 0.005)

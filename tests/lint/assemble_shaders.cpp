@@ -174,7 +174,7 @@ void write_shading(Writer& writer) {
 /// Each thing that a surface may wear or be alone, and all together.
 void write_finishes(Writer& writer) {
   const auto picture = std::make_shared<const scene::Picture>(1, 1, scene::Picture::Bytes{glm::u8vec4(255)}, true);
-  std::vector<scene::Finish> finishes(11);
+  std::vector<scene::Finish> finishes(12);
   scene::Finish& all = finishes[8];
   finishes[0].reflectance.picture = all.reflectance.picture = picture;
   finishes[1].roughness.picture = all.roughness.picture = picture;
@@ -191,6 +191,7 @@ void write_finishes(Writer& writer) {
   finishes[10] = all;
   finishes[10].coat_shades_base = finishes[10].metal_whitens = finishes[10].facets_keep_energy = true;
   finishes[10].facets_shade_bumps = true;
+  finishes[11].diffuse_roughness = 0.5;
   for (std::size_t i = 0; i < finishes.size(); ++i)
     for (const scene::Masking masking : {scene::Masking::correlated, scene::Masking::separable}) {
       scene::Material material;

@@ -107,7 +107,8 @@ def test_a_scene_is_not_written_where_it_cannot_be(tmp_path):
         native.write_scene(tmp_path / "none" / "heap.json", scene, camera, size)
 
 
-def test_a_finish_is_written_and_read(tmp_path):
+@pytest.mark.parametrize("diffuse", [{"retro_reflective": True}, {"diffuse_roughness": 0.7}])
+def test_a_finish_is_written_and_read(tmp_path, diffuse):
     """Byte pictures as sRGB, by UV and by place, wrapped in every way; the numbers beside them."""
     random = np.random.default_rng(5)
     mesh = native.Mesh(np.float32([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]]), None,
@@ -119,7 +120,7 @@ def test_a_finish_is_written_and_read(tmp_path):
         roughness=native.TextureMap(grey, by_position=True, wrap="clip",
                                     to_picture=[[0.4, 0.1, 0, 0.2], [0, 0.7, 0, 0]]),
         emission=native.TextureMap(coloured, smooth=False), normal=native.TextureMap(coloured), normal_strength=0.5,
-        coat=0.05, coat_roughness=0.4, retro_reflective=True, metal_whitens=True, facets_keep_energy=True,
+        coat=0.05, coat_roughness=0.4, **diffuse, metal_whitens=True, facets_keep_energy=True,
         facets_shade_bumps=True, radiance=(0.5, 0.4, 0.3))
     material = native.Material(model="lambert", reflectance=(0.5, 0.4, 0.3), finish=finish)
     scene = native.Scene(instances=[native.Instance(mesh, material)],

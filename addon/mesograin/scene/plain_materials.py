@@ -7,6 +7,9 @@ from . import node_colours, textures
 
 PLAIN, METAL = "lambert", "conductor"
 
+NO_MATERIAL = {"model": PLAIN, "reflectance": (0.8, 0.8, 0.8)}
+"""What Cycles gives to what wears none."""
+
 
 @dataclasses.dataclass(frozen=True)
 class FinishValues:
@@ -210,8 +213,11 @@ def _read_what_feeds(found, material, socket):
 def _read_diffuse(found, _material, node):
     found.be_lambert(found.colour(node.inputs["Color"]))
     found.normal(node)
-    if found.number(node.inputs["Roughness"]) > 0.0:
-        found.leave_out("its roughness")
+    roughness = min(max(found.number(node.inputs["Roughness"]), 0.0), 1.0)
+    if roughness > 0.0:
+        found.set(diffuse_roughness=roughness)
+        if compat.rough_diffuse_keeps_energy():
+            found.leave_out("what its roughness sends on after a second bounce")
 
 
 def _read_glossy(found, _material, node):
