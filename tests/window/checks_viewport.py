@@ -1,6 +1,7 @@
 # What a Rendered viewport must do, tried in a real Blender window. Each check_* is a generator that driver.py runs: it
 # yields from the window's waits, and fails by AssertionError.
 import math
+import subprocess
 import time
 
 import bpy
@@ -314,6 +315,33 @@ def check_final_render_runs_beside_the_viewport(window):
     bpy.data.materials["Translucent"].mesograin.reflectance = (0.5, 0.5, 0.5)
     picture = yield from window.converged_picture(area)
     window.assert_same(picture, window.expected_picture(area))
+
+
+def check_final_render_is_that_of_blender_without_a_window(window):
+    """Bit for bit, by a model that takes random samples."""
+    area = yield from window.open("sphere")
+    scene = bpy.context.scene
+    bpy.data.materials["Translucent"].mesograin.model = "model_3"
+    scene.mesograin.samples = 3
+    scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = 61, 47, 100
+    settings = scene.render.image_settings
+    settings.file_format, settings.color_mode, settings.color_depth = "OPEN_EXR", "RGBA", "32"
+    scene.render.use_file_extension = False
+    bpy.context.preferences.view.render_display_type = "NONE"
+    bpy.ops.wm.save_as_mainfile(filepath=str(window.folder / "same.blend"), copy=True)
+    status.clear()
+    yield from window.press_f12(area)
+    yield from window.until(lambda: status.get(status.RENDER) is not None and not bpy.app.is_job_running("RENDER"))
+    bpy.data.images["Render Result"].save_render(str(window.folder / "with.exr"))
+    command = [bpy.app.binary_path, "-b", "--factory-startup", "--addons", "mesograin",
+               str(window.folder / "same.blend"), "-o", str(window.folder / "without_#.exr"), "-f", "1"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as run:
+        yield from window.until(lambda: run.poll() is not None, timeout=180.0)
+        said = run.stdout.read()
+    assert run.returncode == 0, said
+    shown, without = (window.native.read_exr(str(window.folder / name))[0] for name in ("with.exr", "without_1.exr"))
+    assert shown.shape == (47, 61, 4) and (shown[..., :3].max(axis=-1) > 0.02).mean() > 0.1
+    assert np.array_equal(shown, without), np.abs(shown - without).max()
 
 
 def check_panels_show_the_grain(window):
