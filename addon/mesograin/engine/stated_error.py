@@ -37,7 +37,7 @@ MEASURED = (
     Measured("lambert", (0.0, 0.0), (0.8, 0.8), False, False, 0.02, 0.03),
     Measured("index_matched", (1.0, 10.0), (0.9, 0.999), True, True, 0.03, 0.033, 0.036),
     Measured("index_matched", (1.0, 3.0), (0.9, 0.999), True, False, 0.03, 0.051, 0.05),
-    Measured("index_matched", (2.25, 5.69), (0.914, 0.991), False, True, 0.03, 0.044),
+    Measured("index_matched", (0.35, 6.49), (0.8, 0.999), False, True, 0.02, 0.034, 0.081),
     Measured("index_matched", (2.25, 5.69), (0.914, 0.991), False, False, 0.03, 0.052),
     Measured("dielectric", (0.2, 5.0), (0.8, 0.999), True, False, 0.035, 0.075, 0.12, eta=(1.3, 1.55)),
     Measured("dielectric", (0.11, 2.9), (0.8, 0.999), False, False, 0.04, 0.09, 0.09, eta=(1.3, 1.55)),
