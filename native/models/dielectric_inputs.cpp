@@ -7,7 +7,7 @@ namespace mesograin::models {
 
 using namespace physics;
 
-void add_dielectric(const scene::Material& material, MaterialInputs& inputs) {
+void add_reflection(const scene::Material& material, MaterialInputs& inputs) {
   if (!has_dielectric_surface(material)) return;
   inputs.uniforms["surface.eta"] = static_cast<float>(material.eta);
   inputs.uniforms["surface.roughness"] = static_cast<float>(material.roughness);
@@ -16,6 +16,10 @@ void add_dielectric(const scene::Material& material, MaterialInputs& inputs) {
     inputs.defines.emplace_back("SPECULAR");
     if (material.masking == scene::Masking::separable) inputs.defines.emplace_back("MASKING_SEPARABLE");
   }
+}
+
+void add_dielectric(const scene::Material& material, MaterialInputs& inputs) {
+  add_reflection(material, inputs);
   if (!has_rough_surface(material)) return;
   const Passage passage = rough_passage(material);
   Table table{static_cast<int>(passage.transmittance.size()), 1, {}};

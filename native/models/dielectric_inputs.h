@@ -5,6 +5,9 @@
 
 namespace mesograin::models {
 
+/// Adds what the material's surface reflects, if it is a dielectric one.
+void add_reflection(const scene::Material& material, MaterialInputs& inputs);
+
 /// Adds the material's surface, if it is a dielectric one, to what its model needs.
 void add_dielectric(const scene::Material& material, MaterialInputs& inputs);
 

@@ -10,6 +10,7 @@
 #include "models/inputs_of_models.h"
 #include "models/light_about_inputs.h"
 #include "models/prototype_inputs.h"
+#include "physics/half_space/dielectric_surface.h"
 #include "physics/physics.h"
 #include "transport/octahedron.h"
 #include "transport/stored_transport.h"
@@ -30,6 +31,13 @@ constexpr double least_albedo = 1e-9;
 // rim, are thin, however thick it is: one that nothing were seen through would be lined in black.
 constexpr double most_clear = 60.0;
 
+// Whether light is followed through single facets: into a thinner medium they would reflect much of it wholly, to one
+// another.
+bool has_facets(const scene::Material& material) { return physics::has_rough_surface(material) && material.eta > 1.0; }
+
+// What is stored is told for steps of roughness: within one nothing is traced anew.
+constexpr double alpha_step = 0.125;
+
 // The medium that is similar to the material's and scatters isotropically (van de Hulst 1980, section 14.1.3).
 transport::StoredMedium stored_medium(const scene::Material& material) {
   const glm::dvec3 sigma_s = material.scale * (1.0 - material.g) * material.sigma_s;
@@ -38,6 +46,7 @@ transport::StoredMedium stored_medium(const scene::Material& material) {
   for (int channel = 0; channel < 3; ++channel)
     medium.albedo[channel] = sigma_s[channel] > 0.0 ? sigma_s[channel] / medium.sigma_t[channel] : 0.0;
   medium.eta = material.boundary == scene::Boundary::dielectric ? material.eta : 1.0;
+  if (has_facets(material)) medium.alpha = alpha_step * std::round(material.roughness / alpha_step);
   return medium;
 }
 
@@ -213,7 +222,12 @@ MaterialInputs transport_inputs(const scene::Material& material, double /*grain_
   if (medium.grey()) inputs.defines.emplace_back("GREY");
   inputs.uniforms["stored.eta"] = static_cast<float>(medium.eta);
   if (is_walked(material)) inputs.defines.emplace_back("WALKED");
-  add_dielectric(material, inputs);
+  if (has_facets(material)) {
+    add_reflection(material, inputs);
+    inputs.defines.emplace_back("FACETS");
+  } else {
+    add_dielectric(material, inputs);
+  }
   return inputs;
 }
 

@@ -7,7 +7,6 @@
 #include <glm/geometric.hpp>
 #include <optional>
 
-#include "physics/physics.h"
 #include "transport/directions.h"
 #include "transport/near_extinctions.h"
 #include "transport/random.h"
@@ -44,27 +43,27 @@ struct Way {
   }
 };
 
-void find_way(const Body& body, double eta, glm::vec3 place, glm::vec3 direction, float longest, Random& random,
-              Way& way) {
+void find_way(const Body& body, const Interface& interface, glm::vec3 place, glm::vec3 direction, float longest,
+              Random& random, Way& way) {
   way.segments.clear();
   way.ends_outside = true;
   float length = 0.0F;
-  for (int reflection = 0; reflection <= most_reflections; ++reflection) {
+  for (int reflections = 0; reflections <= most_reflections; ++reflections) {
     const std::optional<Hit> hit = body.first_hit(place, direction);
     if (!hit || glm::dot(hit->normal, direction) <= 0.0F) return;
     length += hit->distance;
     way.segments.push_back({place, direction, length});
-    if (eta == 1.0) {
+    if (interface.matched()) {
       const std::optional<glm::vec3> entry = body.next_entry(place + hit->distance * direction, direction);
       if (!entry) return;
       place = *entry;
       continue;
     }
-    const float cosine = std::min(glm::dot(hit->normal, direction), 1.0F);
-    if (random.uniform() >= physics::fresnel_reflectance(cosine, 1.0 / eta)) return;
+    const Interface::Reflection reflection = interface.reflect(direction, hit->normal, random);
+    if (random.uniform() >= reflection.reflected) return;
     if (length > longest) break;
     place += hit->distance * direction;
-    direction = glm::normalize(direction - 2.0F * cosine * hit->normal);
+    direction = reflection.inwards;
   }
   // What is reflected for ever stays until it is scattered.
   way.ends_outside = false;
@@ -122,7 +121,7 @@ void merge(std::vector<Entry>& entries) {
 
 }  // namespace
 
-std::vector<TracedExchange> trace_exchange(const Body& body, const Grid& grid, double eta,
+std::vector<TracedExchange> trace_exchange(const Body& body, const Grid& grid, const Interface& interface,
                                            const std::vector<double>& extinctions, int across, const Effort& effort) {
   const std::size_t count = grid.places().size();
   const auto longest =
@@ -141,7 +140,7 @@ std::vector<TracedExchange> trace_exchange(const Body& body, const Grid& grid, d
         const int row = i / across;
         const glm::vec3 direction = isotropic((static_cast<float>(i % across) + random.uniform()) / across,
                                               (static_cast<float>(row) + random.uniform()) / across);
-        find_way(body, eta, grid.places()[node], direction, longest, random, way);
+        find_way(body, interface, grid.places()[node], direction, longest, random, way);
         for (std::size_t e = 0; e < extinctions.size(); ++e) add_way(grid, way, near[e], share, random, rows[e][node]);
       }
       for (std::vector<Row>& each : rows) merge(each[node].entries);

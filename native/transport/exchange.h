@@ -8,6 +8,7 @@
 #include "transport/body.h"
 #include "transport/effort.h"
 #include "transport/grid.h"
+#include "transport/interface.h"
 #include "transport/near_extinctions.h"
 
 namespace mesograin::transport {
@@ -34,7 +35,7 @@ struct TracedExchange {
 };
 
 /// One for each of `extinctions` (sigma_t per unit of the body), all from the same rays, `across` squared a node.
-std::vector<TracedExchange> trace_exchange(const Body& body, const Grid& grid, double eta,
+std::vector<TracedExchange> trace_exchange(const Body& body, const Grid& grid, const Interface& interface,
                                            const std::vector<double>& extinctions, int across, const Effort& effort);
 
 }  // namespace mesograin::transport

@@ -205,7 +205,7 @@ StoredTransport compute_transport(Walks& walks, const StoredMedium& asked, const
 
 StoredTransport compute_transport(const Body& body, const StoredMedium& medium, const Quality& quality,
                                   const Effort& effort) {
-  Walks walks(std::make_shared<Body>(body), medium.eta, quality, part_of(effort, 0.0, 0.1));
+  Walks walks(std::make_shared<Body>(body), Interface(medium.eta, medium.alpha), quality, part_of(effort, 0.0, 0.1));
   return compute_transport(walks, medium, part_of(effort, 0.1, 1.0));
 }
 

@@ -13,11 +13,12 @@
 
 namespace mesograin::transport {
 
-/// A medium in three channels that scatters isotropically, behind a smooth surface.
+/// A medium in three channels that scatters isotropically, behind a surface that is smooth or of GGX facets.
 struct StoredMedium {
   glm::dvec3 sigma_t{1.0};  ///< per unit of the body
   glm::dvec3 albedo{0.9};
   double eta = 1.0;
+  double alpha = 0.0;
 
   bool grey() const {
     return sigma_t.r == sigma_t.g && sigma_t.r == sigma_t.b && albedo.r == albedo.g && albedo.r == albedo.b;
@@ -54,7 +55,8 @@ double node_spacing(const Body& body, const Quality& quality);
 double densest_told(double spacing);
 double densest_told(const glm::vec3& spacing);
 
-/// Traces what `walks`, which have the medium's eta, do not know yet. The answer does not depend on what they know.
+/// Traces what `walks`, which have the medium's interface, do not know yet. The answer does not depend on what they
+/// know.
 StoredTransport compute_transport(Walks& walks, const StoredMedium& medium, const Effort& effort = {});
 
 /// With walks of its own.

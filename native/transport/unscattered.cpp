@@ -9,8 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "physics/physics.h"
-#include "transport/directions.h"
 #include "transport/incidence.h"
 #include "transport/octahedron.h"
 #include "transport/random.h"
@@ -78,44 +76,43 @@ struct Beam {
 };
 
 /// Where light that comes from `place` outside, reflected or refracted out, enters a body that is not convex (again).
-void enter(const Body& body, float eta, const glm::vec3& place, const glm::vec3& direction, float flux,
-           const std::vector<float>& left, std::vector<Beam>& beams) {
+void enter(const Body& body, const Interface& interface, const glm::vec3& place, const glm::vec3& direction, float flux,
+           const std::vector<float>& left, Random& random, std::vector<Beam>& beams) {
   if (body.convex() || flux * *std::max_element(left.begin(), left.end()) < least_flux) return;
   const std::optional<Hit> hit = body.first_hit(place, direction);
-  const float cosine = hit ? std::min(-glm::dot(hit->normal, direction), 1.0F) : 0.0F;
-  if (cosine <= 0.0F) return;
-  const auto entered = static_cast<float>(1.0 - physics::fresnel_reflectance(cosine, eta));
-  beams.push_back({place + hit->distance * direction, refracted(direction, hit->normal, eta), flux * entered, left});
+  if (!hit || glm::dot(hit->normal, direction) >= 0.0F) return;
+  const Interface::Entry entry = interface.enter(direction, hit->normal, random);
+  beams.push_back({place + hit->distance * direction, entry.inwards, flux * entry.passed, left});
 }
 
-void follow(const Body& body, float eta, Beam beam, Tracks& tracks, Random& random, std::vector<Beam>& beams) {
-  for (int reflection = 0; reflection <= most_reflections; ++reflection) {
+void follow(const Body& body, const Interface& interface, Beam beam, Tracks& tracks, Random& random,
+            std::vector<Beam>& beams) {
+  for (int reflections = 0; reflections <= most_reflections; ++reflections) {
     const std::optional<Hit> hit = body.first_hit(beam.place, beam.direction);
     if (!hit || glm::dot(hit->normal, beam.direction) <= 0.0F) return;
     tracks.add(beam.place, beam.direction, hit->distance, beam.flux, beam.left, random);
     beam.place += hit->distance * beam.direction;
-    if (eta == 1.0F) {
+    if (interface.matched()) {
       const std::optional<glm::vec3> entry = body.next_entry(beam.place, beam.direction);
       if (!entry) return;
       beam.place = *entry;
       continue;
     }
-    const float cosine = std::min(glm::dot(hit->normal, beam.direction), 1.0F);
-    const auto reflected = static_cast<float>(physics::fresnel_reflectance(cosine, 1.0 / eta));
-    if (reflected < 1.0F)
-      enter(body, eta, beam.place, refracted(beam.direction, -hit->normal, 1.0F / eta), beam.flux * (1.0F - reflected),
-            beam.left, beams);
-    beam.flux *= reflected;
+    const Interface::Reflection reflection = interface.reflect(beam.direction, hit->normal, random);
+    if (reflection.reflected < 1.0F)
+      enter(body, interface, beam.place, reflection.beyond, beam.flux * (1.0F - reflection.reflected), beam.left,
+            random, beams);
+    beam.flux *= reflection.reflected;
     if (beam.flux * *std::max_element(beam.left.begin(), beam.left.end()) < least_flux) return;
-    beam.direction = glm::normalize(beam.direction - 2.0F * cosine * hit->normal);
+    beam.direction = reflection.inwards;
   }
 }
 
 }  // namespace
 
-void unscattered_light(const Body& body, const Grid& grid, double eta, const std::vector<double>& extinctions,
-                       int across, const KeepLight& keep, const Effort& effort) {
-  const auto index = static_cast<float>(eta);
+void unscattered_light(const Body& body, const Grid& grid, const Interface& interface,
+                       const std::vector<double>& extinctions, int across, const KeepLight& keep,
+                       const Effort& effort) {
   run_pieces(effort, octahedron_texels, [&](std::size_t texel) {
     const Incidence incidence(body, octahedron_direction(static_cast<int>(texel)));
     const glm::vec3 towards = -incidence.to_light();
@@ -128,17 +125,16 @@ void unscattered_light(const Body& body, const Grid& grid, double eta, const std
                                               (static_cast<float>(row) + random.uniform()) / count);
       const std::optional<Hit> hit = body.first_hit(start, towards);
       if (!hit) continue;
-      const float cosine = std::clamp(-glm::dot(hit->normal, towards), 0.0F, 1.0F);
-      const auto entered = static_cast<float>(1.0 - physics::fresnel_reflectance(cosine, eta));
-      const glm::vec3 inwards = eta == 1.0 ? towards : refracted(towards, hit->normal, index);
+      const Interface::Entry entry = interface.enter(towards, hit->normal, random);
       const glm::vec3 place = start + hit->distance * towards;
       const std::vector<float> whole(extinctions.size(), 1.0F);
-      std::vector<Beam> beams = {{place, inwards, entered, whole}};
-      if (eta != 1.0) enter(body, index, place, towards + 2.0F * cosine * hit->normal, 1.0F - entered, whole, beams);
+      std::vector<Beam> beams = {{place, entry.inwards, entry.passed, whole}};
+      if (!interface.matched())
+        enter(body, interface, place, entry.mirrored, 1.0F - entry.passed, whole, random, beams);
       for (int turn = 0; turn < most_beams && !beams.empty(); ++turn) {
         Beam beam = std::move(beams.back());
         beams.pop_back();
-        follow(body, index, std::move(beam), tracks, random, beams);
+        follow(body, interface, std::move(beam), tracks, random, beams);
       }
     }
     std::vector<float> radiance = tracks.take();

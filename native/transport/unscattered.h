@@ -8,6 +8,7 @@
 #include "transport/body.h"
 #include "transport/effort.h"
 #include "transport/grid.h"
+#include "transport/interface.h"
 
 namespace mesograin::transport {
 
@@ -17,7 +18,7 @@ namespace mesograin::transport {
 using KeepLight = std::function<void(std::size_t, const std::vector<float>&)>;
 
 /// `extinctions` are sigma_t per unit of the body; `across` rays squared for each direction.
-void unscattered_light(const Body& body, const Grid& grid, double eta, const std::vector<double>& extinctions,
-                       int across, const KeepLight& keep, const Effort& effort);
+void unscattered_light(const Body& body, const Grid& grid, const Interface& interface,
+                       const std::vector<double>& extinctions, int across, const KeepLight& keep, const Effort& effort);
 
 }  // namespace mesograin::transport

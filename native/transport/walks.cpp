@@ -10,9 +10,9 @@
 
 namespace mesograin::transport {
 
-Walks::Walks(std::shared_ptr<const Body> body, double eta, const Quality& quality, const Effort& effort)
+Walks::Walks(std::shared_ptr<const Body> body, const Interface& interface, const Quality& quality, const Effort& effort)
     : body_(std::move(body)),
-      eta_(eta),
+      interface_(interface),
       quality_(quality),
       grid_(*body_, quality.nodes, quality.spacing, part_of(effort, 0.0, 0.5)),
       surface_(surface_distances(*body_, grid_, part_of(effort, 0.5, 1.0))) {}
@@ -40,9 +40,9 @@ void Walks::trace(const std::vector<double>& extinctions, const Effort& effort) 
               known_logarithm(radiance[deputy * all.size() + i * near_extinctions + e]);
       }
   };
-  unscattered_light(*body_, grid_, eta_, all, quality_.light_across, keep, part_of(effort, 0.0, 0.7));
+  unscattered_light(*body_, grid_, interface_, all, quality_.light_across, keep, part_of(effort, 0.0, 0.7));
   std::vector<TracedExchange> exchanges =
-      trace_exchange(*body_, grid_, eta_, missing, quality_.way_across, part_of(effort, 0.7, 1.0));
+      trace_exchange(*body_, grid_, interface_, missing, quality_.way_across, part_of(effort, 0.7, 1.0));
   for (std::size_t i = 0; i < missing.size(); ++i) {
     steps[i].exchange = std::move(exchanges[i]);
     steps_.emplace(missing[i], std::move(steps[i]));

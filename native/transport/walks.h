@@ -10,6 +10,7 @@
 #include "transport/effort.h"
 #include "transport/exchange.h"
 #include "transport/grid.h"
+#include "transport/interface.h"
 #include "transport/multiple.h"
 #include "transport/surface.h"
 
@@ -27,13 +28,12 @@ struct Quality {
 class Walks {
  public:
   /// Of the effort the seed stays.
-  Walks(std::shared_ptr<const Body> body, double eta, const Quality& quality, const Effort& effort);
+  Walks(std::shared_ptr<const Body> body, const Interface& interface, const Quality& quality, const Effort& effort);
 
   const Body& body() const { return *body_; }
   const std::shared_ptr<const Body>& shared_body() const { return body_; }
   const Grid& grid() const { return grid_; }
   const std::vector<float>& surface() const { return surface_; }  ///< surface_distances
-  double eta() const { return eta_; }
   const Quality& quality() const { return quality_; }
 
   /// Traces what is not known yet for `extinctions`, sigma_t per unit of the body.
@@ -56,7 +56,7 @@ class Walks {
   const Step& step(double sigma_t) const;
 
   std::shared_ptr<const Body> body_;
-  double eta_;
+  Interface interface_;
   Quality quality_;
   Grid grid_;
   std::vector<float> surface_;

@@ -61,9 +61,9 @@ std::string describe_body(const Order& order) {
   std::string stretch;
   for (int column = 0; column < 3; ++column)
     for (int row = 0; row < 3; ++row) stretch += fmt::format(" {:.9g}", order.stretch[column][row]);
-  return fmt::format("computed by: {}\nmesh: {} vertices, {} triangles, {}\nstretch:{}\neta: {}\n", text_digest,
-                     order.mesh->positions().size(), order.mesh->triangles().size(), shape.name(), stretch,
-                     order.medium.eta);
+  return fmt::format("computed by: {}\nmesh: {} vertices, {} triangles, {}\nstretch:{}\neta: {}\nalpha: {}\n",
+                     text_digest, order.mesh->positions().size(), order.mesh->triangles().size(), shape.name(), stretch,
+                     order.medium.eta, order.medium.alpha);
 }
 
 std::string describe(const Quality& quality) {
@@ -139,7 +139,7 @@ std::shared_ptr<Walks> Works::walks(const Job& job, const Quality& quality, cons
   // A mesh that is nothing for it is found out by the first of its walks; the others share the body.
   const std::shared_ptr<Walks> other = shelf_.find(job.about_body, describe(coarse));
   const auto body = other ? other->shared_body() : std::make_shared<const Body>(*job.order.mesh, job.order.stretch);
-  known = std::make_shared<Walks>(body, job.order.medium.eta, quality, effort);
+  known = std::make_shared<Walks>(body, Interface(job.order.medium.eta, job.order.medium.alpha), quality, effort);
   shelf_.put(job.about_body, describe(quality), known);
   return known;
 }

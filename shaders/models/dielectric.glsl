@@ -1,6 +1,6 @@
 // A grain's dielectric surface: what it reflects, and what it lets in and out. What enters is what was not reflected.
 // Not physical: light that meets a second facet counts as not reflected, so it enters; what has entered goes on as below a
-// smooth surface. A smooth surface is a mirror, in which a light without extent shows nothing.
+// smooth surface, but in the model `transport`. A smooth surface is a mirror, in which a light without extent shows nothing.
 //
 // What is chosen at compile time (physics::add_dielectric):
 //   REFRACTION           light is refracted and, if the surface is smooth, follows Fresnel

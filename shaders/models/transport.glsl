@@ -1,11 +1,12 @@
 // The model `transport`: what light does inside this very mesh, found beforehand by rays in it and stored as the source function at nodes of a
 // grid, for light from anywhere. The view ray is followed through the grain, and once more from where it is reflected inside.
-// Not physical: a rough surface is smooth from inside; scattered light that has left is seen through what it enters, but lights nothing there;
-// scattering is isotropic, by similarity, but where it is walked.
+// Not physical: where light is walked a rough surface is smooth from inside; scattered light that has left is seen through what it enters, but
+// lights nothing there; scattering is isotropic, by similarity, but where it is walked.
 //
 // What is chosen at compile time (models::transport_inputs), besides what dielectric.glsl names:
 //   CLEAR                so much crosses the grain unscattered that it is seen
 //   WALKED               light scatters forwards or backwards: what similarity does not tell is found by walks
+//   FACETS               the surface is rough: each sample looks through one of its facets
 //   CONVEX               no line leaves the grain and enters it again
 //   MANY_TERMS           more of them: the grain is not of the thickest
 //   GREY                 red, green and blue are the same medium, of which one is stored
@@ -25,6 +26,7 @@
 #include "physics/prelude.glsl"
 #include "physics/elementary.glsl"
 #include "physics/fresnel.glsl"
+#include "physics/ggx.glsl"
 #include "physics/henyey_greenstein.glsl"
 #include "scene/world.glsl"
 
@@ -176,6 +178,41 @@ const float MOST_AGAIN = 0.6;
 
 float later_again(float again) { return min(again, MOST_AGAIN); }
 
+#ifdef REFRACTION
+// Where the view ray meets the surface from inside, for the i-th time; drawn anew with each sample if it is made of facets.
+vec3 facet_outwards(vec3 place, vec3 direction, int i) {
+  vec3 normal = outwards_at(place);
+#ifdef FACETS
+  if (dot(normal, direction) <= 0.0) return normal;
+  vec4 random = vec4(pcg4d(uvec4(uvec2(gl_FragCoord.xy), 6u + uint(i), uint(sample_index))) >> 8u) * (1.0 / 16777216.0);
+  // Seen from inside they lie upside down, and are as likely.
+  return ggx_visible_facet(normal, direction, surface.roughness, random.xy);
+#else
+  return normal;
+#endif
+}
+
+// How much of it stays inside.
+float kept_inside(vec3 place, vec3 direction, vec3 facet) {
+  float cosine = clamp(dot(facet, direction), 0.0, 1.0);
+#ifdef FACETS
+  float mu_beyond = dot(outwards_at(place), refract(direction, -facet, stored.eta));
+  return dielectric_facet_kept(cosine, mu_beyond, stored.eta, surface.roughness);
+#else
+  return fresnel_reflectance(cosine, 1.0 / stored.eta);
+#endif
+}
+
+// Where it goes on.
+vec3 reflected_inwards(vec3 place, vec3 direction, vec3 facet) {
+#ifdef FACETS
+  return reflected_by_facet(outwards_at(place), facet, direction);
+#else
+  return direction - 2.0 * dot(facet, direction) * facet;
+#endif
+}
+#endif
+
 #ifndef CONVEX
 // How much of the radiance that goes out at a place, of a ray from the viewer, is some that came out of the grain elsewhere; the ray goes on there.
 float comes_in_again(inout vec3 place, inout vec3 direction) {
@@ -238,16 +275,15 @@ void follow_reflected(vec3 place, vec3 direction, float way, Spectrum left, int 
     ++piece_count;
     Spectrum passed = exp(-SPECTRUM(stored.sigma_t) * way);
     place += way * direction;
-    vec3 normal = outwards_at(place);
-    float cosine = dot(normal, direction);
-    float again = cosine > 0.0 ? fresnel_reflectance(min(cosine, 1.0), 1.0 / stored.eta) : 0.0;
+    vec3 facet = facet_outwards(place, direction, i);
+    float again = dot(facet, direction) > 0.0 ? kept_inside(place, direction, facet) : 0.0;
     left *= passed * again;
     if (largest(left) < LEAST_PASSED) return;
     if (i + 1 == ways) {
       lasts[last_count] = Last(place, left * (1.0 - passed) / (1.0 - later_again(again) * passed));
       ++last_count;
     }
-    direction = direction - 2.0 * cosine * normal;
+    direction = reflected_inwards(place, direction, facet);
   }
 }
 
@@ -302,11 +338,41 @@ Radiance radiance_inside() {
 vec3 place_below;
 vec3 direction_below;
 
+#ifdef FACETS
+// Through one of the facets that the viewer sees. What it does not reflect, or reflects to another, goes on inside: as specular_reflection has it.
+// Returns how much that is.
+float look_through_facet(SurfacePoint point, float mu, out vec3 inwards) {
+#ifdef WALKED
+  vec2 random = vec2(pcg4d(uvec4(uvec2(gl_FragCoord.xy), 5u, uint(sample_index))).xy >> 8u) * (1.0 / 16777216.0);
+#else
+  vec2 random = low_discrepancy_beside_pixel(uint(sample_index), pcg4d(uvec4(uvec2(gl_FragCoord.xy), 5u, 0u)).xy);
+#endif
+  vec3 facet = ggx_visible_facet(point.normal, point.to_viewer, surface.roughness, random);
+  float cosine = clamp(dot(facet, point.to_viewer), 0.0, 1.0);
+  inwards = refracted_by_facet(point.normal, facet, point.to_viewer, cosine, stored.eta);
+#ifdef MASKING_SEPARABLE
+  const bool correlated = false;
+#else
+  const bool correlated = true;
+#endif
+  float mu_mirrored = dot(point.normal, 2.0 * cosine * facet - point.to_viewer);
+  return dielectric_facet_passed(cosine, mu_mirrored, mu, stored.eta, surface.roughness, correlated);
+}
+#endif
+
 Outwards look_outwards(SurfacePoint point) {
-  Outwards outwards = through_surface(point);
   mat3 to_body = grain_to_body();
   place_below = to_body * point.on_triangle * stored.units;
-  direction_below = normalize(to_body * ((outwards.mu * point.normal - point.to_viewer) / stored.eta - outwards.mu_refracted * point.normal));
+#ifdef FACETS
+  float mu = clamp(dot(point.normal, point.to_viewer), 0.0, 1.0);
+  vec3 inwards;
+  float passed = look_through_facet(point, mu, inwards);
+  Outwards outwards = Outwards(mu, clamp(-dot(inwards, point.normal), 0.0, 1.0), passed);
+#else
+  Outwards outwards = through_surface(point);
+  vec3 inwards = (outwards.mu * point.normal - point.to_viewer) / stored.eta - outwards.mu_refracted * point.normal;
+#endif
+  direction_below = normalize(to_body * inwards);
 #ifndef WALKED
   follow(place_below, direction_below);
 #endif
@@ -367,10 +433,10 @@ vec3 crossing_light(SurfacePoint point, Outwards outwards) {
     vec3 passed = exp(-sigma_t * way);
     left *= passed;
     place += way * direction;
-    vec3 normal = outwards_at(place);
-    float cosine = clamp(dot(normal, direction), 0.0, 1.0);
 #ifdef REFRACTION
-    float again = fresnel_reflectance(cosine, 1.0 / stored.eta);
+    vec3 normal = facet_outwards(place, direction, i);
+    float cosine = clamp(dot(normal, direction), 0.0, 1.0);
+    float again = kept_inside(place, direction, normal);
     float sine_squared = stored.eta * stored.eta * (1.0 - cosine) * (1.0 + cosine);
     vec3 outside = normalize(stored.eta * (direction - cosine * normal) + sqrt(max(1.0 - sine_squared, 0.0)) * normal);
     bool last = i + 1 == MOST_WAYS || max(left.r, max(left.g, left.b)) * again < LEAST_PASSED;
@@ -380,7 +446,7 @@ vec3 crossing_light(SurfacePoint point, Outwards outwards) {
     sum += left * leaves * seen_behind(to_world * outside);
     if (last) break;
     left *= again;
-    direction = direction - 2.0 * cosine * normal;
+    direction = reflected_inwards(place, direction, normal);
 #else
 #ifndef CONVEX
     if (i + 1 < MOST_WAYS && comes_in_again(place, direction) > 0.0) continue;

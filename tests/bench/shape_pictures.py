@@ -1,7 +1,7 @@
 """Makes a folder for shapes.py: the referee's pictures of grains, by shape, radius, index, light and albedo.
 
-    shape_pictures.py REFEREE FOLDER [--shapes S ...] [--radii R ...] [--indices ETA ...] [--g G] [--paths N] [--size N]
-                      [--coloured RED GREEN BLUE]
+    shape_pictures.py REFEREE FOLDER [--shapes S ...] [--radii R ...] [--indices ETA ...] [--g G] [--roughness ALPHA]
+                      [--paths N] [--size N] [--coloured RED GREEN BLUE]
 
 REFEREE is the program mesograin-referee. What FOLDER holds already is not traced again; manifest.json tells of all.
 A radius is that of the sphere of equal volume, in mean free paths.
@@ -125,6 +125,7 @@ def make(options, shape, radius, eta, light):
         geometry, size = {"shape": "mesh", "file": str(file)}, (0.75 * volume(file) / numpy.pi) ** (1 / 3)
     sigma_s, sigma_a = medium(options, radius, size)
     name = f"{shape}_e{eta:g}_R{radius:g}" + (f"_g{options.g:g}" if options.g else "") + \
+        (f"_r{options.roughness:g}" if options.roughness else "") + \
         ("_coloured" + "_".join(f"{each:g}" for each in options.coloured) if options.coloured else "") + f"_{light}"
     picture = options.folder / f"{name}.exr"
     if not picture.exists():
@@ -133,11 +134,13 @@ def make(options, shape, radius, eta, light):
             "geometry": geometry, "camera": CAMERA, "resolution": [options.size, options.size],
             "lights": [{"type": "distant", "direction_to_light": LIGHTS[light], "irradiance_linear_rgb": 1}],
             "material": {"kind": "medium", "sigma_s": sigma_s, "sigma_a": sigma_a, "g": options.g, "eta": eta,
-                         "specular": False, "boundary": "index_matched" if eta == 1.0 else "dielectric"}}))
+                         "roughness": options.roughness, "specular": False,
+                         "boundary": "index_matched" if eta == 1.0 else "dielectric"}}))
         command = [options.referee, "render", described, "-o", picture, "-n", str(options.paths)]
         subprocess.run([*command, "--threads", str(options.threads)], check=True, stderr=subprocess.DEVNULL)
         described.unlink()
-    about = {"file": picture.name, "mesh": mesh, "eta": eta, "g": options.g, "irradiance": 1,
+    about = {"file": picture.name, "mesh": mesh, "eta": eta, "g": options.g,
+             "roughness": options.roughness, "irradiance": 1,
              "radius_in_mean_free_paths": radius, "direction_to_light": LIGHTS[light],
              "resolution": [options.size, options.size]}
     if shape == "sphere":
@@ -157,6 +160,7 @@ def main():
     parser.add_argument("--radii", nargs="+", type=float, default=[1, 3, 10])
     parser.add_argument("--indices", nargs="+", type=float, default=[1.3, 1.5], metavar="ETA")
     parser.add_argument("--g", type=float, default=0.0)
+    parser.add_argument("--roughness", type=float, default=0.0, metavar="ALPHA", help="GGX's, not of spheres")
     parser.add_argument("--coloured", nargs=3, type=float, metavar=("RED", "GREEN", "BLUE"),
                         help="red, green and blue are so many times the radius asked for, of unlike albedo")
     parser.add_argument("--paths", type=int, default=256, help="for a pixel (default: 256)")

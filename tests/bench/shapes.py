@@ -34,9 +34,9 @@ def compare(picture, truth):
 
 def of_front(shapes, image):
     """By what a relative L1 of this image is multiplied to be one of the brightness from the front; None if unknown."""
-    same = ("mesh", "eta", "g", "sigma_s", "sigma_a", "resolution", "irradiance")
+    same = ("mesh", "eta", "g", "roughness", "sigma_s", "sigma_a", "resolution", "irradiance")
     for other in shapes.images:
-        if light_of(other) == "front" and all(other[key] == image[key] for key in same) and \
+        if light_of(other) == "front" and all(other.get(key) == image.get(key) for key in same) and \
                 other.get("channel") == image.get("channel"):
             return float(shapes.truth(image).sum() / shapes.truth(other).sum())
     return None
@@ -73,7 +73,7 @@ class Shapes:
             "lights": [{"type": "distant", "direction_to_light": image["direction_to_light"],
                         "irradiance_linear_rgb": image["irradiance"]}],
             "material": {"kind": "subsurface", "sigma_s": image["sigma_s"], "sigma_a": image["sigma_a"],
-                         "g": image["g"], "eta": eta, "specular": False,
+                         "g": image["g"], "eta": eta, "specular": False, "roughness": image.get("roughness", 0.0),
                          "boundary": "index_matched" if eta == 1.0 else "dielectric", **changed}}, model=model)
         view = self._native.View(width, height)
         view.set_scene(scene)
@@ -113,7 +113,8 @@ def measure(shapes, images, models, taps, samples, pictures=None):
                 figures["of_front"] = share * figures["relative_l1"]
             yield {"file": image["file"], "shape": pathlib.Path(image["mesh"]).stem, "eta": image["eta"],
                    "radius": image["radius_in_mean_free_paths"], "light": light_of(image),
-                   "albedo": albedo(image), "g": image["g"], "model": model, **figures,
+                   "albedo": albedo(image), "g": image["g"], "roughness": image.get("roughness", 0.0), "model": model,
+                   **figures,
                    **({} if noise is None else {"noise": share_of_noise(noise, truth)})}
 
 
@@ -128,18 +129,22 @@ def table(rows):
     models = sorted({row["model"] for row in rows})
     lights = [light for light in ("front", "side", "back") if any(row["light"] == light for row in rows)]
     columns = [(model, light) for model in models for light in lights]
-    yield "| shape | eta | g | albedo | radius | " + " | ".join(f"{model} {light}" for model, light in columns) + " |"
-    yield "|---" * (5 + len(columns)) + "|"
-    cases = {(row["shape"], row["eta"], row["g"], round(row["albedo"], 6), row["radius"]): {} for row in rows}
+    heads = " | ".join(f"{model} {light}" for model, light in columns)
+    yield f"| shape | eta | g | roughness | albedo | radius | {heads} |"
+    yield "|---" * (6 + len(columns)) + "|"
+
+    def case_of(row):
+        return tuple(row[key] for key in ("shape", "eta", "g", "roughness")) + (round(row["albedo"], 6), row["radius"])
+    cases = {case_of(row): {} for row in rows}
     for row in rows:
-        case = cases[row["shape"], row["eta"], row["g"], round(row["albedo"], 6), row["radius"]]
+        case = cases[case_of(row)]
         noise = f" (noise {100.0 * row['noise']:.1f})" if "noise" in row else ""
         told = row["light"] == "back" and "of_front" in row
         front = f" = {100.0 * row['of_front']:.1f} of front" if told else ""
         case[row["model"], row["light"]] = f"{100.0 * row['relative_l1']:.1f} / {row['total']:.2f}{front}{noise}"
-    for (shape, eta, g, of_channel, radius), case in sorted(cases.items()):
+    for (shape, eta, g, roughness, of_channel, radius), case in sorted(cases.items()):
         figures = " | ".join(case.get(column, "") for column in columns)
-        yield f"| {shape} | {eta:g} | {g:g} | {of_channel:g} | {radius:g} | {figures} |"
+        yield f"| {shape} | {eta:g} | {g:g} | {roughness:g} | {of_channel:g} | {radius:g} | {figures} |"
 
 
 def main():

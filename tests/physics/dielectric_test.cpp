@@ -74,6 +74,56 @@ TEST(DielectricSurface, TakesInWhatItDoesNotReflect) {
   }
 }
 
+// Of the facets that are seen at the cosine mu, evenly drawn; `visit(facet, to_viewer)`.
+template <class Visit>
+double mean_over_facets(double mu, double alpha, const Visit& visit) {
+  constexpr int across = 64;
+  const real3 to_viewer(std::sqrt(1.0 - mu * mu), 0.0, mu);
+  double sum = 0.0;
+  for (int i = 0; i < across * across; ++i) {
+    const int row = i / across;
+    sum += visit(
+        ggx_visible_facet(real3(0.0, 0.0, 1.0), to_viewer, alpha, {(i % across + 0.5) / across, (row + 0.5) / across}),
+        to_viewer);
+  }
+  return sum / (across * across);
+}
+
+double passed_by_facets(double mu, double eta, double alpha) {
+  return mean_over_facets(mu, alpha, [&](const real3& facet, const real3& to_viewer) {
+    const double on_facet = dot(facet, to_viewer);
+    return dielectric_facet_passed(on_facet, 2.0 * on_facet * facet.z - mu, mu, eta, alpha, true);
+  });
+}
+
+TEST(DielectricSurface, LetsThroughSingleFacetsWhatItDoesNotReflect) {
+  for (const double eta : {1.05, 1.3, 2.0})
+    for (const double alpha : {0.1, 0.4, 1.0})
+      for (const double mu : {0.05, 0.4, 1.0})
+        EXPECT_NEAR(passed_by_facets(mu, eta, alpha), RoughDielectric(eta, alpha, Masking::correlated).entering(mu),
+                    2e-3)
+            << eta << " " << alpha << " " << mu;
+}
+
+// Light that is even everywhere has eta^2 the radiance inside (Nicodemus 1963).
+TEST(DielectricSurface, LetsOutThroughSingleFacetsAsMuchAsIn) {
+  for (const double eta : {1.05, 1.1, 1.3, 1.8})
+    for (const double alpha : {0.06, 0.125, 0.25, 0.5}) {
+      double enters = 0.0, leaves = 0.0;
+      for (const QuadratureNode& node : gauss_legendre(32)) {
+        const double mu = std::sqrt(node.x);  // by its cosine
+        enters += node.weight * passed_by_facets(mu, eta, alpha);
+        leaves += node.weight * mean_over_facets(mu, alpha, [&](const real3& facet, const real3& along) {
+                    const double on_facet = dot(facet, along), beyond = 1.0 - eta * eta * (1.0 - on_facet * on_facet);
+                    const double mu_beyond =
+                        eta * (mu - on_facet * facet.z) + std::sqrt(std::max(beyond, 0.0)) * facet.z;
+                    return eta * eta * (1.0 - dielectric_facet_kept(on_facet, mu_beyond, eta, alpha));
+                  });
+      }
+      EXPECT_NEAR(leaves / enters, 1.0, 0.016) << eta << " " << alpha;
+    }
+}
+
 // Reflected plus what leaves again of a half-space that does not absorb, at each angle of the light.
 double sent_back(const Material& material, double mu) {
   const Passage passage = rough_passage(material);

@@ -22,7 +22,7 @@ constexpr double least_power = 1e-4;
 
 }  // namespace
 
-MeshLight::MeshLight(const MeshBody& body, const Interface& interface, const scene::DirectionalLight& sun,
+MeshLight::MeshLight(const MeshBody& body, const RoughInterface& interface, const scene::DirectionalLight& sun,
                      bool directions, std::uint64_t seed, unsigned threads)
     : lower_(body.lower()), parts_(batches_) {
   const glm::dvec3 extent = body.upper() - body.lower();
@@ -98,8 +98,8 @@ void MeshLight::follow(const glm::dvec3& place, const glm::dvec3& direction, dou
   }
 }
 
-void MeshLight::trace(const MeshBody& body, const Interface& interface, const scene::DirectionalLight& sun, Rng& rng,
-                      Batch& batch) const {
+void MeshLight::trace(const MeshBody& body, const RoughInterface& interface, const scene::DirectionalLight& sun,
+                      Rng& rng, Batch& batch) const {
   std::vector<float> kept_weights(batch.directions.empty() ? 0 : batch.tracks.size());
   const glm::dvec3 middle = 0.5 * (body.lower() + body.upper());
   const double reach = 0.5 * glm::distance(body.lower(), body.upper());
@@ -114,9 +114,7 @@ void MeshLight::trace(const MeshBody& body, const Interface& interface, const sc
     glm::dvec3 place = middle + reach * (u * first + v * second + 1.5 * to_light), direction = -to_light;
     double power = 4 * reach * reach / (1.0 * across * across), left = 1;
     while (const std::optional<MeshHit> hit = body.first_hit(place, direction)) {
-      const double cosine = glm::dot(hit->normal, direction);
-      const bool inside = cosine > 0;
-      if (inside) {
+      if (glm::dot(hit->normal, direction) > 0) {
         follow(place, direction, hit->distance, [&](std::size_t at, double begin, double end) {
           const auto weight = static_cast<float>(power * left * std::exp(-begin) * -std::expm1(begin - end));
           batch.tracks[at] += weight;
@@ -129,12 +127,7 @@ void MeshLight::trace(const MeshBody& body, const Interface& interface, const sc
         if (left < least_power) break;
       }
       place += hit->distance * direction;
-      const double reflectance =
-          inside ? interface.reflectance_from_inside(cosine) : interface.reflectance_from_outside(-cosine);
-      if (rng.uniform() < reflectance)
-        direction -= 2 * cosine * hit->normal;
-      else if (!interface.matched())
-        direction = refract(direction, inside ? -hit->normal : hit->normal, inside ? 1 / interface.eta : interface.eta);
+      direction = interface.beyond(direction, hit->normal, rng);
     }
   }
 }

@@ -6,9 +6,9 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
-#include "interface.h"
 #include "mesh_body.h"
 #include "rng.h"
+#include "rough_interface.h"
 #include "scene/light.h"
 
 namespace mesograin::referee {
@@ -16,7 +16,7 @@ namespace mesograin::referee {
 class MeshLight {
  public:
   /// For irradiance 1 on a plane that faces the sun. `directions`: they are to be known too.
-  MeshLight(const MeshBody& body, const Interface& interface, const scene::DirectionalLight& sun, bool directions,
+  MeshLight(const MeshBody& body, const RoughInterface& interface, const scene::DirectionalLight& sun, bool directions,
             std::uint64_t seed, unsigned threads);
 
   /// Mean over the part of the place's cell that is inside.
@@ -36,7 +36,7 @@ class MeshLight {
 
   template <class Visit>
   void follow(const glm::dvec3& place, const glm::dvec3& direction, double length, const Visit& visit) const;
-  void trace(const MeshBody& body, const Interface& interface, const scene::DirectionalLight& sun, Rng& rng,
+  void trace(const MeshBody& body, const RoughInterface& interface, const scene::DirectionalLight& sun, Rng& rng,
              Batch& batch) const;
   std::vector<double> volumes(const MeshBody& body) const;
   std::size_t cell(const glm::dvec3& place) const;

@@ -21,7 +21,7 @@ constexpr double thinnest = 1e-6;
 struct Grain {
   double sigma_t;
   MeshBody body;
-  Interface interface;
+  RoughInterface interface;
   double g;
   double albedo = 0;     ///< the largest of its channels
   glm::dvec3 ratios{0};  ///< of each channel's albedo to it; 0 for channels that are another grain's
@@ -29,7 +29,7 @@ struct Grain {
 
   Grain(const PictureCase& setup, double extinction)
       : sigma_t(extinction), body(*setup.mesh, setup.mesh_to_world, extinction), interface {
-    setup.material.boundary == scene::Boundary::dielectric ? setup.material.eta : 1.0
+    {setup.material.boundary == scene::Boundary::dielectric ? setup.material.eta : 1.0}, setup.material.roughness
   }, g(setup.material.g) {
     for (const scene::DirectionalLight& sun : setup.lights)
       suns.emplace_back(body, interface, sun, g != 0, setup.seed, setup.threads);
@@ -71,18 +71,10 @@ glm::dvec3 gathered(const Grain& grain, const std::vector<scene::DirectionalLigh
     if (!scatters) {
       const std::optional<MeshHit> hit = grain.body.first_hit(place, direction);
       if (!hit) break;
-      const double cosine = glm::dot(hit->normal, direction);
-      const bool inside = cosine > 0;
-      scatters = inside && flight < hit->distance;
+      scatters = glm::dot(hit->normal, direction) > 0 && flight < hit->distance;
       if (!scatters) {
         place += hit->distance * direction;
-        const double reflectance = inside ? grain.interface.reflectance_from_inside(cosine)
-                                          : grain.interface.reflectance_from_outside(-cosine);
-        if (rng.uniform() < reflectance)
-          direction -= 2 * cosine * hit->normal;
-        else if (!grain.interface.matched())
-          direction = refract(direction, inside ? -hit->normal : hit->normal,
-                              inside ? 1 / grain.interface.eta : grain.interface.eta);
+        direction = grain.interface.beyond(direction, hit->normal, rng);
         continue;
       }
     }
@@ -118,11 +110,18 @@ Picture trace_mesh_picture(const PictureCase& setup, const std::function<void()>
       const glm::dvec3 origin = grain.sigma_t * ray.origin;
       const std::optional<MeshHit> hit = grain.body.first_hit(origin, ray.direction);
       if (!hit) return std::nullopt;
-      const double cosine = -glm::dot(hit->normal, ray.direction), eta = grain.interface.eta;
+      const double cosine = -glm::dot(hit->normal, ray.direction), eta = grain.interface.smooth.eta;
       if (cosine <= 0) return std::nullopt;
       // Radiance changes by the square of the index (Nicodemus, "Radiance", 1963).
-      const double passed = (1 - grain.interface.reflectance_from_outside(cosine)) / (eta * eta);
-      const glm::dvec3 inwards = eta == 1 ? ray.direction : refract(ray.direction, hit->normal, eta);
+      double passed = 1 / (eta * eta);
+      glm::dvec3 inwards;
+      if (grain.interface.rough()) {
+        inwards = grain.interface.beyond(ray.direction, hit->normal, rng);
+        if (glm::dot(inwards, hit->normal) >= 0) passed = 0;
+      } else {
+        inwards = eta == 1 ? ray.direction : refract(ray.direction, hit->normal, eta);
+        passed *= 1 - grain.interface.smooth.reflectance_from_outside(cosine);
+      }
       if (passed > 0)
         radiance += passed * gathered(grain, setup.lights, origin + hit->distance * ray.direction, inwards, rng);
     }

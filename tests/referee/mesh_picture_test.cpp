@@ -12,6 +12,7 @@
 #include "io/scene_json.h"
 #include "picture.h"
 #include "picture_file.h"
+#include "rough_interface.h"
 #include "scene/sphere.h"
 
 namespace mesograin::referee {
@@ -58,6 +59,32 @@ TEST(MeshPicture, OfASphereIsTheSpheres) {
       EXPECT_LT(difference / other, 0.01 + 1.2 * noise / other) << "eta " << eta << ", channel " << channel;
     }
   }
+}
+
+// Of light that is even everywhere outside, and eta^2 as bright inside (Nicodemus, "Radiance", 1963).
+double crosses(const RoughInterface& surface, double from, std::uint64_t seed) {
+  constexpr int count = 200000;
+  const glm::dvec3 normal(0.36, 0.48, 0.8);
+  Rng rng(seed);
+  int crossed = 0;
+  for (int i = 0; i < count; ++i) {
+    const glm::dvec3 direction = sample_cosine(from * normal, rng);
+    if (glm::dot(surface.beyond(direction, normal, rng), from * normal) > 0) ++crossed;
+  }
+  return 1.0 * crossed / count;
+}
+
+TEST(RoughInterface, LetsOutWhatItLetsIn) {
+  for (const double eta : {1.1, 1.5, 1.9})
+    for (const double alpha : {0.05, 0.3, 0.8}) {
+      const RoughInterface surface{{eta}, alpha};
+      EXPECT_NEAR(eta * eta * crosses(surface, 1, 1), crosses(surface, -1, 2), 0.012) << eta << ", " << alpha;
+    }
+}
+
+TEST(RoughInterface, IsSmoothWhereItsFacetsLieFlat) {
+  for (const double eta : {1.1, 1.5, 1.9})
+    EXPECT_NEAR(crosses({{eta}, 1e-4}, -1, 3), crosses({{eta}, 0}, -1, 4), 0.003) << eta;
 }
 
 TEST(MeshPicture, OfACubeIsAnotherMonteCarlos) {

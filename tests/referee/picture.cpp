@@ -21,10 +21,10 @@ using scene::Boundary;
 
 void check(const PictureCase& setup) {
   const scene::Material& material = setup.material;
-  if (material.boundary == Boundary::dielectric && material.roughness > 0)
-    throw Error("The referee's interface is smooth: roughness must be 0; got {}.", material.roughness);
   if (!(std::abs(material.g) < 1)) throw Error("The referee needs g inside (-1, 1); got {}.", material.g);
   if (setup.mesh) return;
+  if (material.boundary == Boundary::dielectric && material.roughness > 0)
+    throw Error("The referee's sphere is smooth: roughness must be 0; got {}.", material.roughness);
   if (!(setup.radius > 0)) throw Error("The sphere's radius must be positive; got {}.", setup.radius);
   if (glm::distance(view_ray(setup.clip_to_world, 0, 0).origin, setup.centre) <= setup.radius)
     throw Error("The camera must stand outside the sphere, its near plane too; move it away.");

@@ -218,7 +218,7 @@ TEST(Picture, SaysWhatItCannotTrace) {
     }
     return "";
   };
-  EXPECT_EQ(sentence("material", "roughness", 0.2), "The referee's interface is smooth: roughness must be 0; got 0.2.");
+  EXPECT_EQ(sentence("material", "roughness", 0.2), "The referee's sphere is smooth: roughness must be 0; got 0.2.");
   EXPECT_EQ(sentence("material", "g", 1), "The referee needs g inside (-1, 1); got 1.");
   EXPECT_EQ(sentence("camera", "position", {0, 0, 1}),
             "The camera must stand outside the sphere, its near plane too; move it away.");

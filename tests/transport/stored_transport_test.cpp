@@ -52,7 +52,7 @@ TEST(StoredTransport, KeepsItsEnergy) {
   for (const double eta : {1.0, 1.5})
     for (const double mean_free_paths : {0.1, 3.0, 10.0}) {
       const auto body = std::make_shared<const Body>(cube());
-      Walks walks(body, eta, coarse, {});
+      Walks walks(body, Interface(eta), coarse, {});
       const double sigma_t = mean_free_paths * body->unit();
       const StoredTransport stored = compute_transport(walks, {glm::dvec3(sigma_t), glm::dvec3(1.0), eta});
       EXPECT_EQ(stored.has_unscattered, eta != 1.0);
@@ -94,7 +94,7 @@ TEST(StoredTransport, KeepsItsChannelsApart) {
 // walks that were traced for these.
 TEST(StoredTransport, ReusesItsWalksForOtherColours) {
   const auto body = std::make_shared<const Body>(cube());
-  Walks walks(body, 1.3, coarse, {});
+  Walks walks(body, Interface(1.3), coarse, {});
   const double step = nearest_step(3.0);
   walks.trace({step}, {});
   const std::size_t known = walks.bytes();
@@ -103,7 +103,7 @@ TEST(StoredTransport, ReusesItsWalksForOtherColours) {
     compute_transport(walks, medium);
     EXPECT_EQ(walks.bytes(), known) << "nothing was traced";
     const TracedExchange fresh =
-        trace_exchange(*body, walks.grid(), 1.3, {step * change}, coarse.way_across, Effort{.seed = 7})[0];
+        trace_exchange(*body, walks.grid(), Interface(1.3), {step * change}, coarse.way_across, Effort{.seed = 7})[0];
     const Exchange near = walks.exchange(step * change);
     double difference = 0.0, sum = 0.0;
     for (std::size_t row = 0; row < near.rows(); ++row) {

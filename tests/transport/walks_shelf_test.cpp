@@ -14,7 +14,8 @@ namespace {
 class WalksShelfTest : public testing::Test {
  protected:
   std::shared_ptr<Walks> traced() const {
-    auto walks = std::make_shared<Walks>(body_, 1.3, Quality{.nodes = 60, .light_across = 4, .way_across = 4}, effort_);
+    auto walks = std::make_shared<Walks>(body_, Interface(1.3),
+                                         Quality{.nodes = 60, .light_across = 4, .way_across = 4}, effort_);
     walks->trace({1.0}, effort_);
     return walks;
   }
