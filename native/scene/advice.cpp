@@ -84,6 +84,17 @@ Advice measured(Model model, double error, std::string_view shape, double radius
                       radius)};
 }
 
+Advice forwards(double g) {
+  const automatic::Forwards* told =
+      std::ranges::find_if(automatic::forwards, [&](const auto& entry) { return std::abs(g) <= entry.g; });
+  if (told == automatic::forwards.end()) told = &automatic::forwards.back();
+  return {
+      Model::transport, told->error,
+      fmt::format("{}: light scatters {} (g {:.2g}); measured {:.2g} % off on a grain of sand at g {:.2g}, radius 3 "
+                  "mean free paths.",
+                  named(Model::transport), g > 0.0 ? "forwards" : "backwards", g, told->error, told->g)};
+}
+
 Model preferred() {
   const auto found = std::ranges::find_if(model_traits, [](const ModelTraits& traits) { return traits.preferred; });
   return static_cast<Model>(found - model_traits.begin());
@@ -117,12 +128,7 @@ Advice advise(const Material& material, const Shape& shape) {
                         named(Model::transport))};
   const bool transported =
       shape.closed && radius <= automatic::most_transported && radii.back() <= automatic::densest_transported;
-  if (transported && std::abs(material.g) > automatic::most_g)
-    return {Model::transport, automatic::forwards_error,
-            fmt::format("{}: light scatters {} (g {:.2g}); measured {:.2g} % off on a grain of sand at g 0.85, "
-                        "radius 3 mean free paths.",
-                        named(Model::transport), material.g > 0.0 ? "forwards" : "backwards", material.g,
-                        automatic::forwards_error)};
+  if (transported && std::abs(material.g) > automatic::most_g) return forwards(material.g);
   const double round = roundness(shape);
   for (const automatic::OfModel& model : automatic::of_models)
     if (const double error = error_of(model, radii, round); error <= automatic::tolerance)

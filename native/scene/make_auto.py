@@ -17,6 +17,8 @@ def header(text):
     tables = "".join(f"inline constexpr std::array<Measured, {len(table)}> {shape}_{name}{{{{{points(table)}}}}};\n"
                      for shape, of_models in shapes.items() for name, table in of_models.items())
     entries = "".join(f"    {{Model::{name}, round_{name}, less_round_{name}}},\n" for name in auto["round"])
+    forwards = auto["forwards"]["transport"]
+    of_g = ", ".join(f"{{.g = {float(g)!r}, .error = {float(error)!r}}}" for g, error in forwards)
     return f"""// What the choice of a model goes by. Made from addon/mesograin/schema/auto.json, the place for changes.
 #pragma once
 
@@ -48,7 +50,12 @@ inline constexpr double most_transported = {float(auto["most_transported"]["midd
 inline constexpr double densest_transported = {float(auto["most_transported"]["densest"])!r};
 inline constexpr double transport_error = {float(auto["angular"]["transport"])!r};
 inline constexpr double most_g = {float(auto["forwards"]["most_g"])!r};
-inline constexpr double forwards_error = {float(auto["forwards"]["transport"])!r};
+/// Up to this |g|.
+struct Forwards {{
+  double g;
+  double error;
+}};
+inline constexpr std::array<Forwards, {len(forwards)}> forwards{{{{{of_g}}}}};
 inline constexpr double model_3_error = {float(auto["angular"]["model_3"])!r};
 {tables}/// The cheapest first.
 inline constexpr std::array<OfModel, {len(auto["round"])}> of_models{{{{

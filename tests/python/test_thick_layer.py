@@ -120,14 +120,15 @@ def test_the_cheapest_model_that_is_near_enough(radius, is_round, closed, model)
     assert advised.sentence.endswith(".") and f"{advised.error:.2g}" in advised.sentence
 
 
-def test_of_light_that_scatters_forwards_another_error_is_told():
-    medium = native.Material(sigma_s=(6.0, 6.0, 6.0), sigma_a=(0.1, 0.1, 0.1), g=0.85)
-    advised = advised_for(3.0, is_round=False, medium=medium)
-    assert advised.model == "transport" and "forwards" in advised.sentence
+@pytest.mark.parametrize("g, told", [(0.2, 0.85), (0.85, 0.85), (-0.85, 0.85), (0.9, 0.95), (0.99, 0.95)])
+def test_of_light_that_scatters_forwards_another_error_is_told(g, told):
+    medium = native.Material(sigma_s=(6.0, 6.0, 6.0), sigma_a=(0.1, 0.1, 0.1), g=g)
+    advised = advised_for(3.0 / (6.1 - 6.0 * g), is_round=False, medium=medium)
+    assert advised.model == "transport" and f"at g {told}" in advised.sentence
     page = (ADDON.parent / "docs/shapes.md").read_text()
-    row = re.search(r"^\| sand \| 1.3 \| 0.85 \| 3 \|(.*)\|$", page, re.MULTILINE)
+    row = re.search(rf"^\| sand \| 1.3 \| {told} \| 3 \|(.*)\|$", page, re.MULTILINE)
     errors = [float(cell.split("/")[0]) for cell in row.group(1).split("|")]
-    assert sum(errors) / 3 == pytest.approx(advised.error, abs=0.06) == advice.FORWARDS["transport"]
+    assert sum(errors) / 3 == pytest.approx(advised.error, abs=0.06) == advice.FORWARDS["transport"][told]
     assert advised_for(3.0, is_round=False).error == advice.ANGULAR["transport"]
 
 

@@ -5,8 +5,8 @@ ROUND: of spheres, by radius in mean free paths. Model 1: exitance, mean over te
 pictures, mean over eta 1.3 and 1.5, three albedos and three sides (below a radius of 1 eta 1.3 alone). LESS_ROUND: of
 an ellipsoid whose isoperimetric quotient is LESS_ROUND["roundness"], and from a radius of 20 on of a grain of sand from
 the front and the side, where it is not dark. ANGULAR: of others, the mean over a cube, a flake and rice at a radius of
-3, eta 1.3, albedo 0.9, three sides. FORWARDS: where |g| is more than most_g, of a grain of sand by `transport` at g
-0.85.
+3, eta 1.3, albedo 0.9, three sides. FORWARDS: where |g| is more than most_g, of a grain of sand by `transport`, by the
+largest |g| for which an error is told.
 """
 
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ TOLERANCE = AUTO["tolerance"]
 ROUND = {model: {radius: error for radius, error in table} for model, table in AUTO["round"].items()}
 LESS_ROUND = AUTO["less_round"]
 ANGULAR = AUTO["angular"]
-FORWARDS = AUTO["forwards"]
+FORWARDS = AUTO["forwards"] | {"transport": dict(AUTO["forwards"]["transport"])}
 
 
 @dataclass(frozen=True)
