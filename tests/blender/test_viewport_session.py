@@ -186,6 +186,22 @@ def brightness(picture):
     return float(picture[..., :3].mean())
 
 
+def test_without_a_device_each_update_says_so_and_redraws_draw_nothing(native, blend_files, monkeypatch):
+    bpy.ops.wm.open_mainfile(filepath=str(blend_files / "sphere.blend"))
+
+    def refuse(*_, **__):
+        raise native.Error("there is no device")
+
+    monkeypatch.setattr(native, "View", refuse)
+    session, cache = viewport.Session(), meshes.MeshCache()
+    for _ in range(2):
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        with pytest.raises(native.Error, match="no device"):
+            session.set_scene(export.read_scene(depsgraph, cache))
+        assert not session.has_scene and session.advance(64) is None
+    session.stop()
+
+
 def test_every_redraw_of_a_drag_shows_a_new_picture(drag):
     returned, _ = drag(sample_seconds=0.08, redraw_seconds=None)
     assert returned[0] is None, "a sample takes longer than a redraw waits"

@@ -194,7 +194,12 @@ class Session:
 
     def _take_next(self):
         if self._view is None:
-            self._view = native_module.get().View(1, 1, patient=False)
+            try:
+                self._view = native_module.get().View(1, 1, patient=False)
+            except native_module.get().Error:
+                # Nothing can be drawn; the next update says so again.
+                self._values = self._next_scene = self._camera = self._next_camera = None
+                raise
         if self._next_scene is not None:
             taking, self._next_scene = self._view.start_scene(self._next_scene), None
             self._take(taking, Session._took_scene)
