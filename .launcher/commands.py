@@ -34,6 +34,7 @@ BENCHMARKS = {
     "drag": "how long a change takes to be seen in a real window, relative to Blender's own redraw in Solid shading",
     "exchange": "what light between grains costs while a scene changes: milliseconds to the first and the final answer",
     "heap_light": "how far light between grains is from path tracing, for kinds and lights; about half an hour",
+    "dual_scattering": "what dual scattering makes of light between grains, beside what is solved and path tracing",
     "accuracy": "how far each model's sphere is from photon Monte Carlo; about twelve minutes",
     "relightable": "how far a relightable bake is from bakes for each light, by its number of components",
     "shapes": "how far pictures of grains of any shape are from photon Monte Carlo, such as tests/data/shapes holds",
@@ -42,6 +43,8 @@ BENCHMARKS = {
     "programs": "what compiled programs cost of memory, and whether it rests while more are needed",
     "false_alarms": "how often the significance test calls renders different that differ in their seed alone",
 }
+
+TRACED = ("heap_light", "dual_scattering")  # beside their truth
 
 
 class Place:
@@ -257,7 +260,7 @@ class Bench(Command):
 
     name, sentence = "bench", "measure speed and accuracy"
     about = ("Measures. Times are given as ratios within one run, so that they mean the same on another machine.\n\n" +
-             "\n".join(f"  {name:<14}{what}" for name, what in BENCHMARKS.items()) +
+             "\n".join(f"  {name:<17}{what}" for name, what in BENCHMARKS.items()) +
              "\n\n./mesograin bench BENCHMARK --help tells the options of one.")
 
     def parser(self):
@@ -277,7 +280,7 @@ class Bench(Command):
 
     def check(self, words):
         name, _ = self._chosen(words)
-        return ["blender", "lists report", "product product", *(["referee"] if name == "heap_light" else [])]
+        return ["blender", "lists report", "product product", *(["referee"] if name in TRACED else [])]
 
     def run(self, words, place):
         name, options = self._chosen(words)
