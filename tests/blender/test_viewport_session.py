@@ -5,6 +5,7 @@ import time
 import weakref
 
 import bpy
+import held_device
 import numpy as np
 import pytest
 from mesograin.engine import viewport
@@ -133,13 +134,7 @@ def busy_device(native):
     is being compiled, until a test has asked all it wants of others. Nothing else may be asked of the device before."""
     if native.device_info()["hardware"]:
         pytest.skip("a GPU is through too soon")
-    square = native.Mesh([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]], None, [[0, 1, 2], [0, 2, 3]])
-    material = native.Material(model="model_3", sigma_s=(4.0, 4.0, 4.0), sigma_a=(0.1, 0.1, 0.1))
-    view = native.View(64, 64)
-    view.set_scene(native.Scene(instances=[native.Instance(square, material, np.eye(4))],
-                                lights=[native.DirectionalLight((0.0, 0.0, 1.0), (1.0, 1.0, 1.0))]))
-    view.set_camera(native.Camera.look_at((0.0, 0.0, 1.5), (0.0, 0.0, 0.0), (0.0, 1.0, 0.0), 40.0))
-    view.set_taps(1 << 16)
+    view = held_device.view(native, 64)
     return lambda: view.start(1)
 
 

@@ -3,6 +3,7 @@
 import subprocess
 
 import bpy
+import held_device
 import numpy as np
 from mesograin.engine import status
 
@@ -10,16 +11,8 @@ DISTANCES = (6.0, 5.0, 4.0)
 
 
 def hold_device(window):
-    """A native.Rendering whose one sample holds the device's thread for many seconds, as a program does that is being
-    compiled: nothing can end it before."""
-    native = window.native
-    square = native.Mesh([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]], None, [[0, 1, 2], [0, 2, 3]])
-    material = native.Material(model="model_3", sigma_s=(4.0, 4.0, 4.0), sigma_a=(0.1, 0.1, 0.1))
-    view = native.View(144, 144)
-    view.set_scene(native.Scene(instances=[native.Instance(square, material, np.eye(4))],
-                                lights=[native.DirectionalLight((0.0, 0.0, 1.0), (1.0, 1.0, 1.0))]))
-    view.set_camera(native.Camera.look_at((0.0, 0.0, 1.5), (0.0, 0.0, 0.0), (0.0, 1.0, 0.0), 40.0))
-    view.set_taps(1 << 16)
+    """A native.View and its native.Rendering, whose one sample holds the device's thread for many seconds."""
+    view = held_device.view(window.native, 144)
     return view, view.start(1)
 
 

@@ -11,7 +11,7 @@ import traceback
 import bpy
 
 HERE = pathlib.Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE))
+sys.path[:0] = [str(HERE), str(HERE.parent / "blender")]
 
 
 def run_all(window, checks, folder):
