@@ -1,10 +1,10 @@
 // What is seen of a grain where nothing refracts at its surface: walks that ask for the lights on their way, in its
 // ball or through its own facets, and end at what others send.
 #include <algorithm>
+#include <cmath>
 #include <glm/common.hpp>
 #include <glm/exponential.hpp>
 #include <glm/geometric.hpp>
-#include <utility>
 
 #include "heap/asking.h"
 #include "heap/gather.h"
@@ -13,12 +13,6 @@
 
 namespace mesograin::heap {
 namespace {
-
-// Transparent grains, one behind the other.
-constexpr int most_crossed = 32;
-
-// What so little is left of is not followed on.
-constexpr float nothing = 1e-3F;
 
 float mean(const glm::vec3& colour) { return (colour.r + colour.g + colour.b) / 3.0F; }
 

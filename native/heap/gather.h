@@ -109,6 +109,11 @@ class Gather {
   glm::vec3 highlights(const SeenFacet& seen, const Facets& facets, transport::Random& random) const;
 
  private:
+  /// What so little is left of is not followed on.
+  static constexpr float nothing = 1e-3F;
+  /// Transparent grains, one behind the other.
+  static constexpr int most_crossed = 32;
+
   void follow_look(SeenFacet seen, const Facets& facets, const Look& how, transport::Random& random,
                    Through& sum) const;
   /// What was scattered in a clear grain, over the share of light that is.

@@ -6,15 +6,6 @@
 #include "heap/gather.h"
 
 namespace mesograin::heap {
-namespace {
-
-// What so little is left of is not followed on.
-constexpr float nothing = 1e-3F;
-
-// Transparent grains, one behind the other.
-constexpr int most_crossed = 32;
-
-}  // namespace
 
 bool Gather::is_lit(std::uint32_t grain) const {
   return heap_.grains.kinds[space_.grains()[grain].kind].surface == Surface::lambert || sees_all(grain);
