@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <glm/gtc/matrix_transform.hpp>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -71,6 +73,14 @@ void read_object(const Node& node, const Material& material, const std::filesyst
     scene.instances.push_back(std::move(instance));
 }
 
+constexpr const char* part_of = "part_of";
+
+std::optional<std::uint32_t> read_part_of(const Node& object) {
+  if (!object.has(part_of)) return std::nullopt;
+  if (object.has("instances")) object[part_of].fail("must not stand beside instances");
+  return object[part_of].integer(0, std::numeric_limits<int>::max());
+}
+
 /// The materials of a scene of several objects. The model that was asked for answers those whose kind it can, and at
 /// least one.
 class Materials {
@@ -121,8 +131,11 @@ void read_objects(const Node& root, const std::filesystem::path& folder, const S
   Materials materials(root, choices.model, folder);
   for (std::size_t i = 0; i < objects.size(); ++i) {
     const Node object = objects[i];
-    object.require_object(std::array<std::string_view, 3>{"geometry", "material", "instances"}, provenance_keys);
+    object.require_object(std::array<std::string_view, 4>{"geometry", "material", "instances", part_of},
+                          provenance_keys);
+    const std::optional<std::uint32_t> whole = read_part_of(object);
     read_object(object, materials.of(object["material"]), folder, prototypes, scene);
+    if (whole) scene.instances.back().object = whole;
   }
   materials.require_asked();
   at(objects, [&] { validate(scene); });

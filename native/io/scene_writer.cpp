@@ -43,9 +43,11 @@ class Writer {
 
   Json objects(const Scene& scene) {
     Json list = Json::array();
-    for (const Instance& instance : scene.instances)
+    for (const Instance& instance : scene.instances) {
       list.push_back(
           {{"geometry", geometry(instance.mesh, instance.object_to_world)}, {"material", material(instance.material)}});
+      if (instance.object) list.back()["part_of"] = *instance.object;
+    }
     for (std::size_t i = 0; i < scene.arrays.size(); ++i) {
       const InstanceArray& array = scene.arrays[i];
       const std::string file = beside(fmt::format("instances_{}.npy", i));

@@ -83,15 +83,18 @@ void bind_mesh_and_instance(py::module_& module) {
 
   py::class_<scene::Instance>(module, "Instance", "A mesh with its material at its place in the world.")
       .def(py::init([](std::shared_ptr<scene::Mesh> mesh, const scene::Material& material,
-                       const std::optional<Array<double>>& transform) {
+                       const std::optional<Array<double>>& transform, std::optional<std::uint32_t> object) {
              return scene::Instance{std::move(mesh), material,
-                                    transform ? to_matrix(*transform, "transform") : glm::dmat4(1.0)};
+                                    transform ? to_matrix(*transform, "transform") : glm::dmat4(1.0), object};
            }),
            py::arg("mesh").none(false), py::arg("material"), py::arg("transform") = py::none(),
-           "transform: (4, 4) float64, object to world; None is the identity.")
+           py::arg("object") = py::none(),
+           "transform: (4, 4) float64, object to world; None is the identity. object: a number; instances of the same "
+           "one are parts of one object, whose surfaces go on into each other. None is an object of its own.")
       .def_property_readonly("mesh", &mesh_of<scene::Instance>)
       .def_readonly("material", &scene::Instance::material)
-      .def_property_readonly("transform", [](const scene::Instance& i) { return to_array(i.object_to_world); });
+      .def_property_readonly("transform", [](const scene::Instance& i) { return to_array(i.object_to_world); })
+      .def_readonly("object", &scene::Instance::object);
 }
 
 void bind_advice(py::module_& module) {

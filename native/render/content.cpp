@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <glm/common.hpp>
-#include <glm/gtc/type_ptr.hpp>
 #include <map>
 #include <optional>
 #include <utility>
@@ -96,7 +95,7 @@ Content::Content(DeviceCache& cache, const scene::Scene& scene, Content before,
   // Neighbours that share a material need it bound once.
   std::stable_sort(draws_.begin(), draws_.end(),
                    [](const Draw& a, const Draw& b) { return a.material.get() < b.material.get(); });
-  tell_objects();
+  tell_objects(scene);
   for (std::size_t i = 0; i < draws_.size(); ++i)
     if (!shades_itself(draws_[i]) && !draws_[i].light_maps && (!ground_ || draws_[i].radius > draws_[*ground_].radius))
       ground_ = i;
@@ -178,16 +177,15 @@ std::vector<std::shared_ptr<const transport::Computation>> Content::computations
   return found;
 }
 
-void Content::tell_objects() {
-  const auto place = [this](std::size_t draw) {
-    const double* numbers = glm::value_ptr(draws_[draw].object_to_world);
-    return std::vector<double>(numbers, numbers + 16);
-  };
-  std::map<std::vector<double>, std::size_t> first;
+void Content::tell_objects(const scene::Scene& scene) {
+  std::map<std::uint32_t, std::size_t> first;
   for (std::size_t draw = 0; draw < draws_.size(); ++draw) {
-    const auto [found, is_first] = first.try_emplace(place(draw), draw);
-    draws_[draw].object = found->second;
+    draws_[draw].object = draw;
+    const std::optional<std::uint32_t>& object = scene.instances[draws_[draw].instance].object;
+    if (!object) continue;
+    const auto [found, is_first] = first.try_emplace(*object, draw);
     if (is_first) continue;
+    draws_[draw].object = found->second;
     draws_[draw].part = true;
     draws_[found->second].part = true;
   }

@@ -109,7 +109,7 @@ class Content {
   bool facets(const std::function<bool(std::size_t unit)>& of) const;
 
  private:
-  void tell_objects();
+  void tell_objects(const scene::Scene& scene);
   void find_bounds();
   void find_shadows();
 

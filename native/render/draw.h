@@ -34,8 +34,8 @@ struct Draw {
   double mean_free_paths_across;          // of the bounds' diameter, reduced, in the densest channel
   bool convex;                            // no part of it shades another
   glm::dmat3 grain_to_prototype{1.0};     // a turn, for a material that depends on the mesh
-  std::size_t object = 0;                 // the first draw of the same place, which it may be a part of
-  bool part = false;                      // whether there is another of the same place
+  std::size_t object = 0;                 // the first draw that is a part of the same
+  bool part = false;                      // whether there is another part of the same
   std::unique_ptr<LightMaps> light_maps;  // only if its material reads them
 
   glm::dmat4 object_to_grain() const;

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <glm/mat4x4.hpp>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -22,6 +24,7 @@ struct Instance {
   MeshPointer mesh;
   Material material;
   glm::dmat4 object_to_world{1.0};
+  std::optional<std::uint32_t> object{};  ///< those of one number are parts of one; others are each their own
 };
 
 /// Many instances of one mesh and material: each is a transform, and a colour if they differ in it.

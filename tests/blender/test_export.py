@@ -182,6 +182,23 @@ def test_slots_split_a_mesh(made):
         np.testing.assert_allclose(normals[triangles], flat, atol=1e-6)
 
 
+def test_slots_are_parts_of_one_object_and_other_objects_are_not():
+    cube = add_cube()
+    for name in ("Red", "Green"):
+        cube.data.materials.append(bpy.data.materials.new(name))
+    cube.data.polygons.foreach_set("material_index", [0, 0, 0, 1, 1, 1])
+    add_object("Second", cube.data.copy(), Matrix())
+    instancer = add_object("Instancer", None, Matrix())
+    collection = bpy.data.collections.new("Instanced")
+    collection.objects.link(bpy.data.objects.new("Third", cube.data))
+    instancer.instance_type, instancer.instance_collection = "COLLECTION", collection
+    add_object("Plain", bpy.data.meshes.new_from_object(add_cube()), Matrix())
+    numbers = [instance.object for instance in read_scene().instances]
+    parts = [numbers.index(number) for number in numbers if number is not None]
+    assert len(parts) == 6 and len(set(parts)) == 3
+    assert all(parts.count(first) == 2 for first in parts)
+
+
 def test_a_slot_that_is_gone_is_the_last_one(made):
     cube = add_cube()
     cube.data.materials.append(bpy.data.materials.new("Only"))

@@ -1,6 +1,7 @@
 # From Blender's dependency graph to the native module's scene and camera: plain values, copied, nothing borrowed.
 import array
 import dataclasses
+import itertools
 import math
 import typing
 
@@ -57,6 +58,7 @@ class InstanceValues:
     material: MaterialValues
     object_to_world: tuple  # 16 numbers, row-major
     broken_uvs: bool = False  # as a meshes.MeshPart's
+    object: int = None  # that it is a part of, of those that wear several materials
 
     def typical(self):
         """Its place, 16 numbers row by row."""
@@ -64,7 +66,7 @@ class InstanceValues:
 
     def to_native(self, native, material):
         transform = np.array(self.object_to_world).reshape(4, 4)
-        return native.Instance(self.mesh, material, transform)
+        return native.Instance(self.mesh, material, transform, self.object)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -341,6 +343,7 @@ class _Reader:
         # {key of a material: the input that says the reflectance of each instance}
         self._by_instance = before._by_instance if before else {}
         self._instances = []
+        self._objects = itertools.count()  # numbers of those that have several parts
         self._groups = []  # heaps.Group of each shape that is read with all its placings at once
         self._lights = []
         self._warnings = {}
@@ -446,12 +449,15 @@ class _Reader:
             if lost:
                 self._warn(f"{lost} instances of '{group.name}' are scaled to nothing or have a place that is no "
                            "number, so they are not drawn.")
+            # Those of several parts stand at the same placings.
+            objects = [next(self._objects) for _ in values[0].each()] if len(values) > 1 and len(
+                values[0]) < heaps.MANY else itertools.repeat(None)
             for heap in values:
                 if len(heap) >= heaps.MANY:
                     found.append(heap)
                     continue
-                self._instances.extend(InstanceValues(heap.name, heap.mesh, material, placing)
-                                       for placing, material in zip(heap.each(), heap.materials()))
+                self._instances.extend(InstanceValues(heap.name, heap.mesh, material, placing, object=whole)
+                                       for placing, material, whole in zip(heap.each(), heap.materials(), objects))
         return tuple(found)
 
     def places(self):
@@ -499,12 +505,13 @@ class _Reader:
             return
         for sentence in left_out.sentences(evaluated_object):
             self._warn(sentence)
+        whole = next(self._objects) if len(parts) > 1 else None
         for part in parts:
             if not self._has_surface(evaluated_object, part.slot):
                 continue
             material = self._material(evaluated_object, part.slot)
             self._instances.append(InstanceValues(evaluated_object.name, part.mesh, material, to_world,
-                                                  part.broken_uvs))
+                                                  part.broken_uvs, whole))
             self._read_mesh_lights(evaluated_object, matrix_world, part.slot, material)
 
     def _read_mesh_lights(self, evaluated_object, matrix_world, slot, material):
