@@ -141,12 +141,12 @@ void read_objects(const Node& root, const std::filesystem::path& folder, const S
   at(objects, [&] { validate(scene); });
 }
 
-/// Gives each translucent object the model that scene::advise has for it; an array's by the size of its middle
-/// instance.
-void choose_models(Scene& scene) {
-  const auto choose = [](Material& material, const MeshPointer& mesh, const glm::dmat4& to_world) {
+/// Gives each translucent object the model that scene::advise has for it, with this tolerance in %; an array's by the
+/// size of its middle instance.
+void choose_models(Scene& scene, double tolerance) {
+  const auto choose = [tolerance](Material& material, const MeshPointer& mesh, const glm::dmat4& to_world) {
     if (traits_of(material.model).translucent)
-      material.model = advise(material, shape_of(*mesh, glm::dmat3(to_world))).model;
+      material.model = advise(material, shape_of(*mesh, glm::dmat3(to_world)), tolerance).model;
   };
   for (Instance& instance : scene.instances) choose(instance.material, instance.mesh, instance.object_to_world);
   for (InstanceArray& array : scene.arrays) {
@@ -232,7 +232,7 @@ SceneFile read(const Json& json, const std::filesystem::path& folder, const Scen
     file.scene.exchange = at(root["exchange"], [&] { return parse_choice<Exchange>(root["exchange"].text()); });
   if (root.has("denoise")) file.scene.denoise = root["denoise"].boolean();
   read_objects(root, folder, choices, file.scene);
-  if (choices.automatic) choose_models(file.scene);
+  if (choices.automatic) choose_models(file.scene, choices.tolerance);
   file.camera = read_camera(root["camera"], static_cast<double>(file.width) / file.height);
   file.source = json.dump(-1, ' ', true, Json::error_handler_t::replace);
   return file;

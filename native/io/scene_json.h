@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "scene/auto.h"
 #include "scene/camera.h"
 #include "scene/scene.h"
 
@@ -26,8 +27,9 @@ struct SceneChoices {
   std::optional<scene::Model> model;  ///< else the best that answers the material's kind
   int width = 0;                      ///< 0: as in the scene
   int height = 0;
-  std::optional<scene::Exchange> exchange{};  ///< else as in the scene
-  bool automatic = false;                     ///< instead of `model`: each translucent object's by scene::advise
+  std::optional<scene::Exchange> exchange{};       ///< else as in the scene
+  bool automatic = false;                          ///< instead of `model`: each translucent object's by scene::advise
+  double tolerance = scene::automatic::tolerance;  ///< for that, in %
 };
 
 /// Takes a model's name, or "auto". Throws Error for another.

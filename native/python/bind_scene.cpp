@@ -109,13 +109,16 @@ void bind_advice(py::module_& module) {
       "(volume, area, whether it is closed) of a mesh as a transform, (4, 4) float64, has it.");
   module.def(
       "advise",
-      [](const scene::Material& material, double volume, double area, bool closed) {
-        scene::Advice advice = scene::advise(material, {volume, area, closed});
+      [](const scene::Material& material, double volume, double area, bool closed, double tolerance) {
+        scene::Advice advice = scene::advise(material, {volume, area, closed}, tolerance);
         return py::make_tuple(scene::name_of(advice.model), advice.error, std::move(advice.sentence));
       },
       py::arg("material"), py::arg("volume"), py::arg("area"), py::arg("closed"),
+      py::arg("tolerance") = scene::automatic::tolerance,
       "(model, its measured error in %, why in a sentence) for a grain of this medium: the cheapest that was measured "
-      "to be near enough for its size and shape. Lengths are those that sigma_a and sigma_s are per.");
+      "to be within a tolerance in % for its size and shape, or the nearest. Lengths are those that sigma_a and "
+      "sigma_s "
+      "are per.");
 }
 
 template <typename Number>

@@ -11,6 +11,7 @@ void bind_lights(pybind11::module_& module);
 void bind_material(pybind11::module_& module);
 void bind_pile(pybind11::module_& module);
 void bind_physics(pybind11::module_& module);
+void bind_rounds(pybind11::module_& module);
 void bind_scene(pybind11::module_& module);
 void bind_scene_file(pybind11::module_& module);
 void bind_view(pybind11::module_& module);

@@ -20,6 +20,7 @@ PYBIND11_MODULE(mesograin_native, module) {
   mesograin::python::bind_pile(module);
   mesograin::python::bind_scene_file(module);
   mesograin::python::bind_view(module);
+  mesograin::python::bind_rounds(module);
 
   // The driver must be left in order before the interpreter unloads it.
   py::module_::import("atexit").attr("register")(py::cpp_function([] {

@@ -9,11 +9,12 @@
 #include <glm/geometric.hpp>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <span>
+#include <string_view>
 #include <utility>
 #include <vector>
 
-#include "scene/auto.h"
 #include "scene/welding.h"
 
 namespace mesograin::scene {
@@ -116,7 +117,7 @@ Shape shape_of(const Mesh& mesh, const glm::dmat3& to_world) {
   return {std::abs(volume), area, is_closed(mesh)};
 }
 
-Advice advise(const Material& material, const Shape& shape) {
+Advice advise(const Material& material, const Shape& shape, double tolerance) {
   const std::vector<double> radii = radii_of(material, shape.volume);
   const double radius = radii[radii.size() / 2];
   if (!(radius > 0.0 && std::isfinite(radii.back()) && shape.area > 0.0))
@@ -130,14 +131,23 @@ Advice advise(const Material& material, const Shape& shape) {
       shape.closed && radius <= automatic::most_transported && radii.back() <= automatic::densest_transported;
   if (transported && std::abs(material.g) > automatic::most_g) return forwards(material.g);
   const double round = roundness(shape);
-  for (const automatic::OfModel& model : automatic::of_models)
-    if (const double error = error_of(model, radii, round); error <= automatic::tolerance)
-      return measured(model.model, error, round > 0.99 ? "a sphere" : "grains about as round", radius);
-  if (transported) return measured(Model::transport, automatic::transport_error, "cube, flake and rice", radius);
-  return {Model::model_3, automatic::model_3_error,
-          fmt::format("{}: {}, which transport cannot take; measured {:.2g} % off on cube, flake and rice.",
-                      named(Model::model_3), shape.closed ? "it is too thick" : "its mesh is open",
-                      automatic::model_3_error)};
+  const std::string_view told = round > 0.99 ? "a sphere" : "grains about as round";
+  std::optional<Advice> nearest;
+  for (const automatic::OfModel& model : automatic::of_models) {
+    const double error = error_of(model, radii, round);
+    if (error <= tolerance) return measured(model.model, error, told, radius);
+    if (!nearest || error < nearest->error) nearest = measured(model.model, error, told, radius);
+  }
+  const Advice any_shape =
+      transported ? measured(Model::transport, automatic::transport_error, "cube, flake and rice", radius)
+                  : Advice{Model::model_3, automatic::model_3_error,
+                           fmt::format("{}: {}, which transport cannot take; measured {:.2g} % off on cube, flake and "
+                                       "rice.",
+                                       named(Model::model_3), shape.closed ? "it is too thick" : "its mesh is open",
+                                       automatic::model_3_error)};
+  // Of shapes like a cube's the tables above say nothing beyond what is taken for near enough of any.
+  const bool nearer = nearest->error <= automatic::tolerance && nearest->error < any_shape.error;
+  return nearer && any_shape.error > tolerance ? *nearest : any_shape;
 }
 
 }  // namespace mesograin::scene

@@ -4,6 +4,7 @@
 #include <glm/mat3x3.hpp>
 #include <string>
 
+#include "scene/auto.h"
 #include "scene/material.h"
 #include "scene/mesh.h"
 
@@ -26,7 +27,8 @@ struct Advice {
 };
 
 /// For a grain of this medium, whatever its model. Lengths are those that sigma_a and sigma_s are per. What encloses no
-/// volume, or neither scatters nor absorbs, is given the preferred translucent model.
-Advice advise(const Material& material, const Shape& shape);
+/// volume, or neither scatters nor absorbs, is given the preferred translucent model. tolerance: in %; where no model
+/// was measured to be as near, it is the nearest.
+Advice advise(const Material& material, const Shape& shape, double tolerance = automatic::tolerance);
 
 }  // namespace mesograin::scene

@@ -4,14 +4,11 @@
 
 #include <CLI/CLI.hpp>
 #include <charconv>
-#include <chrono>
 #include <cstdint>
 #include <exception>
 #include <filesystem>
-#include <future>
 #include <iostream>
 #include <map>
-#include <optional>
 #include <sstream>
 #include <string>
 #include <string_view>
@@ -26,6 +23,7 @@
 #include "io/scene_json.h"
 #include "render/bake.h"
 #include "render/view.h"
+#include "tool/drawing.h"
 #include "tool/interruption.h"
 #include "tool/progress.h"
 #include "tool/provenance.h"
@@ -47,7 +45,7 @@ struct Options {
   std::string model;
   std::string size;
   std::string exchange;
-  int samples = 64;
+  tool::Budget budget;
   std::uint32_t seed = 0;
   bool bake = false;
   std::string view_from{render::view_from_names.front()};
@@ -59,6 +57,7 @@ struct Options {
 io::SceneChoices parse_choices(const Options& options) {
   io::SceneChoices choices;
   if (!options.model.empty()) io::choose_model(choices, options.model);
+  if (options.budget.error) choices.tolerance = 100.0 * *options.budget.error;
   if (!options.exchange.empty()) choices.exchange = scene::parse_choice<scene::Exchange>(options.exchange);
   if (options.size.empty()) return choices;
   const char* const end = options.size.data() + options.size.size();
@@ -96,15 +95,12 @@ void run(const Options& options) {
     base::require_writable(output);
   }
 
-  render::View view(file.width, file.height, options.seed);
+  tool::Progress progress;
+  render::View view(file.width, file.height, options.seed, !options.budget.seconds);
   view.set_scene(file.scene);
   view.set_camera(file.camera);
   if (options.bake) set_bake(view, options, file.scene.instances.size());
-  tool::Progress progress(options.samples);
-  const std::shared_future<double> done = view.start(options.samples);
-  while (done.wait_for(std::chrono::milliseconds(50)) != std::future_status::ready)
-    if (!options.quiet) progress.show(view.samples(), view.preparing());
-  done.get();
+  const std::string came = tool::draw(view, options.budget, progress, options.quiet);
   for (const std::string& warning : view.warnings()) fmt::print(stderr, "mesograin-render: {}\n", warning);
   const double seconds = progress.seconds();
 
@@ -115,14 +111,15 @@ void run(const Options& options) {
   const gl::DeviceInfo& device = gl::ContextThread::instance().device_info();
   {
     const tool::Uninterrupted uninterrupted;
-    std::map<std::string, std::string> attributes = tool::provenance(file, options.samples, options.seed, device);
+    std::map<std::string, std::string> attributes = tool::provenance(file, view.samples(), options.seed, device);
     if (options.bake) attributes.merge(tool::bake_provenance(options.view_from, options.margin));
     io::write_exr(output, picture.view(), {}, attributes);
   }
   if (options.quiet) return;
   progress.finish();
-  fmt::print(stderr, "{}: {} x {} pixels, {} samples by {} in {:.1f} s on {}\n", output.string(), file.width,
-             file.height, options.samples, tool::model_names(file.scene), seconds, device.renderer);
+  fmt::print(stderr, "{}: {} x {} pixels, {} samples{} by {} in {:.1f} s on {}\n", output.string(), file.width,
+             file.height, view.samples(), came.empty() ? "" : ", " + came + ",", tool::model_names(file.scene), seconds,
+             device.renderer);
 }
 
 int command(int argument_count, char** arguments) {
@@ -136,9 +133,23 @@ int command(int argument_count, char** arguments) {
                  fmt::format("{}; default: the best for the material's kind", fmt::join(io::models_to_choose(), ", ")))
       ->check(CLI::IsMember(io::models_to_choose()))
       ->option_text("MODEL");
-  app.add_option("-n,--samples", options.samples, "Samples for each pixel; default 64")
-      ->check(CLI::Range(1, 1000000))
-      ->option_text("N");
+  CLI::Option* samples = app.add_option("-n,--samples", options.budget.samples, "Samples for each pixel; default 64")
+                             ->check(CLI::Range(1, 1000000))
+                             ->option_text("N");
+  CLI::Option* error = app.add_option_function<double>(
+                              "--error", [&](double percent) { options.budget.error = 0.01 * percent; },
+                              "Instead: until the noise of a pixel is so many percent of its light; --model auto then "
+                              "chooses models measured to be as near")
+                           ->check(CLI::Range(0.01, 100.0))
+                           ->excludes(samples)
+                           ->option_text("PERCENT");
+  app.add_option_function<double>(
+         "--seconds", [&](double seconds) { options.budget.seconds = seconds; },
+         "Instead: for so long, with what is known of light in and between grains by then")
+      ->check(CLI::Range(0.01, 1e6))
+      ->excludes(samples)
+      ->excludes(error)
+      ->option_text("S");
   app.add_option("--seed", options.seed, "Of the samples' places and of the models' own; default 0")->option_text("S");
   app.add_option("--size", options.size, "Pixels, instead of the scene's resolution")
       ->option_text("WIDTHxHEIGHT or SIDE");

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <string>
@@ -20,11 +21,11 @@ std::string duration(double seconds) {
 
 }  // namespace
 
-Progress::Progress(int samples) : terminal_(::isatty(STDERR_FILENO) == 1), samples_(samples) {}
+Progress::Progress() : terminal_(::isatty(STDERR_FILENO) == 1) {}
 
 double Progress::seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
 
-void Progress::show(int samples_done, std::optional<double> preparing) {
+void Progress::show(int samples_done, std::optional<int> samples, std::optional<double> preparing) {
   const Clock::duration pause = terminal_ ? std::chrono::milliseconds(100) : std::chrono::seconds(5);
   if (Clock::now() - shown_ < pause) return;
   shown_ = Clock::now();
@@ -34,10 +35,12 @@ void Progress::show(int samples_done, std::optional<double> preparing) {
     std::fflush(stderr);
     return;
   }
+  const std::string of = samples ? fmt::format(" of {}", *samples) : "";
   const std::string left =
-      samples_done == 0 ? "" : ", " + duration(seconds() / samples_done * (samples_ - samples_done)) + " left";
-  fmt::print(stderr, "{}{} of {} samples{}{}", terminal_ ? "\r\033[K" : "", samples_done, samples_, left,
-             terminal_ ? "" : "\n");
+      samples_done == 0 || !samples
+          ? ""
+          : ", " + duration(seconds() / samples_done * std::max(0, *samples - samples_done)) + " left";
+  fmt::print(stderr, "{}{}{} samples{}{}", terminal_ ? "\r\033[K" : "", samples_done, of, left, terminal_ ? "" : "\n");
   std::fflush(stderr);
 }
 

@@ -9,10 +9,11 @@ namespace mesograin::tool {
 /// On a terminal one line that is rewritten; elsewhere a line every few seconds, so that a log stays readable.
 class Progress {
  public:
-  explicit Progress(int samples);
+  Progress();
 
-  /// May be called as often as one likes. `preparing`: the share done of what comes before the first sample.
-  void show(int samples_done, std::optional<double> preparing);
+  /// May be called as often as one likes. `samples`: how many there are to be, if that is known; `preparing`: the share
+  /// done of what comes before the first.
+  void show(int samples_done, std::optional<int> samples, std::optional<double> preparing);
 
   /// Clears the terminal's line.
   void finish();
@@ -23,7 +24,6 @@ class Progress {
   using Clock = std::chrono::steady_clock;
 
   bool terminal_;
-  int samples_;
   Clock::time_point start_ = Clock::now();
   Clock::time_point shown_ = start_;
 };

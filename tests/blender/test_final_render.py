@@ -5,7 +5,7 @@ import addon_utils
 import bpy
 import numpy as np
 import pytest
-from mesograin.engine import engine, status
+from mesograin.engine import engine, rounds, status
 from mesograin.engine.pace import Pace
 from mesograin.engine.waiting import Waiting
 from mesograin.scene import export, meshes
@@ -122,7 +122,7 @@ def test_the_first_sample_tells_no_time_left(render, blend_files, monkeypatch):
             return said[-1]
 
     monkeypatch.setattr(engine, "SHOW_SECONDS", 0.0)
-    monkeypatch.setattr(engine, "Pace", Told)
+    monkeypatch.setattr(rounds, "Pace", Told)
     render()
     assert said[0] == "Sample 1/8" and len(said) > 1
     assert all(line.endswith(" left") for line in said[1:]), said

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from mesograin import native_module
 from mesograin.scene import automatic, export, heaps, meshes, properties
+from mesograin.schema import advice
 from mesograin.schema import presets as known
 from mesograin.ui import look, presets
 
@@ -136,7 +137,7 @@ def test_auto_of_a_heap_goes_by_its_middle_grain(material, native, large, model)
     placings[large:, :3, :3] *= paths[1]
     transforms = native_module.get().Transforms(placings)
     heap = heaps.HeapValues("Heap", heaps.sphere(), export.material_values(material, 1.0), transforms)
-    drawn = automatic.with_model(heap)
+    drawn = automatic.with_model(heap, advice.TOLERANCE)
     assert dict(drawn.material.values)["model"] == model and drawn.placings == heap.placings
 
 

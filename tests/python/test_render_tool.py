@@ -47,6 +47,25 @@ def test_the_picture_and_its_provenance(tmp_path):
     np.testing.assert_array_equal(view.read(), pixels)
 
 
+def test_it_renders_until_an_error_or_for_a_time(tmp_path):
+    outcome = run(SPHERE, "--error", 1, "--size", "64", "-o", tmp_path / "a.exr")
+    assert outcome.returncode == 0 and "8 samples, noise 0." in outcome.stderr, outcome.stderr
+    assert native.read_exr(tmp_path / "a.exr")[2]["mesograin:samples"] == "8"
+    outcome = run(SPHERE, "--error", 0.05, "--size", "64", "-o", tmp_path / "b.exr")
+    assert outcome.returncode == 0 and int(native.read_exr(tmp_path / "b.exr")[2]["mesograin:samples"]) > 8
+
+    outcome = run(SPHERE, "--seconds", 3, "--size", "8", "-o", tmp_path / "c.exr")
+    assert outcome.returncode == 0, outcome.stderr
+    samples = int(native.read_exr(tmp_path / "c.exr")[2]["mesograin:samples"])
+    assert samples >= 1 and f"{samples} samples by lambert" in outcome.stderr
+
+
+@pytest.mark.parametrize("words", [("--error", 0), ("--seconds", -1), ("--error", 1, "--seconds", 1),
+                                   ("--error", 1, "-n", 4)])
+def test_budgets_that_do_not_serve(tmp_path, words):
+    assert run(SPHERE, *words, "-o", tmp_path / "a.exr").returncode == 2
+
+
 def test_quiet_says_nothing(tmp_path):
     outcome = run(SPHERE, "-q", "-n", 1, "--size", "8x8", "-o", tmp_path / "a.exr")
     assert (outcome.returncode, outcome.stdout, outcome.stderr) == (0, "", "")

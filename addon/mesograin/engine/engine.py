@@ -1,5 +1,6 @@
 # The render engine as Blender calls it: final renders and Rendered viewports, both through the native module.
 import contextlib
+import dataclasses
 import functools
 import time
 import weakref
@@ -10,8 +11,7 @@ import numpy as np
 from .. import compat, native_module
 from ..durations import duration
 from ..scene import export, lens
-from . import motion, passes, status, viewport, viewport_text, waiting
-from .pace import Pace
+from . import motion, passes, rounds, status, viewport, viewport_text, waiting
 
 # How long a final render may go without looking whether it was cancelled, and without showing how far it is.
 POLL_SECONDS = 0.05
@@ -63,34 +63,34 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
 
     def _render(self, depsgraph):
         native = native_module.get()
-        target = depsgraph.scene.mesograin.samples
+        eyes = _eyes(depsgraph.scene.render)
+        started = time.perf_counter()
         width, height = self.resolution_x, self.resolution_y
         region = export.render_region(depsgraph.scene, width, height)
         self.update_stats("", "Mesograin: reading the scene")
         exposure = motion.Exposure(self, depsgraph)
         warnings = exposure.values.warnings
-        view = native.View(region.width, region.height)
-        still = exposure.native_scene(exposure.values)
-        self._result(view.start_scene(still), view)
+        budgets = rounds.of(depsgraph.scene.mesograin, exposure.values, started, len(eyes))
+        view = native.View(region.width, region.height, patient=budgets[0].patient)
+        self._result(view.start_scene(exposure.native_scene(exposure.values)), view)
         view.set_portions(passes.portions(depsgraph.view_layer))
         for warning in warnings:
             self.report({"WARNING"}, warning)
 
         opaque = not depsgraph.scene.render.film_transparent
-        eyes = _eyes(depsgraph.scene.render)
-        for number, name in enumerate(eyes):
+        for number, (name, budget) in enumerate(zip(eyes, budgets)):
             read_camera = functools.partial(self._camera, depsgraph, width, height, region, name)
             self._result(view.start_camera(read_camera(), region.width, region.height), view)
             passes.add(self, depsgraph.view_layer)
             result = self.begin_result(0, 0, region.width, region.height, layer=depsgraph.view_layer.name, view=name)
             try:
-                for samples in self._render_samples(view, exposure, read_camera, target):
+                for share in self._render_samples(view, exposure, read_camera, budget):
                     self._show(result, view, opaque)
                     self.update_result(result)
-                    self.update_progress((number + samples / target) / len(eyes))
+                    self.update_progress((number + share) / len(eyes))
                 if view.samples:  # a cancelled render keeps what it has
                     self._show(result, view, opaque)
-                    view.set_moment(read_camera(), still)
+                    view.set_moment(read_camera(), exposure.native_scene(exposure.values))
                     beside = passes.pixels(view, depsgraph.view_layer, exposure, read_camera)
                     for name_, pixels in beside.items():
                         _set_pass(result, name_, pixels)
@@ -106,8 +106,11 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
             self.report({"WARNING"}, warning)
         timings = tuple((timing["pass"], timing["milliseconds"]) for timing in view.timings())
         exchange = status.exchange(view.statistics())
+        came = budget.sentence(view.samples)
+        if came:
+            self.report({"INFO"}, f"{came}.")
         status.put(status.RENDER, status.Status(view.samples, region.width, region.height, timings,
-                                                (*warnings, *view.warnings), exchange=exchange))
+                                                (*warnings, *view.warnings), exchange=exchange, budget=came))
 
     def _camera(self, depsgraph, width, height, region, eye):
         """native.Camera of the eye of this name, or of the camera as it is."""
@@ -118,29 +121,58 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
         placed = camera and export.Eye(self.camera_model_matrix(camera), self.camera_shift_x(camera))
         return export.camera_from_scene(depsgraph, width, height, camera, region, placed)
 
-    def _render_samples(self, view, exposure, read_camera, target):
-        """Renders until `target` samples or a cancel, and yields their number whenever it is time to show them."""
-        shown, pace = time.perf_counter(), Pace(target)
-        chunk, reached, seen = 1, 0, exposure.values
-        with contextlib.closing(exposure.moments(read_camera, target)) as moments:
-            for values, camera, count in moments:
-                if exposure.blurred:
-                    view.set_moment(camera, None if values is seen else exposure.native_scene(values))
-                    seen = values
-                reached += count
-                while view.samples < reached and not self.test_break():
-                    chunk_started = time.perf_counter()
-                    self._draw(view, min(chunk, reached - view.samples))
-                    now = time.perf_counter()
-                    pace.note(view.samples, now)
-                    if now - chunk_started < POLL_SECONDS:
-                        chunk *= 2
-                    if now - shown > SHOW_SECONDS and view.samples < target:
-                        self.update_stats("", pace.line())
-                        yield view.samples
-                        shown = time.perf_counter()
-                if self.test_break():
-                    return
+    def _render_samples(self, view, exposure, read_camera, budget):
+        """Renders until the rounds of `budget` end, or a cancel, and yields the share that is done whenever it is time
+        to show it."""
+        self._await_light(view, budget)
+        shown, first, seen = time.perf_counter(), True, exposure.values
+        while not self.test_break():
+            count = budget.next(view.samples, lambda: self._read(view), time.perf_counter())
+            if count == 0:
+                return
+            with contextlib.closing(exposure.moments(read_camera, count)) as moments:
+                for values, camera, samples in moments:
+                    if exposure.blurred:
+                        view.set_moment(camera, None if values is seen else exposure.native_scene(values))
+                        seen = values
+                    for now in self._draw_some(view, samples, budget):
+                        if now - shown > SHOW_SECONDS:
+                            self.update_stats("", budget.line(now))
+                            yield budget.share(view.samples, now)
+                            shown = time.perf_counter()
+                    if view.samples and (self.test_break() or budget.is_over(time.perf_counter())):
+                        return
+            if first and exposure.values.exchange == "heaps":
+                better = budget.better_exchange(view.statistics()["exchange"])
+                if better:
+                    seen = exposure.values = dataclasses.replace(exposure.values, exchange=better)
+                    self._result(view.start_scene(exposure.native_scene(seen)), view)
+            first = False
+
+    def _draw_some(self, view, samples, budget):
+        """So many, unless the budget is spent before; yields now and then when it is."""
+        chunk, reached = 1, view.samples + samples
+        while view.samples < reached and not self.test_break():
+            started = time.perf_counter()
+            self._draw(view, min(chunk, reached - view.samples))
+            now = time.perf_counter()
+            budget.note(view.samples, now)
+            yield now
+            if budget.is_over(now):
+                return
+            if now - started < POLL_SECONDS:
+                chunk *= 2
+
+    def _await_light(self, view, budget):
+        """Of a view that would draw without knowing all of light in and between grains: for as long as is worth it."""
+        if budget.patient:
+            return
+        patience = waiting.Waiting()
+        while view.preparing is not None and budget.waits_for_light(time.perf_counter()) and not self.test_break():
+            self.update_stats("", patience.sentence(view.awaited, view.preparing or 0.0, time.perf_counter()))
+            time.sleep(POLL_SECONDS)
+            self._result(view.start_news(), view)
+        self._result(view.start_news(), view)
 
     def _draw(self, view, samples):
         """Until they are drawn, or cancelled by the artist."""
@@ -173,8 +205,11 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
         for field, text in metadata.items():
             whole.stamp_data_add_field(field, text)
 
+    def _read(self, view):
+        return self._result(view.start_read(), view)["pixels"]
+
     def _show(self, result, view, opaque):
-        pixels = self._result(view.start_read(), view)["pixels"]
+        pixels = self._read(view)
         if opaque:
             pixels[..., 3] = 1.0  # premultiplied, so this is the picture over black
         _set_pass(result, "Combined", pixels)

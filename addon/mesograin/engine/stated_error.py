@@ -33,7 +33,8 @@ class Measured:
 
 
 MEASURED = (
-    Measured("lambert", (0.0, 0.0), (0.8, 0.8), True, False, 0.032, 0.045),
+    Measured("lambert", (0.0, 0.0), (0.8, 0.8), True, True, 0.03, 0.033, 0.036),
+    Measured("lambert", (0.0, 0.0), (0.8, 0.8), True, False, 0.032, 0.045, 0.067),
     Measured("lambert", (0.0, 0.0), (0.8, 0.8), False, False, 0.02, 0.03),
     Measured("index_matched", (1.0, 10.0), (0.9, 0.999), True, True, 0.03, 0.033, 0.036),
     Measured("index_matched", (1.0, 3.0), (0.9, 0.999), True, False, 0.03, 0.051, 0.05),
@@ -45,11 +46,23 @@ MEASURED = (
 )
 
 
-def sentence(exchange):
-    """One sentence about native.View.statistics()["exchange"], without a full stop."""
+def _found(exchange):
+    """Measured of all that grains are made of; empty if anything was not."""
     found = [next((known for known in MEASURED if known.holds(stuff, exchange)), None)
              for stuff in exchange["stuff"]]
-    if not found or None in found:
+    return [] if None in found else found
+
+
+def in_blocks(exchange):
+    """The share that blocks of 8 x 8 pixels are off at most where it was measured for grains like those that
+    native.View.statistics()["exchange"] tells of; None where it was not."""
+    return max((known.blocks for known in _found(exchange)), default=None)
+
+
+def sentence(exchange):
+    """One sentence about native.View.statistics()["exchange"], without a full stop."""
+    found = _found(exchange)
+    if not found:
         return "how far off was not measured for grains like these"
     low = [known.low_sun for known in found if known.low_sun]
     under = f", {max(low):.0%} under a low sun" if low else ""

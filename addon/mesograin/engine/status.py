@@ -48,6 +48,7 @@ class Status:
     warnings: tuple = ()
     error: str = ""
     exchange: Exchange = None
+    budget: str = ""  # what came of it, without a full stop
 
 
 _latest = {}

@@ -18,19 +18,29 @@ def asked(material):
     return ("model", models.AUTO.name) in material.values
 
 
-def with_model(drawn):
-    """An export.InstanceValues or heaps.HeapValues with the model that serves it, if it is AUTO. Raises native.Error
-    that names the material."""
+def with_model(drawn, tolerance):
+    """An export.InstanceValues or heaps.HeapValues with the model that serves it, if it is AUTO. tolerance: in %.
+    Raises native.Error that names the material."""
     if not asked(drawn.material):
         return drawn
-    return dataclasses.replace(drawn, material=_with_model(drawn.material, _shape(drawn.mesh, drawn.typical())))
+    return dataclasses.replace(drawn, material=_with_model(drawn.material, advised(drawn, tolerance)[0]))
+
+
+def advised(drawn, tolerance):
+    """(name, measured error in %) of the model that serves a drawn thing whose model is AUTO. Raises as with_model."""
+    return _advise(drawn.material, _shape(drawn.mesh, drawn.typical()), tolerance)
 
 
 @functools.lru_cache(maxsize=256)
-def _with_model(material, shape):
+def _advise(material, shape, tolerance):
     native = native_module.get()
-    advised = advice.advise(native, material.to_native(native), *shape)
-    return dataclasses.replace(material, values=tuple({**dict(material.values), "model": advised.model}.items()))
+    found = advice.advise(native, material.to_native(native), *shape, tolerance)
+    return found.model, found.error
+
+
+@functools.lru_cache(maxsize=256)
+def _with_model(material, model):
+    return dataclasses.replace(material, values=tuple({**dict(material.values), "model": model}.items()))
 
 
 def _shape(mesh, to_world):

@@ -9,8 +9,8 @@ import bpy
 import numpy as np
 
 from .. import compat, native_module
-from ..schema import models, parameters
-from . import (automatic, colours, heaps, instance_attributes, left_out, lens, lights, mesh_lights, meshes,
+from ..schema import advice, models, parameters
+from . import (automatic, budgets, colours, heaps, instance_attributes, left_out, lens, lights, mesh_lights, meshes,
                node_colours, plain_materials, properties, scattered, surroundings, textures)
 
 
@@ -81,6 +81,7 @@ class SceneValues:
     millimetres_per_unit: float = 1.0
     exchange: str = parameters.SCENE["exchange"].default  # how grains send light to each other
     denoise: bool = parameters.SCENE["denoise"].default
+    tolerance: float = advice.TOLERANCE  # in %, within which AUTO's models are chosen
 
     @property
     def materials(self):
@@ -98,8 +99,14 @@ class SceneValues:
         if not any(automatic.asked(material) for material in self.materials):
             return self
         return dataclasses.replace(self, **{
-            field: tuple(automatic.with_model(drawn) for drawn in getattr(self, field))
+            field: tuple(automatic.with_model(drawn, self.tolerance) for drawn in getattr(self, field))
             for field in ("instances", "heaps")})
+
+    def error_of_models(self):
+        """What the models of AUTO for single things were measured to be off at most, in %; None if there are none.
+        Raises as `to_native`."""
+        return max((automatic.advised(drawn, self.tolerance)[1] for drawn in self.instances
+                    if automatic.asked(drawn.material)), default=None)
 
     def to_native(self, materials=None):
         """The native Scene. materials: {MaterialValues: native.Material} that are made already; takes in the others.
@@ -286,6 +293,7 @@ def with_new_materials(values, depsgraph):
     as_before = (values.millimetres_per_unit == scene.mesograin.millimetres_per_unit
                  and values.exchange == scene.mesograin.exchange
                  and values.denoise == scene.mesograin.denoise
+                 and values.tolerance == budgets.tolerance(scene.mesograin)
                  and values.world == surroundings.read(scene, _world_side(depsgraph), depsgraph.view_layer)[0])
     if not changed or not as_before or any(heap.factors and heap.material.name in changed for heap in values.heaps):
         return None
@@ -480,7 +488,8 @@ class _Reader:
         if camera is not None and camera.type == "CAMERA" and camera.data.type == "PANO":
             self._warn(f"Camera '{camera.name}' is panoramic, which Mesograin draws as perspective.")
         return SceneValues(tuple(self._instances), (*self._lights, *around.suns), tuple(self._warnings), around,
-                           gathered, self._millimetres_per_unit, scene.mesograin.exchange, scene.mesograin.denoise)
+                           gathered, self._millimetres_per_unit, scene.mesograin.exchange, scene.mesograin.denoise,
+                           budgets.tolerance(scene.mesograin))
 
     def _read_drawable(self, evaluated_object, matrix_world):
         parts = self._cache.parts(evaluated_object)

@@ -3,6 +3,7 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, FloatVectorProperty, IntProperty, PointerProperty
 
 from ..schema import models, parameters
+from . import budgets
 
 MATERIAL_PARAMETERS = tuple(parameters.PARAMETERS)
 
@@ -51,10 +52,20 @@ class MaterialProperties(bpy.types.PropertyGroup):
 
 
 class SceneProperties(bpy.types.PropertyGroup):
-    """`scene.mesograin`: how finely to render, and how long a Blender unit is."""
+    """`scene.mesograin`: how finely to render, until when, and how long a Blender unit is."""
 
     samples: IntProperty(name="Render samples", default=64, min=1, max=1 << 20, soft_max=4096, update=_tag,
                          description="Samples of each pixel in a final render")
+    budget: EnumProperty(name="Until", items=budgets.CHOICES, default=budgets.SAMPLES, update=_tag,
+                         description="When a final render ends")
+    budget_error: FloatProperty(
+        name="Error", subtype="PERCENTAGE", default=3.0, min=0.01, max=100.0, soft_min=0.5, soft_max=20.0, precision=2,
+        update=_tag,
+        description="What a pixel may be off by noise on average, and models and light between grains where that was "
+                    "measured, of its light")
+    budget_seconds: FloatProperty(
+        name="Time, s", default=10.0, min=0.1, max=1e6, soft_max=3600.0, precision=1, update=_tag,
+        description="From the start of a final render; one sample is always drawn")
     viewport_samples: IntProperty(name="Viewport samples", default=64, min=1, max=1 << 20, soft_max=4096, update=_tag,
                                   description="Samples of each pixel after which the viewport rests")
     millimetres_per_unit: FloatProperty(

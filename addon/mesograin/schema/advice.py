@@ -29,7 +29,7 @@ class Advice:
     sentence: str
 
 
-def advise(native, material, volume, area, closed):
+def advise(native, material, volume, area, closed, tolerance=TOLERANCE):
     """Advice for a grain of a native.Material, whatever its model, and of this volume and area in its unit of length,
-    whose surface is closed or not."""
-    return Advice(*native.advise(material, volume, area, closed))
+    whose surface is closed or not. tolerance: in %."""
+    return Advice(*native.advise(material, volume, area, closed, tolerance))

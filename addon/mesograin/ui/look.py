@@ -5,7 +5,7 @@ from bpy.props import EnumProperty, FloatProperty, FloatVectorProperty, PointerP
 
 from .. import native_module
 from ..schema import advice, models
-from ..scene import export, meshes, thick_layer
+from ..scene import budgets, export, meshes, thick_layer
 from ..scene.properties import OVERRIDABLE
 from .active_material import OnActiveMaterial, active_material
 from .widths import CHARACTER_WIDTH, LABELS, MARGINS, width
@@ -162,33 +162,36 @@ def _shape_as_seen(thing):
     return _seen[key]
 
 
-def advise(material, thing, millimetres_per_unit, shape_of=_shape):
-    """advice.Advice for a mesh object of this material; None for what has no volume or none of it."""
+def advise(material, thing, millimetres_per_unit, tolerance=advice.TOLERANCE, shape_of=_shape):
+    """advice.Advice for a mesh object of this material; None for what has no volume or none of it. tolerance: in %."""
     shape = shape_of(thing) if thing is not None and _is_on(material, thing) else None
     if shape is None:
         return None
     try:
         native = native_module.get()
-        return advice.advise(native, export.material_values(material, millimetres_per_unit).to_native(native), *shape)
+        grain = export.material_values(material, millimetres_per_unit).to_native(native)
+        return advice.advise(native, grain, *shape, tolerance)
     except _sentences():
         return None
 
 
-def advise_as_seen(material, thing, millimetres_per_unit):
+def advise_as_seen(material, thing, millimetres_per_unit, tolerance):
     """advise, fast enough for a panel."""
-    return advise(material, thing, millimetres_per_unit, _shape_as_seen)
+    return advise(material, thing, millimetres_per_unit, tolerance, _shape_as_seen)
 
 
 class MESOGRAIN_OT_choose_model(OnActiveMaterial, bpy.types.Operator):
     bl_idname = "mesograin.choose_model"
     bl_label = "Choose Model"
     bl_description = ("Take the cheapest model whose measured error is under "
-                      f"{advice.TOLERANCE:g} % for this object's size, shape and medium")
+                      f"{advice.TOLERANCE:g} % for this object's size, shape and medium, or under that which Render, "
+                      "Sampling, Until asks for")
     bl_options = {"REGISTER", "UNDO"}
 
     def execute(self, context):
         material = active_material(context)
-        advised = advise(material, context.object, context.scene.mesograin.millimetres_per_unit)
+        settings = context.scene.mesograin
+        advised = advise(material, context.object, settings.millimetres_per_unit, budgets.tolerance(settings))
         if advised is None:
             name = context.object.name
             self.report({"WARNING"}, f"'{name}' encloses nothing: a grain needs a mesh with a volume."

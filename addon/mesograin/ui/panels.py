@@ -5,7 +5,7 @@ import bpy
 
 from .. import compat, native_module
 from ..engine import engine, passes, status
-from ..scene import export, plain_materials
+from ..scene import budgets, export, plain_materials
 from ..schema import models, parameters
 from . import conversion, look, named_things, presets
 from .widths import CHARACTER_WIDTH, MARGINS, width
@@ -113,8 +113,9 @@ class MESOGRAIN_PT_material(MesograinPanel, bpy.types.Panel):
         thing = getattr(context, "object", None)
         if thing is None or native_module.problem():
             return
-        unit = context.scene.mesograin.millimetres_per_unit
-        advised = look.advise_as_seen(context.material, thing, unit)
+        settings = context.scene.mesograin
+        unit = settings.millimetres_per_unit
+        advised = look.advise_as_seen(context.material, thing, unit, budgets.tolerance(settings))
         for sentence in (look.hint(context.material, thing, unit), advised and advised.sentence):
             if sentence:
                 draw_sentence(self.layout, context, sentence, icon="LIGHT")
@@ -208,6 +209,11 @@ LIGHT_PROPERTIES = {
 """What a light has beside its colour and strength, where this Blender has it, and what it is called if not as there."""
 
 
+BUDGET = {budgets.SAMPLES: ("samples", "Samples"), budgets.ERROR: ("budget_error", "Error"),
+          budgets.TIME: ("budget_seconds", "Time, s")}
+"""The property by which each is told, and what it is called."""
+
+
 class MESOGRAIN_PT_sampling(MesograinPanel, bpy.types.Panel):
     bl_label = "Sampling"
     bl_context = "render"
@@ -219,7 +225,9 @@ class MESOGRAIN_PT_sampling(MesograinPanel, bpy.types.Panel):
         if not draw_native_problem(layout, context):
             draw_complaints(layout, context)
         column = layout.column(align=True)
-        column.prop(settings, "samples", text="Render")
+        column.prop(settings, "budget")
+        name, text = BUDGET[settings.budget]
+        column.prop(settings, name, text=text)
         column.prop(settings, "viewport_samples", text="Viewport")
         layout.prop(settings, "millimetres_per_unit", text="Unit, mm")
         layout.prop(settings, "exchange", text="Exchange")
@@ -300,6 +308,8 @@ class MESOGRAIN_PT_statistics(MesograinPanel, bpy.types.Panel):
         column.label(text=f"{title}: {latest.width} x {latest.height}, {samples}")
         for name, milliseconds in latest.passes:
             column.label(text=f"{name.replace('_', ' ')}: {milliseconds:.2f} ms", icon="BLANK1")
+        if latest.budget:
+            draw_sentence(column, context, f"{latest.budget}.", icon="BLANK1")
         if latest.exchange:
             for line in latest.exchange.lines():
                 column.label(text=line, icon="BLANK1")
