@@ -142,6 +142,23 @@ class Gather {
   /// What is left of a light on its way to a grain's surface.
   glm::vec3 passed_towards(std::uint32_t grain, const glm::vec3& place, const glm::vec3& to_light, float reach,
                            const Facets& facets) const;
+  /// A place of a ball's surface, from its middle, as it is seen.
+  struct SeenBall {
+    std::uint32_t grain;
+    glm::vec3 place;
+    glm::vec3 normal;
+    glm::vec3 towards;
+  };
+  /// Through how many grains more a walk goes on by walks in them, before what others send ends it: numbers a grain
+  /// tell from where light leaves it, not that it goes on as it came. None of grains that scatter about evenly.
+  int followed_on(std::uint32_t grain) const;
+  /// `share` of what one walk finds, which may go on through `on` grains more.
+  void add_walk(const SeenBall& seen, const glm::vec3& share, int on, transport::Random& random, All& all) const;
+  void add_walk(const SeenFacet& seen, const std::optional<End>& across, const Facets& facets, const glm::vec3& share,
+                int on, transport::Random& random, All& all) const;
+  /// Along a ray that has left a grain; `wall`: what it meets first, if that is known.
+  void follow_on(std::uint32_t grain, std::optional<Meeting> wall, Ray ray, const Facets& facets, int on,
+                 transport::Random& random, All& all) const;
   /// What is sent along a ray, if it meets anything.
   std::optional<glm::vec3> sent_along(Ray& ray, transport::Random& random) const;
   /// What a world without a picture sends to the end of it.

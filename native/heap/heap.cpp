@@ -145,6 +145,7 @@ glm::vec3 Space::seen_along(Ray& ray, const Field& sent, transport::Random& rand
     const float cosine = std::clamp(-glm::dot(meeting->normal, ray.direction), 0.0F, 1.0F);
     const glm::vec3 crossing = meeting->wall ? glm::vec3(0.0F) : kind(meeting->number).from_light->crossing(cosine);
     seen += ray.weight * (1.0F - crossing) / from->met * seats_->light_at(sent, from->number, from->normal, true);
+    if (meeting->wall) seen += ray.weight * walls_[meeting->number].radiance;
     ray.weight *= crossing;
     if (!meeting->wall) cross(ray, *meeting, cosine);
   }

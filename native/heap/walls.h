@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
 #include <vector>
 
 #include "scene/mesh.h"
@@ -12,8 +13,9 @@ namespace mesograin::heap {
 
 struct Wall {
   scene::MeshPointer mesh;
-  glm::dmat4 to_heap;  ///< from the mesh's own space to where grains have their places
-  std::uint32_t kind;  ///< which of Grains::kinds
+  glm::dmat4 to_heap;        ///< from the mesh's own space to where grains have their places
+  std::uint32_t kind;        ///< which of Grains::kinds
+  glm::vec3 radiance{0.0F};  ///< of its own; lights tell what that does to grains
 
   bool operator==(const Wall&) const = default;
 

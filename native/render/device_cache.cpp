@@ -11,6 +11,7 @@
 
 #include "models/finish.h"
 #include "models/prototype_inputs.h"
+#include "scene/advice.h"
 #include "scene/convexity.h"
 
 namespace mesograin::render {
@@ -116,7 +117,7 @@ void DeviceMaterial::bind(const gl::Program& program) const {
 DeviceCache::MeshEntry& DeviceCache::mesh_entry(const scene::MeshPointer& mesh) {
   MeshEntry& entry = meshes_[mesh.get()];
   // A new mesh may have been given the address of one that is gone.
-  if (entry.source.expired()) entry = {mesh, nullptr, nullptr, nullptr, std::nullopt};
+  if (entry.source.expired()) entry = {mesh, nullptr, nullptr, nullptr, std::nullopt, std::nullopt};
   return entry;
 }
 
@@ -147,6 +148,12 @@ bool DeviceCache::convex(const scene::MeshPointer& mesh) {
   MeshEntry& entry = mesh_entry(mesh);
   if (!entry.convex) entry.convex = scene::is_convex(*mesh);
   return *entry.convex;
+}
+
+bool DeviceCache::closed(const scene::MeshPointer& mesh) {
+  MeshEntry& entry = mesh_entry(mesh);
+  if (!entry.closed) entry.closed = scene::shape_of(*mesh, glm::dmat3(1.0)).closed;
+  return *entry.closed;
 }
 
 std::shared_ptr<DeviceMaterial> DeviceCache::material(const scene::Material& material, double grain_radius) {

@@ -128,6 +128,9 @@ class DeviceCache {
   /// As scene::is_convex, found once.
   bool convex(const scene::MeshPointer& mesh);
 
+  /// As scene::shape_of has it, found once.
+  bool closed(const scene::MeshPointer& mesh);
+
   /// `grain_radius` as in models::material_inputs; materials are shared by grains within half a percent.
   std::shared_ptr<DeviceMaterial> material(const scene::Material& material, double grain_radius);
 
@@ -182,6 +185,7 @@ class DeviceCache {
     std::shared_ptr<Details> details;
     std::shared_ptr<const casting::MeshTree> tree;
     std::optional<bool> convex;
+    std::optional<bool> closed;
   };
   MeshEntry& mesh_entry(const scene::MeshPointer& mesh);
 

@@ -76,6 +76,8 @@ bool is_plain(const scene::Material& material) {
 
 class Gatherer {
  public:
+  explicit Gatherer(DeviceCache& cache) : cache_(&cache) {}
+
   void add(const Content& content) {
     if (const Instances* instances = content.instances())
       for (const InstanceGroup& group : instances->groups())
@@ -84,12 +86,12 @@ class Gatherer {
     std::vector<float> radii;
     for (const heap::Grain& grain : grains.grains) radii.push_back(grain.radius);
     for (const Draw& draw : content.draws())
-      if (shape(*draw.source).grain) radii.push_back(radius_of(draw));
+      if (may_be_grain(draw)) radii.push_back(radius_of(draw));
     const auto middle = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2);
     std::nth_element(radii.begin(), middle, radii.end());
     for (const Draw& draw : content.draws()) {
       const bool large = is_plain(draw.look) && radius_of(draw) > wall_over_grain * *middle;
-      if (shape(*draw.source).grain && !large)
+      if (may_be_grain(draw) && !large)
         add(draw.source, draw.look,
             glm::vec4(glm::vec3(draw.centre - content.anchor()), static_cast<float>(draw.reach)));
       else
@@ -106,6 +108,17 @@ class Gatherer {
     const auto [shape, added] = shapes_.try_emplace(&mesh);
     if (added) shape->second = shape_of(mesh);
     return shape->second;
+  }
+
+  static glm::dvec3 radiance_of(const Draw& draw) {
+    return draw.look.finish ? draw.look.finish->radiance : glm::dvec3(0.0);
+  }
+
+  // What a plain surface that is open encloses depends on where its origin is: a bowl is no ball. What shines is seen
+  // to do so where it is a wall.
+  bool may_be_grain(const Draw& draw) {
+    if (!shape(*draw.source).grain || radiance_of(draw) != glm::dvec3(0.0)) return false;
+    return !is_plain(draw.look) || cache_->closed(draw.source);
   }
 
   float radius_of(const Draw& draw) { return static_cast<float>(draw.reach * shape(*draw.source).radius_over_reach); }
@@ -133,9 +146,11 @@ class Gatherer {
     roles.back().wall = static_cast<std::uint32_t>(grains.walls.size());
     glm::dmat4 to_heap = draw.object_to_world;
     to_heap[3] -= glm::dvec4(anchor, 0.0);
-    grains.walls.push_back({draw.source, to_heap, grains.kind(heap::optics_of(draw.look, rounded(draw.reach)))});
+    const std::uint32_t kind = grains.kind(heap::optics_of(draw.look, rounded(draw.reach)));
+    grains.walls.push_back({draw.source, to_heap, kind, glm::vec3(radiance_of(draw))});
   }
 
+  DeviceCache* cache_;
   std::map<const scene::Mesh*, Shape> shapes_;
 };
 
@@ -181,8 +196,8 @@ bool shows_through(const heap::Grains& grains, const scene::Scene& scene) {
 
 }  // namespace
 
-void Exchange::set(const Content& content, const scene::Scene& scene) {
-  Gatherer gathered;
+void Exchange::set(DeviceCache& cache, const Content& content, const scene::Scene& scene) {
+  Gatherer gathered(cache);
   const bool arrays = content.instances() != nullptr;
   const bool heaps = scene.exchange == scene::Exchange::heaps;
   const bool exchanges = scene.exchange != scene::Exchange::off;
@@ -190,7 +205,7 @@ void Exchange::set(const Content& content, const scene::Scene& scene) {
   const bool clear = exchanges && std::any_of(gathered.grains.kinds.begin(), gathered.grains.kinds.end(),
                                               std::mem_fn(&heap::Optics::clear));
   // A grain alone is its model's, but for what is seen through it.
-  if (heaps && !arrays && !(clear && shows_through(gathered.grains, scene))) gathered = {};
+  if (heaps && !arrays && !(clear && shows_through(gathered.grains, scene))) gathered = Gatherer(cache);
   alike_.clear();
   if (const Instances* instances = content.instances())
     for (const InstanceGroup& group : instances->groups()) alike_.emplace_back(group.first, group.first + group.count);

@@ -56,7 +56,7 @@ class Exchange {
 
   /// Takes what a view draws, and begins to solve if anything has changed that light depends on. Until more is known,
   /// what was known before is drawn.
-  void set(const Content& content, const scene::Scene& scene);
+  void set(DeviceCache& cache, const Content& content, const scene::Scene& scene);
 
   /// Whether any light goes from grain to grain.
   bool any() const { return solving_ != nullptr && solving_->heap().exchanges; }

@@ -36,7 +36,7 @@ void Frame::resize(int width, int height) {
 void Frame::set_scene(scene::Scene scene) {
   content_ = std::make_unique<Content>(cache_, scene, std::move(*content_));
   lighting_.set(scene);
-  exchange_.set(*content_, scene);
+  exchange_.set(cache_, *content_, scene);
   scene_ = std::move(scene);
   unwrapping_.reset();
   forget_content();
@@ -69,7 +69,7 @@ void Frame::set_bake(const Bake& bake) {
       throw Error("Baking needs UVs, and the mesh of instance {} has none: unwrap it first.", instance);
   }
   content_ = std::make_unique<Content>(cache_, scene_, std::move(*content_), bake.instances);
-  exchange_.set(*content_, scene_);
+  exchange_.set(cache_, *content_, scene_);
   unwrapping_ = Unwrapping{{}, bake.view_from};
   for (const std::size_t instance : bake.instances) unwrapping_->draws.push_back(content_->draw_of(instance));
   forget_content();

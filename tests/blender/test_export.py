@@ -199,6 +199,17 @@ def test_slots_are_parts_of_one_object_and_other_objects_are_not():
     assert all(parts.count(first) == 2 for first in parts)
 
 
+def test_an_instancer_without_faces_shows_its_instances_and_is_no_mistake():
+    cube = add_cube()
+    points = bpy.data.meshes.new("Points")
+    points.from_pydata([(0.0, 0.0, float(z)) for z in range(3)], [], [])
+    instancer = add_object("Points", points, Matrix())
+    instancer.instance_type, cube.parent = "VERTS", instancer
+    values = read_scene()
+    assert {instance.object_to_world[11] for instance in values.instances} == {0.0, 1.0, 2.0}
+    assert not any("no faces" in sentence for sentence in values.warnings)
+
+
 def test_a_slot_that_is_gone_is_the_last_one(made):
     cube = add_cube()
     cube.data.materials.append(bpy.data.materials.new("Only"))

@@ -496,6 +496,8 @@ class _Reader:
         if not parts:
             if evaluated_object.type == "META":
                 return  # a family of metaballs is drawn with its first member
+            if evaluated_object.is_instancer:
+                return  # its vertices may show others
             if any(modifier.type == "NODES" for modifier in evaluated_object.modifiers):
                 return  # which may have made instances of it and nothing else
             self._warn(f"Object '{evaluated_object.name}' has no faces, so nothing of it is drawn.")
