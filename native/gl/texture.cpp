@@ -7,7 +7,7 @@
 namespace mesograin::gl {
 
 Texture::Texture(GLenum format, int width, int height)
-    : TextureStorage(width, height), holds_numbers_(format == GL_R32UI) {
+    : TextureStorage(width, height), holds_numbers_(format == GL_R32UI || format == GL_RGB32UI) {
   GLint largest = 0;
   glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
   if (width < 1 || height < 1 || width > largest || height > largest)

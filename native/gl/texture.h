@@ -19,6 +19,12 @@ class Texture : public TextureStorage<GL_TEXTURE_2D> {
   /// Linear or nearest filtering.
   void sample_linearly(bool linear) { filter(linear ? GL_LINEAR : GL_NEAREST); }
 
+  /// Its one component is read as all three of a colour.
+  void show_first_as_all() {
+    glTextureParameteri(name(), GL_TEXTURE_SWIZZLE_G, GL_RED);
+    glTextureParameteri(name(), GL_TEXTURE_SWIZZLE_B, GL_RED);
+  }
+
   /// What lies beyond its edges: GL_REPEAT, GL_MIRRORED_REPEAT, ...
   void wrap(GLint how) {
     glTextureParameteri(name(), GL_TEXTURE_WRAP_S, how);

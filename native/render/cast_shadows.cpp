@@ -8,6 +8,7 @@
 #include "render/cast_work.h"
 #include "render/lit_place.h"
 #include "render/pixel_rays.h"
+#include "transport/random.h"
 
 namespace mesograin::render {
 namespace {
@@ -15,13 +16,31 @@ namespace {
 constexpr int across = 4, high = 2;
 static_assert(across * high == static_cast<int>(casting::rays_in_packet));
 
+casting::SingleRay alone(const casting::Packet& packet, unsigned ray) {
+  const glm::vec3 along(packet.direction_x[ray], packet.direction_y[ray], packet.direction_z[ray]);
+  const float length = glm::length(along);
+  return {.origin = {packet.origin_x[ray], packet.origin_y[ray], packet.origin_z[ray]},
+          .direction = along / length,
+          .from = packet.from[ray],
+          .own = packet.own[ray] * length,
+          .farthest = packet.farthest[ray] * length};
+}
+
+// In [0, 1), of each pixel and light: the golden ratio's sequence over the samples, begun anywhere.
+float draw_of(std::size_t place, std::size_t light, std::uint32_t index) {
+  transport::Random begun(static_cast<std::uint64_t>(light), static_cast<std::uint64_t>(place));
+  const float drawn = begun.uniform() + 0x1p-32F * static_cast<float>(2654435769U * index);
+  return drawn - std::floor(drawn);
+}
+
 }  // namespace
 
 bool CastShadows::cast(const CastContent& cast, const Content& content, const SeenSurfaces& seen,
                        const std::function<bool(std::size_t)>& asks, const std::vector<ShadowEye>& eyes,
-                       const GoOn& go_on) {
+                       const StraightThrough* through, std::uint32_t index, const GoOn& go_on) {
   const glm::ivec2 size = seen.size;
-  reached_.assign(static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y), 0);
+  const std::size_t channels = through != nullptr ? 3 : 1;
+  reached_.assign(channels * static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y), 0);
   const auto cast_packet = [&](const glm::ivec2& corner, int end_row) {
     std::size_t places[casting::rays_in_packet];
     LitPlace lit[casting::rays_in_packet];
@@ -48,9 +67,17 @@ bool CastShadows::cast(const CastContent& cast, const Content& content, const Se
         else
           set_off(packet, ray, lit[ray], eye);
       }
-      cast.find_occluded(packet);
-      for (unsigned ray = 0; ray < casting::rays_in_packet; ++ray)
-        if (packet.cast[ray]) reached_[places[ray]] |= 1U << light;
+      casting::Packet unhindered = packet;
+      cast.find_occluded(unhindered);
+      for (unsigned ray = 0; ray < casting::rays_in_packet; ++ray) {
+        if (!packet.cast[ray]) continue;
+        const bool whole = unhindered.cast[ray];
+        if (!whole && through == nullptr) continue;
+        const glm::vec3 left = whole ? glm::vec3(1.0F) : through->left(alone(packet, ray));
+        const float drawn = whole ? 0.0F : draw_of(places[ray], light, index);
+        for (std::size_t channel = 0; channel < channels; ++channel)
+          if (drawn < left[static_cast<int>(channel)]) reached_[channels * places[ray] + channel] |= 1U << light;
+      }
     }
   };
   const bool whole = cast_rows(size.y, go_on, [&](int first, int end) {
@@ -58,10 +85,12 @@ bool CastShadows::cast(const CastContent& cast, const Content& content, const Se
       for (int x = 0; x < size.x; x += across) cast_packet({x, y}, end);
   });
   if (!whole) return false;
-  if (!device_ || device_->width() != size.x || device_->height() != size.y) {
-    device_.emplace(GL_R32UI, size.x, size.y);
+  if (!device_ || device_->width() != size.x || device_->height() != size.y || channels_ != channels) {
+    device_.emplace(channels == 3 ? GL_RGB32UI : GL_R32UI, size.x, size.y);
+    if (channels == 1) device_->show_first_as_all();
+    channels_ = channels;
   }
-  device_->upload(GL_RED_INTEGER, GL_UNSIGNED_INT, reached_.data());
+  device_->upload(channels == 3 ? GL_RGB_INTEGER : GL_RED_INTEGER, GL_UNSIGNED_INT, reached_.data());
   return true;
 }
 

@@ -18,6 +18,7 @@
 #include "render/content.h"
 #include "render/go_on.h"
 #include "render/shadow_maps.h"
+#include "render/straight_through.h"
 
 namespace mesograin::render {
 
@@ -40,17 +41,20 @@ struct SeenSurfaces {
 
 class CastShadows {
  public:
-  /// Casts a ray from each pixel to each light, where it shows an object by whose number `asks` says so. False if
-  /// ended.
+  /// Casts a ray from each pixel to each light, where it shows an object by whose number `asks` says so. `through`:
+  /// what goes straight through what stands in the way, or null if nothing does. A share of light is a bit that is set
+  /// as often, in each channel and the samples of these indices. False if ended.
   bool cast(const CastContent& cast, const Content& content, const SeenSurfaces& seen,
-            const std::function<bool(std::size_t)>& asks, const std::vector<ShadowEye>& eyes, const GoOn& go_on);
+            const std::function<bool(std::size_t)>& asks, const std::vector<ShadowEye>& eyes,
+            const StraightThrough* through, std::uint32_t index, const GoOn& go_on);
 
   /// Makes them what shaders/scene/shadows.glsl reads.
   void bind(const gl::Program& program) const;
 
  private:
-  std::vector<std::uint32_t> reached_;  // a bit a light
+  std::vector<std::uint32_t> reached_;  // a bit a light; of each channel, or of all together
   std::optional<gl::Texture> device_;
+  std::size_t channels_ = 0;  // of it
 };
 
 /// Fills a shadow map of this many texels on a side. False if ended.

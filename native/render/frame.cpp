@@ -155,6 +155,7 @@ Sample Frame::begin_sample(const GoOn& go_on) {
   if (unwrapping_) return sample;
   // Of what light goes between it is known otherwise what is seen behind.
   const bool behind = !exchange_.any() && content_->any_shows_behind();
+  sample.straight_through = behind && traced;
   sample.mirrors = arrays_.mirrors(*content_, lighting_.world().shines(), behind,
                                    [&](std::size_t unit) { return sample.asks_model(unit); });
   if (sample.mirrors == Mirrors::hindered && !targets_->mirror)

@@ -93,22 +93,22 @@ uniform float grain_reach;  // no point of the grain is farther than this from t
 
 #ifndef LIGHT_MAPS
 // What reaches a surface that shows light only where it enters.
-float light_reaches_surface(LightSample light, SurfacePoint point) {
+vec3 light_reaches_surface(LightSample light, SurfacePoint point) {
 #ifdef CAST_SHADOWS
   return light_reaches_pixel(light.index);
 #elif defined(SHADOWS) && defined(WHOLE_GRAIN)
-  if (entered >= 0.0) return entered;
+  if (entered >= 0.0) return vec3(entered);
   // Light enters about the point, as far as half the grain reaches: where, is another place with every sample.
   vec3 random = 2.0 * vec3(pcg4d(uvec4(uvec2(gl_FragCoord.xy), uint(sample_index), uint(light.index))).xyz >> 8u) * (1.0 / 16777216.0) - 1.0;
-  return light_reaches(light.index, point.on_triangle + 0.5 * grain_reach * random, -1.0);
+  return vec3(light_reaches(light.index, point.on_triangle + 0.5 * grain_reach * random, -1.0));
 #elif defined(SHADOWS)
   float cosine = dot(point.normal, light.to_light);
-  if (cosine <= 0.0) return 0.0;
+  if (cosine <= 0.0) return vec3(0.0);
   // Within a texel a surface that is steep to the light lies deeper than the texel is wide.
   float rise = 1.0 + 2.0 * sqrt(max((1.0 - cosine) * (1.0 + cosine), 0.0)) / max(cosine, 0.05);
-  return light_reaches(light.index, point.on_triangle, shades_itself != 0 ? rise : -1.0);
+  return vec3(light_reaches(light.index, point.on_triangle, shades_itself != 0 ? rise : -1.0));
 #else
-  return 1.0;
+  return vec3(1.0);
 #endif
 }
 #endif
@@ -145,7 +145,7 @@ vec3 lit_by(SurfacePoint point, Outwards outwards, LightSample light) {
   move_to_point(light, to_middle, point);
 #endif
 #else
-  float reached = light_reaches_surface(light, point);
+  vec3 reached = light_reaches_surface(light, point);
   light.irradiance *= reached;
   light.entering *= reached;
 #endif

@@ -10,9 +10,9 @@
 #include "scene/grain.glsl"
 
 #ifdef CAST_SHADOWS
-uniform usampler2D lights_that_reach;  // a bit each
+uniform usampler2D lights_that_reach;  // a bit each, of each channel
 
-float light_reaches_pixel(int light) { return float((texelFetch(lights_that_reach, ivec2(gl_FragCoord.xy), 0).r >> uint(light)) & 1u); }
+vec3 light_reaches_pixel(int light) { return vec3((texelFetch(lights_that_reach, ivec2(gl_FragCoord.xy), 0).rgb >> uint(light)) & 1u); }
 #elif defined(SHADOWS)
 layout(std430, binding = SHADOW_VIEWS_BINDING) readonly buffer ShadowViews { ShadowView shadow_views[]; };
 

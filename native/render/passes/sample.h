@@ -52,6 +52,7 @@ struct Sample {
   bool gathers;   ///< light between grains is gathered for pixels that show them
   bool denoises;  ///< and neighbours that show the same tell each other what was found
   Mirrors mirrors = Mirrors::none;
+  bool straight_through = false;  ///< light that goes straight through single draws is followed
   const GoOn& go_on;
   std::optional<Portion> portion{};  ///< of its light, that is shaded alone
 

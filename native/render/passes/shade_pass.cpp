@@ -135,12 +135,12 @@ void ShadePass::shade_seen(const Sample& sample, const ShadowPass& shadows, cons
     const gl::Program& program =
         prepare(sample, unit,
                 {.instanced = sample.content.draw(unit) == nullptr,
-                 .shadows = sample.portion == Portion::normal ? Shadows::none : shadows.kind(sample.content),
+                 .shadows = sample.portion == Portion::normal ? Shadows::none : shadows.kind(sample.content, material),
                  .gathered = gathered.ran() && sample.exchange.any(),
                  .sees_behind = sees_behind,
                  .mirrors_world = sample.mirrors != Mirrors::none && sample.portion != Portion::normal,
                  .portion = sample.portion});
-    shadows.bind(program);
+    shadows.bind(program, material);
     gathered.bind(program);
     (looks_on && (material.facets() || sees_behind) ? sample.targets.mirror->shade : sample.targets.shade).bind();
     confine_to(sample, unit);
@@ -200,9 +200,9 @@ void ShadePass::shade_unwrapped(const Sample& sample, const ShadowPass& shadows)
   glDepthFunc(GL_LESS);
   for (const std::size_t baked : sample.unwrapping->draws) {
     const Draw& draw = sample.content.draws()[baked];
-    const gl::Program& program =
-        prepare(sample, sample.content.unit(baked), {.unwrapped = true, .shadows = shadows.kind(sample.content)});
-    shadows.bind(program);
+    const gl::Program& program = prepare(sample, sample.content.unit(baked),
+                                         {.unwrapped = true, .shadows = shadows.kind(sample.content, *draw.material)});
+    shadows.bind(program, *draw.material);
     set_draw(sample, program, draw);
     const glm::dmat4 object_to_grain = draw.object_to_grain();
     program.set("jitter", sample.jitter);

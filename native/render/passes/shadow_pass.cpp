@@ -43,15 +43,31 @@ bool ShadowPass::run(const Sample& sample, const ArrayVisibility& arrays, Surfac
   const std::vector<ShadowEye> eyes = sample.lighting.eyes(sample.lights, sample.content.anchor());
   few_ = eyes.size() <= most_cast_lights;
   by_pixel_ = few_ && known_by_pixel(sample);
+  opaque_by_pixel_ = few_ && sample.straight_through && sample.unwrapping == nullptr;
   ran_ = sample.content.shadows() && !eyes.empty();
   if (!ran_) return true;
   const auto start = std::chrono::steady_clock::now();
   const auto asks = [&](std::size_t number) { return !sample.gathers_all_of(number); };
-  const bool whole = by_pixel_
-                         ? cast_.cast(arrays.tree(), sample.content, surfaces.seen(sample), asks, eyes, sample.go_on)
-                         : update_maps(sample, arrays, eyes);
+  bool whole = by_pixel_ || update_maps(sample, arrays, eyes);
+  if (whole && (by_pixel_ || opaque_by_pixel_)) whole = cast(sample, arrays, surfaces.seen(sample), asks, eyes, cast_);
   milliseconds_ = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   return whole;
+}
+
+bool ShadowPass::cast(const Sample& sample, const ArrayVisibility& arrays, const SeenSurfaces& seen,
+                      const std::function<bool(std::size_t)>& asks, const std::vector<ShadowEye>& eyes,
+                      CastShadows& shadows) {
+  const StraightThrough through(arrays.tree(), sample.content);
+  return shadows.cast(arrays.tree(), sample.content, seen, asks, eyes, sample.straight_through ? &through : nullptr,
+                      sample.index, sample.go_on);
+}
+
+bool ShadowPass::cast_for(const DeviceMaterial& material) const {
+  return by_pixel_ || (opaque_by_pixel_ && is_opaque(material));
+}
+
+Shadows ShadowPass::kind(const Content& content, const DeviceMaterial& material) const {
+  return !content.shadows() ? Shadows::none : cast_for(material) ? Shadows::cast : Shadows::maps;
 }
 
 bool ShadowPass::update_maps(const Sample& sample, const ArrayVisibility& arrays, const std::vector<ShadowEye>& eyes) {
@@ -92,9 +108,9 @@ const DeviceSelection* ShadowPass::casters(const Content& content, const glm::dm
   return known.selection.get();
 }
 
-void ShadowPass::bind(const gl::Program& program) const {
+void ShadowPass::bind(const gl::Program& program, const DeviceMaterial& material) const {
   if (!ran_) return;
-  if (by_pixel_)
+  if (cast_for(material))
     cast_.bind(program);
   else
     maps_.bind(program);
@@ -103,18 +119,18 @@ void ShadowPass::bind(const gl::Program& program) const {
 bool ShadowPass::run_mirrored(const Sample& sample, const ArrayVisibility& arrays, const SeenSurfaces& seen) {
   const std::vector<ShadowEye> eyes = sample.lighting.eyes(sample.lights, sample.content.anchor());
   const auto asks = [](std::size_t) { return true; };
-  return !ran_ || !few_ || mirrored_.cast(arrays.tree(), sample.content, seen, asks, eyes, sample.go_on);
+  return !ran_ || !few_ || cast(sample, arrays, seen, asks, eyes, mirrored_);
 }
 
 Shadows ShadowPass::kind_mirrored(const Content& content, const DeviceMaterial& material) const {
-  return content.shadows() && few_ && is_opaque(material) ? Shadows::cast : kind(content);
+  return content.shadows() && few_ && is_opaque(material) ? Shadows::cast : kind(content, material);
 }
 
 void ShadowPass::bind_mirrored(const gl::Program& program, const DeviceMaterial& material) const {
   if (ran_ && few_ && is_opaque(material))
     mirrored_.bind(program);
   else
-    bind(program);
+    bind(program, material);
 }
 
 void ShadowPass::forget_content() {

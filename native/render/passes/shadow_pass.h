@@ -1,6 +1,7 @@
 // Finds what other objects leave of each light: a bit for each pixel and light where that is enough, else shadow maps.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -22,13 +23,11 @@ class ShadowPass {
   /// After run(), of what other surfaces mirror. False if ended.
   bool run_mirrored(const Sample& sample, const ArrayVisibility& arrays, const SeenSurfaces& seen);
 
-  /// How programs of this sample's content learn of them.
-  Shadows kind(const Content& content) const {
-    return !content.shadows() ? Shadows::none : by_pixel_ ? Shadows::cast : Shadows::maps;
-  }
+  /// How programs of this sample's content learn of them, each of its own material.
+  Shadows kind(const Content& content, const DeviceMaterial& material) const;
 
   /// Makes them what shaders/scene/shadows.glsl reads, if there are any in this sample.
-  void bind(const gl::Program& program) const;
+  void bind(const gl::Program& program, const DeviceMaterial& material) const;
 
   /// The same for what other surfaces mirror: of what is opaque, rays find what stands in the light; in what is
   /// translucent it is known as far as the shadow maps reach, which are drawn around what is seen.
@@ -51,6 +50,9 @@ class ShadowPass {
     std::unique_ptr<DeviceSelection> selection;
   };
 
+  bool cast(const Sample& sample, const ArrayVisibility& arrays, const SeenSurfaces& seen,
+            const std::function<bool(std::size_t)>& asks, const std::vector<ShadowEye>& eyes, CastShadows& shadows);
+
   bool update_maps(const Sample& sample, const ArrayVisibility& arrays, const std::vector<ShadowEye>& eyes);
 
   /// What a light of this layer sees: the same as in the sample before where it has not moved.
@@ -62,8 +64,11 @@ class ShadowPass {
   ShadowMaps maps_;
   CastShadows cast_;
   CastShadows mirrored_;
+  bool cast_for(const DeviceMaterial& material) const;
+
   bool by_pixel_ = false;
-  bool few_ = false;  // lights: each may have a bit
+  bool opaque_by_pixel_ = false;  // of surfaces that are opaque, beside the maps of others
+  bool few_ = false;              // lights: each may have a bit
   bool ran_ = false;
   double milliseconds_ = 0.0;
 };

@@ -1,0 +1,61 @@
+// From surface to surface: of each that is left the way from the origin counts, of each that is entered it counts less.
+#include "render/straight_through.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/exponential.hpp>
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+#include <optional>
+
+namespace mesograin::render {
+namespace {
+
+// Of a draw's radius: how far from where a ray met it before it may meet it again.
+constexpr float clearance = 1e-4F;
+
+// Behind more surfaces than these nothing is left.
+constexpr int most_met = 64;
+
+bool enters(const Draw& draw, const casting::Hit& hit, const glm::vec3& direction) {
+  const glm::uvec3& corners = draw.source->triangles()[hit.triangle];
+  const auto place = [&](int corner) { return glm::dvec3(draw.source->positions()[corners[corner]]); };
+  const glm::dmat3 to_world(draw.object_to_world);
+  const glm::dvec3 across = glm::cross(to_world * (place(1) - place(0)), to_world * (place(2) - place(0)));
+  return (glm::dot(across, glm::dvec3(direction)) < 0.0) == (glm::determinant(to_world) > 0.0);
+}
+
+}  // namespace
+
+glm::vec3 StraightThrough::left(casting::SingleRay ray) const {
+  const std::size_t in_arrays = content_.instances() != nullptr ? content_.instances()->count() : 0;
+  glm::vec3 depth(0.0F);
+  glm::vec3 inside(0.0F);  // sigma_t of what was entered, less that of what was left
+  float way = 0.0F;
+  for (int met = 0; met < most_met; ++met) {
+    const std::optional<casting::Hit> hit = cast_.first_hit(ray);
+    if (!hit) {
+      const bool in_light = std::isfinite(ray.farthest);
+      if (!in_light && inside != glm::min(inside, 0.0F)) return glm::vec3(0.0F);
+      if (in_light) depth += glm::max(inside, 0.0F) * (way + ray.farthest);
+      return glm::exp(-glm::max(depth, 0.0F));
+    }
+    if (hit->number < in_arrays) return glm::vec3(0.0F);
+    const Draw& draw = content_.draws()[hit->group];
+    if (!draw.material->shows_behind()) return glm::vec3(0.0F);
+    way += hit->distance;
+    const glm::vec3 sigma_t(draw.look.scale * (draw.look.sigma_a + draw.look.sigma_s));
+    const float sign = enters(draw, *hit, ray.direction) ? 1.0F : -1.0F;
+    inside += sign * sigma_t;
+    depth -= sign * way * sigma_t;
+    ray.origin += hit->distance * ray.direction;
+    ray.farthest -= hit->distance;
+    ray.from = hit->number;
+    ray.own = clearance * static_cast<float>(draw.radius);
+  }
+  return glm::vec3(0.0F);
+}
+
+}  // namespace mesograin::render
