@@ -13,6 +13,7 @@
 #include "models/prototype_inputs.h"
 #include "scene/advice.h"
 #include "scene/convexity.h"
+#include "transport/effort.h"
 
 namespace mesograin::render {
 namespace {
@@ -33,6 +34,11 @@ bool is_same(const glm::dmat3& a, const glm::dmat3& b) {
 double typical(double grain_radius) {
   constexpr double radii_an_octave = 64.0;
   return std::exp2(std::round(std::log2(grain_radius) * radii_an_octave) / radii_an_octave);
+}
+
+/// That its inputs are for.
+double table_radius(const scene::Material& material, double grain_radius) {
+  return scene::traits_of(material.model).grain_radius ? typical(grain_radius) : 1.0;
 }
 
 std::size_t texels_of(const scene::Picture& picture) {
@@ -157,11 +163,30 @@ bool DeviceCache::closed(const scene::MeshPointer& mesh) {
 }
 
 std::shared_ptr<DeviceMaterial> DeviceCache::material(const scene::Material& material, double grain_radius) {
-  const double radius = scene::traits_of(material.model).grain_radius ? typical(grain_radius) : 1.0;
-  for (const MaterialEntry& entry : materials_)
-    if (entry.source == material && entry.grain_radius == radius) return entry.device;
+  const double radius = table_radius(material, grain_radius);
+  if (const std::shared_ptr<DeviceMaterial> known = this->known(material, radius)) return known;
   materials_.push_back({material, radius, send(material.model, models::material_inputs(material, radius))});
   return materials_.back().device;
+}
+
+void DeviceCache::prepare(const std::vector<std::pair<scene::Material, double>>& materials) {
+  std::vector<std::pair<scene::Material, double>> missing;
+  for (const auto& [material, grain_radius] : materials) {
+    const std::pair one(material, table_radius(material, grain_radius));
+    if (!known(one.first, one.second) && std::ranges::find(missing, one) == missing.end()) missing.push_back(one);
+  }
+  std::vector<models::MaterialInputs> inputs(missing.size());
+  transport::run_pieces({}, missing.size(), [&](std::size_t i) {
+    inputs[i] = models::material_inputs(missing[i].first, missing[i].second);
+  });
+  for (std::size_t i = 0; i < missing.size(); ++i)
+    materials_.push_back({missing[i].first, missing[i].second, send(missing[i].first.model, std::move(inputs[i]))});
+}
+
+std::shared_ptr<DeviceMaterial> DeviceCache::known(const scene::Material& material, double radius) const {
+  for (const MaterialEntry& entry : materials_)
+    if (entry.source == material && entry.grain_radius == radius) return entry.device;
+  return nullptr;
 }
 
 std::shared_ptr<DeviceMaterial> DeviceCache::material(const scene::Material& material, const scene::MeshPointer& mesh,

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "casting/mesh_tree.h"
@@ -134,6 +135,9 @@ class DeviceCache {
   /// `grain_radius` as in models::material_inputs; materials are shared by grains within half a percent.
   std::shared_ptr<DeviceMaterial> material(const scene::Material& material, double grain_radius);
 
+  /// Computes on all cores what material() of each would have to.
+  void prepare(const std::vector<std::pair<scene::Material, double>>& materials);
+
   /// For a model that depends on the mesh, which `stretch` stretches. Until its transport is known, and where none can
   /// be, it is one that stands in for it.
   std::shared_ptr<DeviceMaterial> material(const scene::Material& material, const scene::MeshPointer& mesh,
@@ -212,6 +216,8 @@ class DeviceCache {
     std::shared_ptr<const gl::Texture> device;
   };
 
+  /// radius: as its entry has it. Null if there is none.
+  std::shared_ptr<DeviceMaterial> known(const scene::Material& material, double radius) const;
   void take_news(PrototypeEntry& entry);
   void count(const models::MaterialInputs& inputs);
   std::shared_ptr<const gl::Texture> picture(const scene::TextureMap& map);

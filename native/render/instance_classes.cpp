@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/matrix.hpp>
+#include <limits>
 #include <map>
 
 #include "models/prototype_inputs.h"
@@ -14,6 +15,9 @@ namespace {
 // Sizes to an octave that have tables of their own; an instance takes one of the two nearest, so that on average all is
 // as for its own size.
 constexpr double sizes_an_octave = 8.0;
+
+// Sizes within this ratio are one.
+constexpr double same_size = 1.01;
 
 // Stretches nearer than this share a prototype; beyond so many kinds the nearest will do.
 constexpr double same_stretch = 0.05;
@@ -30,16 +34,30 @@ double scale_of(const glm::dmat4& object_to_world) {
   return std::max(std::cbrt(std::abs(glm::determinant(glm::dmat3(object_to_world)))), 1e-100);
 }
 
+// Steps are of the grain's radius, not of how its mesh was scaled: meshes of a heap share their tables.
 std::vector<InstanceClass> by_size(const scene::InstanceArray& array) {
+  const std::size_t count = array.object_to_world().size();
+  const double radius = std::max(array.mesh->equivalent_radius(), 1e-100);
+  double least = std::numeric_limits<double>::max();
+  double most = 0.0;
+  for (std::size_t i = 0; i < count; ++i) {
+    least = std::min(least, scale_of(array.object_to_world()[i]));
+    most = std::max(most, scale_of(array.object_to_world()[i]));
+  }
+  if (most <= same_size * least) {
+    InstanceClass all{std::sqrt(least * most), glm::dmat3(1.0), {}};
+    for (std::size_t i = 0; i < count; ++i) all.members.push_back(i);
+    return {all};
+  }
   std::map<int, std::vector<std::size_t>> sizes;
-  for (std::size_t i = 0; i < array.object_to_world().size(); ++i)
+  for (std::size_t i = 0; i < count; ++i)
     sizes[static_cast<int>(
-              std::floor(sizes_an_octave * std::log2(scale_of(array.object_to_world()[i])) + random_of(i)))]
+              std::floor(sizes_an_octave * std::log2(radius * scale_of(array.object_to_world()[i])) + random_of(i)))]
         .push_back(i);
   std::vector<InstanceClass> classes;
   classes.reserve(sizes.size());
   for (auto& [size, members] : sizes)
-    classes.push_back({std::exp2(size / sizes_an_octave), glm::dmat3(1.0), std::move(members)});
+    classes.push_back({std::exp2(size / sizes_an_octave) / radius, glm::dmat3(1.0), std::move(members)});
   return classes;
 }
 

@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "render/device_layout.h"
-#include "render/instance_classes.h"
 
 namespace mesograin::render {
 namespace {
@@ -24,6 +23,11 @@ double largest_stretch(const glm::dmat3& linear) {
   return std::sqrt(largest);
 }
 
+// That its tables are for.
+double radius_of(const scene::InstanceArray& array, const InstanceClass& alike) {
+  return std::max(array.mesh->equivalent_radius() * alike.typical_scale, 1e-30);
+}
+
 }  // namespace
 
 Instances::Instances(DeviceCache& cache, const std::vector<scene::InstanceArray>& arrays, const glm::dvec3& anchor) {
@@ -32,10 +36,18 @@ Instances::Instances(DeviceCache& cache, const std::vector<scene::InstanceArray>
   rows_.reserve(3 * count);
   radii_.reserve(count);
   members_.reserve(count);
-  bool ordered = true;
+  std::vector<std::vector<InstanceClass>> classes;
+  std::vector<std::pair<scene::Material, double>> materials;
   for (const scene::InstanceArray& array : arrays) {
+    classes.push_back(instance_classes(array));
+    if (scene::traits_of(array.material.model).mesh) continue;
+    for (const InstanceClass& alike : classes.back()) materials.emplace_back(array.material, radius_of(array, alike));
+  }
+  cache.prepare(materials);
+  bool ordered = true;
+  for (std::size_t number = 0; number < arrays.size(); ++number) {
     const std::size_t begin = members_.size();
-    add(cache, array, anchor);
+    add(cache, arrays[number], classes[number], anchor);
     for (std::size_t i = begin; i < members_.size() && ordered; ++i) ordered = members_[i] == i - begin;
   }
   if (ordered) members_ = {};
@@ -48,10 +60,11 @@ std::size_t Instances::prototype(DeviceCache& cache, const scene::MeshPointer& m
   return prototypes_.size() - 1;
 }
 
-void Instances::add(DeviceCache& cache, const scene::InstanceArray& array, const glm::dvec3& anchor) {
+void Instances::add(DeviceCache& cache, const scene::InstanceArray& array, const std::vector<InstanceClass>& classes,
+                    const glm::dvec3& anchor) {
   const std::size_t of = prototype(cache, array.mesh);
   const scene::Mesh& mesh = *array.mesh;
-  for (const InstanceClass& alike : instance_classes(array)) {
+  for (const InstanceClass& alike : classes) {
     InstanceGroup group;
     group.prototype = of;
     group.typical_scale = alike.typical_scale;
@@ -59,7 +72,7 @@ void Instances::add(DeviceCache& cache, const scene::InstanceArray& array, const
       group.unstretch = glm::mat3(glm::inverse(alike.stretch));
       group.material = cache.material(array.material, array.mesh, alike.stretch);
     } else {
-      group.material = cache.material(array.material, std::max(mesh.equivalent_radius() * group.typical_scale, 1e-30));
+      group.material = cache.material(array.material, radius_of(array, alike));
     }
     group.source = array.material;
     if (group.material->light_maps() && !prototypes_[of].light_maps)

@@ -17,6 +17,7 @@
 #include "render/bounds.h"
 #include "render/details.h"
 #include "render/device_cache.h"
+#include "render/instance_classes.h"
 #include "render/light_map_atlas.h"
 #include "scene/scene.h"
 
@@ -116,7 +117,8 @@ class Instances {
   void bind() const;
 
  private:
-  void add(DeviceCache& cache, const scene::InstanceArray& array, const glm::dvec3& anchor);
+  void add(DeviceCache& cache, const scene::InstanceArray& array, const std::vector<InstanceClass>& classes,
+           const glm::dvec3& anchor);
   std::size_t prototype(DeviceCache& cache, const scene::MeshPointer& mesh);
   void place(std::size_t instance, const scene::Mesh& mesh, const glm::dmat4& object_to_world,
              const glm::dvec3& anchor);

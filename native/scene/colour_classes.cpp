@@ -30,19 +30,22 @@ struct Class {
 
 class Splitting {
  public:
-  Splitting(const ColourFactors& factors, std::size_t count) : features_(count) {
-    for (std::size_t i = 0; i < count; ++i)
+  void add(const ColourFactors& factors, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) {
+      Features& features = features_.emplace_back();
       for (int channel = 0; channel < 3; ++channel) {
         const auto ratio = [&](const std::vector<glm::vec3>& of) {
           return of.empty() ? 0.0F : std::log(std::max(of[i][channel], darkest));
         };
         const auto at = static_cast<std::size_t>(channel);
-        features_[i][at] = ratio(factors.sigma_a);
-        features_[i][at + 3] = ratio(factors.sigma_s);
-        features_[i][at + 6] = factors.reflectance.empty() ? 0.0F : factors.reflectance[i][channel];
+        features[at] = ratio(factors.sigma_a);
+        features[at + 3] = ratio(factors.sigma_s);
+        features[at + 6] = factors.reflectance.empty() ? 0.0F : factors.reflectance[i][channel];
       }
+    }
   }
 
+  /// Of instances numbered as they were added.
   std::vector<Class> run(std::size_t most) const {
     std::vector<std::uint32_t> all(features_.size());
     for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = i;
@@ -86,27 +89,52 @@ class Splitting {
   std::vector<Features> features_;
 };
 
-glm::dvec3 mean(const std::vector<glm::vec3>& factors, const std::vector<std::uint32_t>& members) {
-  if (factors.empty()) return glm::dvec3(1.0);
+/// Arrays of grains of one material, whatever their meshes, with the instances of all numbered through.
+struct Alike {
+  std::vector<const InstanceArray*> arrays;
+  std::vector<std::size_t> ends;  ///< of each array's numbers
+};
+
+std::vector<Alike> alike(const std::vector<InstanceArray>& arrays) {
+  std::vector<Alike> found;
+  for (const InstanceArray& array : arrays) {
+    if (!array.factors().any() || array.object_to_world().empty()) continue;
+    auto same = std::ranges::find_if(
+        found, [&](const Alike& others) { return others.arrays.front()->material == array.material; });
+    if (same == found.end()) same = found.insert(found.end(), Alike{});
+    same->ends.push_back((same->ends.empty() ? 0 : same->ends.back()) + array.object_to_world().size());
+    same->arrays.push_back(&array);
+  }
+  return found;
+}
+
+/// Of all members; those of an array without such factors count as 1.
+glm::dvec3 mean(const Alike& of, const std::vector<std::uint32_t>& members,
+                std::vector<glm::vec3> ColourFactors::*which) {
   glm::dvec3 sum(0.0);
-  for (const std::uint32_t i : members) sum += glm::dvec3(factors[i]);
+  for (const std::uint32_t member : members) {
+    const std::size_t array = static_cast<std::size_t>(std::ranges::upper_bound(of.ends, member) - of.ends.begin());
+    const std::vector<glm::vec3>& factors = of.arrays[array]->factors().*which;
+    sum += factors.empty() ? glm::dvec3(1.0) : glm::dvec3(factors[member - (array == 0 ? 0 : of.ends[array - 1])]);
+  }
   return sum / static_cast<double>(members.size());
 }
 
 // Where tables depend on the grain's size, too, each size that has tables of its own has them for each colour.
-std::size_t most_classes(const InstanceArray& array) {
-  const ModelTraits& traits = traits_of(array.material.model);
+std::size_t most_classes(const Alike& of) {
+  const ModelTraits& traits = traits_of(of.arrays.front()->material.model);
   if (traits.mesh) return 8;
   if (!traits.grain_radius) return 32;
   double least = std::numeric_limits<double>::max();
   double most = 0.0;
-  for (const glm::dmat4 place : array.object_to_world()) {
-    const double volume = std::abs(glm::determinant(glm::dmat3(place)));
-    least = std::min(least, volume);
-    most = std::max(most, volume);
-  }
+  for (const InstanceArray* array : of.arrays)
+    for (const glm::dmat4 place : array->object_to_world()) {
+      const double radius = array->mesh->equivalent_radius() * std::cbrt(std::abs(glm::determinant(glm::dmat3(place))));
+      least = std::min(least, radius);
+      most = std::max(most, radius);
+    }
   constexpr double sizes_an_octave = 8.0;
-  const double sizes = 1.0 + sizes_an_octave * std::log2(std::cbrt(most / least));
+  const double sizes = 1.0 + sizes_an_octave * std::log2(most / least);
   return static_cast<std::size_t>(std::clamp(64.0 / sizes, 4.0, 16.0));
 }
 
@@ -114,19 +142,26 @@ std::size_t most_classes(const InstanceArray& array) {
 
 std::vector<InstanceArray> by_colour(const std::vector<InstanceArray>& arrays) {
   std::vector<InstanceArray> plain;
-  for (const InstanceArray& array : arrays) {
-    const Transforms& places = array.object_to_world();
-    const ColourFactors& factors = array.factors();
-    if (!factors.any() || places.empty()) {
-      plain.push_back(array);
-      continue;
-    }
-    for (const Class& one : Splitting(factors, places.size()).run(most_classes(array))) {
-      Material material = array.material;
-      material.sigma_a *= mean(factors.sigma_a, one.members);
-      material.sigma_s *= mean(factors.sigma_s, one.members);
-      material.reflectance = glm::min(material.reflectance * mean(factors.reflectance, one.members), glm::dvec3(1.0));
-      plain.emplace_back(array.mesh, material, places.chosen(one.members));
+  for (const InstanceArray& array : arrays)
+    if (!array.factors().any() || array.object_to_world().empty()) plain.push_back(array);
+  for (const Alike& of : alike(arrays)) {
+    Splitting splitting;
+    for (const InstanceArray* array : of.arrays) splitting.add(array->factors(), array->object_to_world().size());
+    for (Class& one : splitting.run(most_classes(of))) {
+      Material material = of.arrays.front()->material;
+      material.sigma_a *= mean(of, one.members, &ColourFactors::sigma_a);
+      material.sigma_s *= mean(of, one.members, &ColourFactors::sigma_s);
+      material.reflectance =
+          glm::min(material.reflectance * mean(of, one.members, &ColourFactors::reflectance), glm::dvec3(1.0));
+      std::ranges::sort(one.members);
+      auto member = one.members.begin();
+      for (std::size_t array = 0; array < of.arrays.size(); ++array) {
+        const auto first = static_cast<std::uint32_t>(array == 0 ? 0 : of.ends[array - 1]);
+        std::vector<std::uint32_t> own;
+        for (; member != one.members.end() && *member < of.ends[array]; ++member) own.push_back(*member - first);
+        if (!own.empty())
+          plain.emplace_back(of.arrays[array]->mesh, material, of.arrays[array]->object_to_world().chosen(own));
+      }
     }
   }
   return plain;

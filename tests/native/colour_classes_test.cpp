@@ -77,6 +77,38 @@ TEST(ColourClasses, WithoutFactorsAnArrayStaysWhole) {
   EXPECT_EQ(&same[0].object_to_world(), &array.object_to_world()) << "not even copied";
 }
 
+TEST(ColourClasses, ArraysOfOneMaterialShareTheirColours) {
+  constexpr std::size_t count = 300;
+  const auto factors = [](unsigned seed) {
+    ColourFactors some;
+    some.sigma_a = random_factors(glm::dvec3(0.5), glm::dvec3(2.0), count, seed);
+    return some;
+  };
+  InstanceArray other = varied(Model::model_2, count, factors(9));
+  other.material.sigma_s *= 2.0;
+  const InstanceArray plain = varied(Model::model_2, 5, {});
+  const std::vector<InstanceArray> arrays{varied(Model::model_2, count, factors(7)), plain,
+                                          varied(Model::model_2, count, factors(8)), other};
+  const std::vector<InstanceArray> classes = by_colour(arrays);
+  EXPECT_EQ(&classes.front().object_to_world(), &plain.object_to_world()) << "what has no factors comes first";
+
+  std::vector<Material> materials;
+  std::size_t instances = 0;
+  glm::dvec3 sum(0.0);
+  for (const InstanceArray& one : classes) {
+    instances += one.object_to_world().size();
+    if (one.material.sigma_s != plain.material.sigma_s || one.material == plain.material) continue;
+    sum += static_cast<double>(one.object_to_world().size()) * one.material.sigma_a;
+    if (std::ranges::find(materials, one.material) == materials.end()) materials.push_back(one.material);
+  }
+  EXPECT_EQ(instances, 3 * count + 5);
+  EXPECT_LE(materials.size(), 16U) << "of both together";
+  glm::dvec3 exact(0.0);
+  for (const std::size_t array : {0, 2})
+    for (const glm::vec3 factor : arrays[array].factors().sigma_a) exact += 0.5 * glm::dvec3(factor);
+  for (int channel = 0; channel < 3; ++channel) EXPECT_NEAR(sum[channel] / exact[channel], 1.0, 1e-6);
+}
+
 TEST(ColourClasses, FactorsThatDoNotFitAreRefused) {
   ColourFactors factors;
   factors.sigma_a = {glm::vec3(1.0F)};
