@@ -40,7 +40,7 @@ def sides_met(shape, origin, direction):
         turned = np.cross(origin - a, b - a)
         v = turned @ direction / determinant
         distance = np.einsum("ij,ij->i", c - a, turned) / determinant
-    met = (u >= 0.0) & (v >= 0.0) & (u + v <= 1.0)
+        met = (u >= 0.0) & (v >= 0.0) & (u + v <= 1.0)
     return -np.sign(determinant[met])[np.argsort(distance[met])]
 
 

@@ -59,7 +59,7 @@ def check_film_turns_transparent_and_back_while_rendering(window):
     assert opaque[corner].max() < 0.02 and through[corner].min() > 0.02, "the background does not shine through"
     bpy.context.scene.render.film_transparent = False
     yield from window.seconds(0.5)
-    window.assert_same((yield from window.picture(area)), opaque)
+    window.assert_same((yield from window.converged_picture(area)), opaque)
     yield from settle(window, area)
 
 
