@@ -158,7 +158,9 @@ class Monkey:
             yield from self.window.seconds(0.2)
         for job in ("bake", "compare"):
             yield from self.operator("mesograin", f"cancel_{job}")
-        yield from self._open_once_drawn(self.window.blend_file("sphere"))
+        # With the file's own windows: each view that was split off holds tens of megabytes of Blender's own.
+        yield from self._open_once_drawn(self.window.blend_file("sphere"), load_ui=True)
+        _send("windowsize", *map(str, SCREEN))
         yield from self.window.seconds(0.5)
         for area in self.areas("VIEW_3D"):  # whose four views, and what they show alone, outlive a file
             if area.spaces.active.local_view is not None:
@@ -169,14 +171,14 @@ class Monkey:
         bpy.ops.outliner.orphans_purge(do_recursive=True)
         yield from self.window.seconds(0.5)
 
-    def _open_once_drawn(self, path):
+    def _open_once_drawn(self, path, load_ui):
         """See compat.refuses_writing; a loaded machine takes its time to draw."""
         for last in (*[False] * MOST_TRIES, True):
             for area in self.areas():
                 area.tag_redraw()
             yield from self.window.seconds(0.3)
             try:
-                self.open(path)
+                self.open(path, load_ui)
                 return
             except RuntimeError as refusal:
                 if last or not compat.refuses_writing(refusal):
