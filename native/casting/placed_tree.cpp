@@ -73,6 +73,13 @@ struct ToMesh {
   }
 };
 
+void leave_out_what_is_not_castable(const RTCRay8& rays, int* valid) {
+  for (unsigned i = 0; i < rays_in_packet; ++i)
+    if (!embree::castable(rays.org_x[i], rays.org_y[i], rays.org_z[i]) ||
+        !embree::castable(rays.dir_x[i], rays.dir_y[i], rays.dir_z[i]))
+      valid[i] = 0;
+}
+
 // Rays of a packet of eight arrive eight at a time. `valid`: those that may meet this instance; they are turned into
 // its mesh's axes. False if there are none.
 bool enter(const PlacedGroup& group, unsigned instance, const float* own, const int* arrived, const RTCRay8& rays,
@@ -85,6 +92,7 @@ bool enter(const PlacedGroup& group, unsigned instance, const float* own, const 
   }
   if (!any) return false;
   ToMesh(group.rows + 3 * std::size_t{instance}).turn(rays, inside);
+  leave_out_what_is_not_castable(inside, valid);
   for (unsigned i = 0; i < rays_in_packet; ++i)
     if (rays.id[i] == number) inside.tnear[i] = own[i];
   return true;
@@ -177,6 +185,7 @@ void fill(const Packet& packet, RTCRay8& rays, int* valid) {
     rays.id[i] = packet.from[i];
     rays.flags[i] = 0;
   }
+  leave_out_what_is_not_castable(rays, valid);
 }
 
 }  // namespace

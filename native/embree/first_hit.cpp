@@ -22,6 +22,7 @@ RTCRayHit first_hit(RTCScene scene, const glm::vec3& origin, const glm::vec3& di
   ray.ray.mask = ~0U;
   ray.ray.id = id;
   ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  if (!castable(origin.x, origin.y, origin.z) || !castable(direction.x, direction.y, direction.z)) return ray;
 #if RTC_VERSION_MAJOR >= 4
   RTCIntersectArguments arguments;
   rtcInitIntersectArguments(&arguments);

@@ -1,6 +1,7 @@
 // One ray at a time, which goes nowhere near the one before.
 #pragma once
 
+#include <cmath>
 #include <glm/vec3.hpp>
 #include <limits>
 
@@ -24,7 +25,15 @@ inline QueryContext fresh_context() {
   return context;
 }
 
-/// What a ray meets first between these distances along it; nothing if the hit's geomID is RTC_INVALID_GEOMETRY_ID.
+/// Whether Embree takes a ray's origin or direction: a number no larger than its own bound (FLT_LARGE). A build of it
+/// that asserts, such as Debian 12's, ends the process otherwise; an instance that is scaled flat turns rays into such.
+inline bool castable(float x, float y, float z) {
+  constexpr float largest = 1.844e18F;
+  return std::abs(x) <= largest && std::abs(y) <= largest && std::abs(z) <= largest;
+}
+
+/// What a ray meets first between these distances along it; nothing if the hit's geomID is RTC_INVALID_GEOMETRY_ID,
+/// as of a ray that is not castable().
 RTCRayHit first_hit(RTCScene scene, const glm::vec3& origin, const glm::vec3& direction, float near,
                     float far = std::numeric_limits<float>::infinity());
 

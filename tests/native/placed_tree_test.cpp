@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <glm/ext/matrix_transform.hpp>
 #include <glm/geometric.hpp>
+#include <limits>
 #include <random>
 
 #include "scene/sphere.h"
@@ -75,6 +77,36 @@ TEST(PlacedTree, FindsForARayAloneWhatItFindsInAPacket) {
     EXPECT_NEAR(alone->distance, right->distance, 1e-4F) << i;
   }
   EXPECT_GT(met, 200);
+}
+
+TEST(PlacedTree, TakesAnInstanceScaledFlatAndRaysThatAreNoNumbers) {
+  // Scaled to nothing along one axis, then turned: what is left of the determinant is rounding.
+  const glm::dmat3 turn = glm::dmat3(glm::rotate(glm::dmat4(1.0), 0.7, glm::normalize(glm::dvec3(1.0, 2.0, 3.0))));
+  std::vector<glm::vec4> rows;
+  for (const double thickness : {0.0, 1e-30, 1e-17}) {
+    const glm::dmat3 flat = turn * glm::dmat3(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, thickness);
+    for (int row = 0; row < 3; ++row) rows.emplace_back(flat[0][row], flat[1][row], flat[2][row], 0.0);
+  }
+  const auto mesh = std::make_shared<const MeshTree>(scene::unit_sphere(32, 16));
+  const PlacedTree flat({{mesh, rows.data(), 3, 0}});
+  const Balls balls;
+  constexpr float no_number = std::numeric_limits<float>::quiet_NaN();
+  std::mt19937 engine(3);
+  std::normal_distribution<float> any;
+  for (int i = 0; i < 400; ++i) {
+    const glm::vec3 direction = glm::normalize(glm::vec3(any(engine), any(engine), any(engine)));
+    const SingleRay ray{-3.0F * direction, direction};
+    in_a_packet(flat, ray);
+    for (const std::uint32_t instance : {0U, 1U, 2U}) flat.hit_of(instance, ray, 0.0F);
+    flat.first_hit(ray);
+  }
+  for (const SingleRay& ray :
+       {SingleRay{glm::vec3(0.0F), glm::vec3(no_number)}, SingleRay{glm::vec3(no_number), glm::vec3(0.0F, 0.0F, 1.0F)},
+        SingleRay{glm::vec3(0.0F, 0.0F, -1e30F), glm::vec3(0.0F, 0.0F, 1.0F)}}) {
+    EXPECT_FALSE(balls.tree().first_hit(ray));
+    EXPECT_FALSE(in_a_packet(balls.tree(), ray));
+    EXPECT_FALSE(balls.tree().hit_of(0, ray, 0.0F));
+  }
 }
 
 TEST(PlacedTree, FindsOneInstanceWhateverStandsBeforeIt) {

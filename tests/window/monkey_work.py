@@ -144,7 +144,8 @@ def turn_or_scale(m):
     if m.random.random() < 0.5:
         thing.rotation_euler = [m.random.uniform(-math.pi, math.pi) for _ in range(3)]
     else:
-        thing.scale = [m.random.choice((-1.0, 0.0, 0.3, 0.6, 1.0, 1.5)) for _ in range(3)]
+        scale = [m.random.choice((-1.0, 0.0, 0.3, 0.6, 1.0, 1.5)) for _ in range(3)]
+        thing.scale = scale if bpy.context.scene.render.engine != "CYCLES" else [each or 1.0 for each in scale]
 
 
 def _select(m):
@@ -358,7 +359,10 @@ def load_with_its_windows(m):
 
 @work(4)
 def switch_engine(m):
-    bpy.context.scene.render.engine = m.random.choice(ENGINES)
+    engine = m.random.choice(ENGINES)
+    # Cycles, without us too, ends Blender at an object that is scaled to nothing (an assertion of Embree's).
+    if engine != "CYCLES" or all(all(thing.scale) for thing in bpy.data.objects):
+        bpy.context.scene.render.engine = engine
 
 
 @work(6)
