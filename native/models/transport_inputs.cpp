@@ -22,7 +22,9 @@ namespace {
 using transport::StoredTransport;
 
 constexpr int terms_a_texel = 4;
+// As shaders/models/stored_products.glsl has it.
 constexpr int fewest_terms = 16;
+constexpr int many_terms = 24;
 
 // What is divided by is not 0.
 constexpr double least_albedo = 1e-9;
@@ -243,7 +245,7 @@ MaterialInputs prototype_inputs(const scene::Material& material, const StoredTra
       is_walked(material) ? stored.unit * material.scale * (material.sigma_a + material.sigma_s) : sigma_t;
   if (stored.mean_chord * std::min({unscattered.r, unscattered.g, unscattered.b}) < most_clear)
     inputs.defines.emplace_back("CLEAR");
-  if (stored.terms > fewest_terms) inputs.defines.emplace_back("MANY_TERMS");
+  if (stored.terms > fewest_terms) inputs.defines.emplace_back(stored.terms > many_terms ? "MOST_TERMS" : "MANY_TERMS");
   inputs.uniforms["stored.x_axis"] = stored.axes[0];
   inputs.uniforms["stored.y_axis"] = stored.axes[1];
   inputs.uniforms["stored.z_axis"] = stored.axes[2];

@@ -284,7 +284,7 @@ const gl::Program& DeviceCache::light_map_program(bool tessellated) {
 
 const gl::Program& DeviceCache::sum_program(const DeviceMaterial& material, bool together) {
   std::vector<std::string> defines;
-  for (const std::string define : {"GREY", "MANY_TERMS", "REFRACTION"})
+  for (const std::string define : {"GREY", "MANY_TERMS", "MOST_TERMS", "REFRACTION"})
     if (material.has(define)) defines.push_back(define);
   if (together) defines.emplace_back("TOGETHER");
   return programs_.find(fmt::format("sum_products {}", fmt::join(defines, " ")),

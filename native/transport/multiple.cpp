@@ -9,8 +9,10 @@ namespace {
 constexpr int most_steps = 200;
 constexpr float tolerance = 1e-4F;
 
-// (1 - albedo * exchange) * light
-Lights removed(const Exchange& exchange, float albedo, const Lights& light, const Effort& effort) {
+// (1 - albedo * exchange * between) * light
+Lights removed(const Exchange& exchange, const BetweenNodes& between, float albedo, const Lights& light,
+               const Effort& effort) {
+  const Lights sources = between * light;
   Lights result(light.rows(), light.cols());
   constexpr std::size_t rows_a_piece = 512;
   Effort quiet = effort;
@@ -20,7 +22,7 @@ Lights removed(const Exchange& exchange, float albedo, const Lights& light, cons
       const auto i = static_cast<Eigen::Index>(row);
       result.row(i).setZero();
       for (std::size_t entry = exchange.first[row]; entry < exchange.first[row + 1]; ++entry)
-        result.row(i) += exchange.values[entry] * light.row(exchange.columns[entry]);
+        result.row(i) += exchange.values[entry] * sources.row(exchange.columns[entry]);
       result.row(i) = light.row(i) - albedo * result.row(i);
     }
   });
@@ -40,10 +42,11 @@ Lights scaled(const Lights& columns, const Eigen::RowVectorXf& factors) {
 
 }  // namespace
 
-Lights solve_multiple(const Exchange& exchange, double albedo, const Lights& unscattered, const Effort& effort) {
+Lights solve_multiple(const Exchange& exchange, const BetweenNodes& between, double albedo, const Lights& unscattered,
+                      const Effort& effort) {
   const auto a = static_cast<float>(albedo);
   Lights light = unscattered;
-  Lights residual = unscattered - removed(exchange, a, light, effort);
+  Lights residual = unscattered - removed(exchange, between, a, light, effort);
   const Lights shadow = residual;
   Lights direction = residual;
   Eigen::RowVectorXf rho = products(shadow, residual);
@@ -52,11 +55,11 @@ Lights solve_multiple(const Exchange& exchange, double albedo, const Lights& uns
   for (int step = 0; step < most_steps; ++step) {
     if ((products(residual, residual).array() <= enough.array()).all()) break;
     if (effort.progress) effort.progress(step / (step + 8.0));
-    const Lights moved = removed(exchange, a, direction, effort);
+    const Lights moved = removed(exchange, between, a, direction, effort);
     const Eigen::RowVectorXf alpha = ratios(rho, products(shadow, moved));
     light += scaled(direction, alpha);
     residual -= scaled(moved, alpha);
-    const Lights turned = removed(exchange, a, residual, effort);
+    const Lights turned = removed(exchange, between, a, residual, effort);
     const Eigen::RowVectorXf omega = ratios(products(turned, residual), products(turned, turned));
     light += scaled(residual, omega);
     residual -= scaled(turned, omega);

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 
+#include "transport/between_nodes.h"
 #include "transport/effort.h"
 #include "transport/exchange.h"
 
@@ -11,8 +12,9 @@ namespace mesograin::transport {
 /// A row for each node, a column for each light.
 using Lights = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Solves mean radiance = unscattered + exchange * albedo * mean radiance, the equation of transfer for isotropic
-/// scattering, by BiCGSTAB (van der Vorst 1992), every column by itself.
-Lights solve_multiple(const Exchange& exchange, double albedo, const Lights& unscattered, const Effort& effort);
+/// Solves mean radiance = unscattered + exchange * between * albedo * mean radiance, the equation of transfer for
+/// isotropic scattering, by BiCGSTAB (van der Vorst 1992), every column by itself.
+Lights solve_multiple(const Exchange& exchange, const BetweenNodes& between, double albedo, const Lights& unscattered,
+                      const Effort& effort);
 
 }  // namespace mesograin::transport

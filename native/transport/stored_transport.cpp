@@ -20,10 +20,8 @@ namespace {
 // Directions that are looked at beside those that are to be found.
 constexpr int surplus = 8;
 
-// Terms that the light is solved for; fewer of them are stored.
-constexpr int solved_terms = 48;
-
-int stored_terms(const Quality& quality) { return quality.many_terms ? 24 : 16; }
+// Terms that the light is solved for, for each that is stored.
+constexpr int solved_a_stored = 2;
 
 /// A few functions of the direction, and how much of each is in every row.
 struct Terms {
@@ -141,7 +139,7 @@ StoredTransport compute_transport(Walks& walks, const StoredMedium& asked, const
                          .unit = body.unit(),
                          .axes = glm::mat3(glm::transpose(body.axes())),
                          .mean_chord = 4.0 * body.volume() / body.area(),  // Cauchy
-                         .terms = stored_terms(walks.quality()),
+                         .terms = walks.quality().terms,
                          .channels = medium.grey() ? 1 : 3,
                          .convex = body.convex(),
                          .has_unscattered = medium.eta != 1.0,
@@ -167,6 +165,7 @@ StoredTransport compute_transport(Walks& walks, const StoredMedium& asked, const
   exchanges.reserve(extinctions.size());
   for (const double sigma_t : extinctions) exchanges.push_back(walks.exchange(sigma_t));
 
+  const BetweenNodes between = between_nodes(grid);
   // Channels have lobes of their own: light in a thick one is sharper in its direction than in a thin one.
   stored.lobes.resize(static_cast<std::size_t>(kept * channels) * octahedron_texels);
   for (int channel = 0; channel < channels; ++channel) {
@@ -174,9 +173,9 @@ StoredTransport compute_transport(Walks& walks, const StoredMedium& asked, const
     Lights light = walks.unscattered(extinctions[e]);
     calibrate(light, exchanges[e], medium.eta);
     const Sights seen = sights(body, grid, medium.eta, extinctions[e], effort);
-    const Terms first = principal_terms(seen, light, {}, solved_terms);
+    const Terms first = principal_terms(seen, light, {}, solved_a_stored * kept);
     const Lights solved =
-        solve_multiple(exchanges[e], medium.albedo[channel], first.amounts,
+        solve_multiple(exchanges[e], between, medium.albedo[channel], first.amounts,
                        part_of(effort, 0.8 + 0.2 * channel / channels, 0.8 + 0.2 * (channel + 1) / channels));
     // What is scattered again is told by these terms well enough, and all that is not is known.
     const Lights scattered = (solved - first.amounts) * first.lobes;

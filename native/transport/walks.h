@@ -18,10 +18,10 @@ namespace mesograin::transport {
 
 /// How much work goes into it.
 struct Quality {
-  int nodes = 6600;        ///< of the grid in the body's box
-  int light_across = 32;   ///< rays for each direction of light, squared
-  int way_across = 16;     ///< rays from each node, squared
-  bool many_terms = true;  ///< are stored: a half more of them
+  int nodes = 6600;       ///< of the grid in the body's box
+  int light_across = 32;  ///< rays for each direction of light, squared
+  int way_across = 16;    ///< rays from each node, squared
+  int terms = 24;         ///< that are stored: 16, 24 or 48 (shaders/models/stored_products.glsl)
   Spacing spacing = Spacing::even;
 };
 

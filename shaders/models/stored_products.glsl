@@ -1,6 +1,6 @@
 // Light's transport in one prototype as it is stored: products of a function of the place and one of the light's direction.
 //
-// What is chosen at compile time, as in transport.glsl: GREY, MANY_TERMS, REFRACTION, INSTANCED.
+// What is chosen at compile time, as in transport.glsl: GREY, MANY_TERMS, MOST_TERMS, REFRACTION, INSTANCED.
 struct Stored {
   vec3 x_axis;  // of the body, in the prototype's
   vec3 y_axis;
@@ -18,7 +18,9 @@ uniform Stored stored;
 uniform mat3 grain_to_prototype;  // a turn
 #endif
 
-#ifdef MANY_TERMS
+#ifdef MOST_TERMS
+const int TERMS = 48;
+#elif defined(MANY_TERMS)
 const int TERMS = 24;
 #else
 const int TERMS = 16;

@@ -77,7 +77,19 @@ ROUGH_BAR = 0.04
 def test_a_rough_surface_is_rough_from_inside_too(image):
     figures = shapes.compare(ROUGH.draw(image, "transport", samples=24)[..., 0], ROUGH.truth(image))
     assert figures["relative_l1"] < ROUGH_BAR
-    assert figures["total"] == pytest.approx(1.0, abs=0.03)
+    assert figures["total"] == pytest.approx(1.0, abs=0.04)
+
+
+# A sphere of radius 10 from behind, where next to nothing arrives: at albedo 0.9 it was 0.77 off, at 0.999 0.17, while
+# light went too far between nodes and was lost on its way to the viewer.
+DARK_BARS = {0.9: 0.5, 0.999: 0.12}
+
+
+@pytest.mark.parametrize("image", [image for image in GRAINS.images if image["file"] == "sphere_e1.3_R10_back.exr"],
+                         ids=lambda image: image["channel"])
+def test_the_dark_side_of_a_thick_grain_is_as_dark(image):
+    drawn = GRAINS.draw(image, "transport", samples=4)[..., "RGB".index(image["channel"])]
+    assert shapes.compare(drawn, GRAINS.truth(image))["relative_l1"] < DARK_BARS[round(shapes.albedo(image), 6)]
 
 
 @pytest.mark.parametrize("image", GRAINS.images, ids=lambda image: f"{image['file']} {image.get('channel', 'R')}")
