@@ -49,12 +49,15 @@ Shape shape_of(const scene::Mesh& mesh) {
   return {roundness > least_roundness && mesh.reach() > 0.0, radius / std::max(mesh.reach(), 1e-300), roundness};
 }
 
-// Sizes of a kind's optics. Each grain is at most 4.5 % thicker or thinner than its kind, and as many are the one as
-// the other.
+// Grains within such a step of the radius are of one kind, whose radius is their mean: of sizes that are all alike it
+// is theirs, and of others each is at most 9 % thicker or thinner and all together are neither.
 constexpr double radii_an_octave = 8.0;
 
-double rounded(double radius) {
-  return std::exp2(std::round(std::log2(std::max(radius, 1e-300)) * radii_an_octave) / radii_an_octave);
+// Of that mean, half a percent from one to the next: grains that come and go do not make another kind of all others.
+constexpr double mean_radii_an_octave = 64.0;
+
+double rounded(double radius, double an_octave) {
+  return std::exp2(std::round(std::log2(std::max(radius, 1e-300)) * an_octave) / an_octave);
 }
 
 // A plain object that is so many times as large as most grains sends out another light at each place: a ground that is
@@ -97,6 +100,7 @@ class Gatherer {
       else
         add_wall(draw, content.anchor());
     }
+    tell_kinds();
   }
 
   heap::Grains grains;
@@ -133,11 +137,32 @@ class Gatherer {
     // The mean way of light through a body is 4 V / A, whatever its shape and however it scatters, so that what a grain
     // absorbs is right if the ball's is as long (Blanco and Fournier, "An invariance property of diffusive random
     // walks", 2003, eq. 1). Of balls of one area it goes as the square root of the roundness.
-    const double of_kind = rounded(radius * std::sqrt(shape(*mesh).roundness));
-    heap::Optics optics = heap::optics_of(material, of_kind);
-    optics.lens = shape(*mesh).roundness > roundness_of_lenses;
-    grains.grains.push_back(
-        {glm::vec3(ball), static_cast<float>(radius), grains.kind(optics), static_cast<float>(radius / of_kind)});
+    const double as_thick = radius * std::sqrt(shape(*mesh).roundness);
+    const bool lens = shape(*mesh).roundness > roundness_of_lenses;
+    heap::Optics about = heap::optics_of(material, rounded(as_thick, radii_an_octave));
+    about.lens = lens;
+    const std::uint32_t of = alike_.kind(about);
+    if (of == kinds_.size()) kinds_.push_back({material, lens});
+    kinds_[of].logarithms += std::log2(as_thick);
+    ++kinds_[of].count;
+    grains.grains.push_back({glm::vec3(ball), static_cast<float>(radius), of, 1.0F});
+  }
+
+  /// Grains have been given the number of a Kind each.
+  void tell_kinds() {
+    std::vector<std::uint32_t> numbers;
+    std::vector<double> radii;
+    for (const Kind& kind : kinds_) {
+      const double mean = std::exp2(kind.logarithms / static_cast<double>(kind.count));
+      radii.push_back(rounded(mean, mean_radii_an_octave));
+      heap::Optics optics = heap::optics_of(kind.material, radii.back());
+      optics.lens = kind.lens;
+      numbers.push_back(grains.kind(optics));
+    }
+    for (heap::Grain& grain : grains.grains) {
+      grain.thickness = static_cast<float>(grain.radius / radii[grain.kind]);
+      grain.kind = numbers[grain.kind];
+    }
   }
 
   void add_wall(const Draw& draw, const glm::dvec3& anchor) {
@@ -146,12 +171,22 @@ class Gatherer {
     roles.back().wall = static_cast<std::uint32_t>(grains.walls.size());
     glm::dmat4 to_heap = draw.object_to_world;
     to_heap[3] -= glm::dvec4(anchor, 0.0);
-    const std::uint32_t kind = grains.kind(heap::optics_of(draw.look, rounded(draw.reach)));
+    const std::uint32_t kind = grains.kind(heap::optics_of(draw.look, rounded(draw.reach, radii_an_octave)));
     grains.walls.push_back({draw.source, to_heap, kind, glm::vec3(radiance_of(draw))});
   }
 
+  /// Grains that are about as thick.
+  struct Kind {
+    scene::Material material;
+    bool lens;
+    double logarithms = 0.0;  ///< the sum of their radii's
+    std::size_t count = 0;
+  };
+
   DeviceCache* cache_;
   std::map<const scene::Mesh*, Shape> shapes_;
+  heap::Grains alike_;  // whose kinds are those that kinds_ are told by
+  std::vector<Kind> kinds_;
 };
 
 void append(std::vector<glm::vec4>& numbers, const heap::Coefficients& coefficients) {

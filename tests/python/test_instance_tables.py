@@ -46,3 +46,18 @@ def test_colours_are_shared_too():
 @pytest.mark.parametrize("scale", [0.7, 1.0, 1.234])
 def test_grains_of_one_size_have_its_own_tables(scale):
     assert tables([sand(1.0 + 1e-3 * scale, np.full(20, scale))]) == 1
+
+
+@pytest.mark.parametrize("radius", [0.4, 0.73, 1.0])
+def test_grains_of_one_size_are_as_thick_to_others_as_they_are(radius):
+    positions, normals, triangles = sphere_mesh.sphere(96, 48)
+    places = np.tile(np.eye(4), (12, 1, 1))
+    places[:, :3, :3] *= radius
+    places[:, 0, 3] = 2.0 * radius * np.arange(12)
+    material = native.Material(model="model_2", boundary="index_matched", sigma_s=(9.0,) * 3, sigma_a=(1.0,) * 3)
+    array = native.InstanceArray(native.Mesh(positions.astype(np.float32), normals, triangles), material, places)
+    view = native.View(8, 8)
+    view.set_scene(native.Scene(arrays=[array], lights=[native.DirectionalLight((0.0, 0.0, 1.0), (3.0,) * 3)]))
+    view.render(1)
+    (stuff,) = view.statistics()["exchange"]["stuff"]
+    assert stuff["thickness"] == pytest.approx((10.0 * radius,) * 2, rel=0.008)

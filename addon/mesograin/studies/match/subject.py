@@ -92,7 +92,7 @@ class Subject:
         return list(self._view.warnings)
 
     def _with(self, drawn, material):
-        return self._native.Instance(drawn.mesh, material, drawn.transform)
+        return self._native.Instance(drawn.mesh, material, drawn.transform, drawn.object)
 
     def _draw(self, scene, samples):
         self._view.set_scene(scene)
