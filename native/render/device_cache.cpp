@@ -164,7 +164,7 @@ bool DeviceCache::closed(const scene::MeshPointer& mesh) {
 
 std::shared_ptr<DeviceMaterial> DeviceCache::material(const scene::Material& material, double grain_radius) {
   const double radius = table_radius(material, grain_radius);
-  if (const std::shared_ptr<DeviceMaterial> known = this->known(material, radius)) return known;
+  if (std::shared_ptr<DeviceMaterial> known = this->known(material, radius)) return known;
   materials_.push_back({material, radius, send(material.model, models::material_inputs(material, radius))});
   return materials_.back().device;
 }
