@@ -126,8 +126,8 @@ def test_a_ground_stays_what_it_is_beside_grains_and_does_not_count(tmp_path, na
     assert corner[0] > 5.0 * corner[1] > 0.0  # the ground is red in both
     across = np.hypot(*(np.mgrid[:64, :64] - 31.5))
     assert mask[across > 30.0].max() == 0.0 and mask[across < 24.0].min() == 1.0
-    # What the ground throws onto the grain is in both, so the numbers are about what they are of a grain alone: with the
-    # random rays of media up to 1 % thicker or thinner the bias is 1.033 to 1.042.
+    # What the ground throws onto the grain is in both, so the numbers are about what they are of a grain alone: with
+    # the random rays of media up to 1 % thicker or thinner the bias is 1.033 to 1.042.
     assert case["metrics"]["relative_l1_blocks"] < 0.08 and abs(case["metrics"]["bias"] - 1.0) < 0.05
 
 
