@@ -21,23 +21,36 @@ LABEL, BESIDE_BOX = 71, 85
 # On a screen 1920 wide, 333 across: one of two columns in a box; what a choice as wide as the panel has for the name of
 # what was chosen.
 HALF, WHOLE = 115, 180
+# On a screen 1280 wide, the width of the Properties editor; there, what Blender leaves of it for what a list is called,
+# and for a number or a switch.
+NARROW, BESIDE_LIST, IN_FIELD = 190, 42, 100
 
 
 class Layout:
     """Takes whatever a panel draws. labels: what stands left of values. boxes: what stands right of boxes. menus: their
-    names. whole: properties as wide as the panel. split: properties whose names stand left of them. said: texts."""
+    names. whole: properties as wide as the panel. split: properties whose names stand left of them. lists: what stands
+    left of lists that are not split. said: texts."""
 
     def __init__(self):
-        self.labels, self.boxes, self.menus, self.whole, self.split, self.said = [], [], [], [], [], []
+        self.labels, self.boxes, self.menus, self.whole, self.split, self.lists, self.said = ([] for _ in range(7))
         self.use_property_split = False
 
     def __getattr__(self, name):
-        return lambda *_, **named: self if "heading" not in named else (self.labels.append(named["heading"]), self)[1]
+        def part(*_, heading=None, **_named):
+            if heading is not None:
+                self.labels.append(heading)
+            inner = object.__new__(type(self))  # which remembers in the same lists, and is split as this one at first
+            vars(inner).update(vars(self))
+            return inner
 
-    def prop(self, owner, name, text=None, **_):
+        return part
+
+    def prop(self, owner, name, text=None, expand=False, **_):
         declared = owner.bl_rna.properties[name]
         if self.use_property_split:
             self.split.append(name)
+        elif declared.type == "ENUM" and text != "" and not expand and not declared.is_enum_flag:
+            self.lists.append(declared.name if text is None else text)
         if text != "":
             (self.boxes if declared.type == "BOOLEAN" else self.labels).append(declared.name if text is None else text)
         if text == "":
@@ -87,16 +100,55 @@ def test_no_label_of_a_grain_is_cut_off(material, model):
 
 
 @pytest.mark.parametrize("way", ["coefficients", "look"])
-@pytest.mark.parametrize("across", [190, 220, 260, 333, 500])
+@pytest.mark.parametrize("across", [NARROW, 220, 260, 333, 500])
 def test_what_three_numbers_are_is_read_at_any_width(material, way, across):
-    """190 pixels are what Blender's default layout leaves on a screen 1280 wide; labels have two fifths of a panel."""
+    """Labels have two fifths of a panel where they are split, else what a field has beside its number."""
     material.mesograin.model, material.mesograin_look.way = "model_2", way
     drawn = draw(panels.MESOGRAIN_PT_material, material=material, region=types.SimpleNamespace(width=across))
+    room = 0.4 * (across - 75) if drawn.split else IN_FIELD
+    assert bool(drawn.split) == (across >= 260)
     for name in {"coefficients": ("sigma_s", "sigma_a"), "look": ("Path",)}[way]:
-        beside = f"{name} R" in drawn.labels
-        assert beside == (name == "Path" or across >= 260) and beside != (name in drawn.said)
-        assert not beside or width(f"{name} R") <= 0.4 * (across - 75)
-    assert drawn.labels.count("R") == sum(name in drawn.said for name in ("sigma_s", "sigma_a", "Path"))
+        assert f"{name} R" in drawn.labels and width(f"{name} R") <= room
+
+
+def narrow(panel, **context):
+    return draw(panel, region=types.SimpleNamespace(width=NARROW), **context)
+
+
+def assert_nothing_is_cut_off_where_it_is_narrow(drawn):
+    assert drawn.split == [] and len(drawn.labels + drawn.boxes) >= 1
+    assert {name: width(f"{name}:") for name in drawn.lists if width(f"{name}:") > BESIDE_LIST} == {}
+    fields = [name for name in (*drawn.labels, *drawn.boxes) if name not in drawn.lists]
+    assert {name: width(name) for name in fields if width(name) > IN_FIELD} == {}
+
+
+@pytest.mark.parametrize("model", models.CHOICES)
+def test_no_label_of_a_grain_is_cut_off_where_it_is_narrow(material, model):
+    material.mesograin.model = model
+    drawn = narrow(panels.MESOGRAIN_PT_material, material=material)
+    assert_nothing_is_cut_off_where_it_is_narrow(drawn)
+    if "boundary" in models.CHOICES[model].parameters:
+        assert {"boundary", "masking"} <= set(drawn.whole) and {"Boundary", "Masking"} <= set(drawn.said)
+
+
+@pytest.mark.parametrize("source", ["RANGE", "ATTRIBUTE"])
+def test_no_label_of_grains_that_vary_is_cut_off_where_it_is_narrow(material, source):
+    material.mesograin.model, material.mesograin_colours.source = "model_2", source
+    assert_nothing_is_cut_off_where_it_is_narrow(narrow(grain_colours.MESOGRAIN_PT_colours, material=material))
+
+
+@pytest.mark.parametrize("panel", [panels.MESOGRAIN_PT_sampling, panels.MESOGRAIN_PT_passes,
+                                   panels.MESOGRAIN_PT_motion_blur, bake_panel.MESOGRAIN_PT_bake,
+                                   match_panel.MESOGRAIN_PT_match])
+def test_no_label_of_the_render_settings_is_cut_off_where_it_is_narrow(panel):
+    bpy.context.scene.mesograin_bake.compare = True
+    assert_nothing_is_cut_off_where_it_is_narrow(narrow(panel))
+
+
+@pytest.mark.parametrize("kind", ["SUN", "POINT", "SPOT", "AREA"])
+def test_no_label_of_a_light_is_cut_off_where_it_is_narrow(kind):
+    light = bpy.data.lights.new("Light", kind)
+    assert_nothing_is_cut_off_where_it_is_narrow(narrow(panels.MESOGRAIN_PT_light, light=light))
 
 
 @pytest.mark.parametrize("source", ["RANGE", "ATTRIBUTE"])

@@ -1,12 +1,12 @@
 # Pictures of every panel, to be looked at. Runs outside Blender:
-#   python3 tests/window/look_at_panels.py FOLDER [dark | light] [BLENDER] [CHECK ...]
+#   [MESOGRAIN_SCREEN=1280] python3 tests/window/look_at_panels.py FOLDER [dark | light] [BLENDER] [CHECK ...]
 import os
 import pathlib
 import sys
 
 from launch import launch
 
-SCREEN = (1920, 2200)
+SCREEN = (int(os.environ.get("MESOGRAIN_SCREEN", "1920")), 2200)  # the narrower, the narrower are the panels
 LIMIT = 3600  # s
 
 

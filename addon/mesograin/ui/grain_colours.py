@@ -5,6 +5,7 @@ from .. import native_module
 from ..scene import instance_attributes
 from ..schema import models
 from .panels import MesograinPanel
+from .widths import arrange
 
 
 class MESOGRAIN_OT_add_attribute_reader(bpy.types.Operator):
@@ -44,7 +45,7 @@ class MESOGRAIN_PT_colours(MesograinPanel, bpy.types.Panel):
 
     def draw(self, context):
         layout, settings = self.layout, context.material.mesograin_colours
-        layout.use_property_split = True
+        arrange(layout, context)
         layout.active = settings.vary
         takes = models.CHOICES[context.material.mesograin.model].parameters
         colour = "Absorption" if "sigma_a" in takes else "Reflectance"

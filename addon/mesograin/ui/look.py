@@ -8,7 +8,6 @@ from ..schema import advice, models
 from ..scene import budgets, export, meshes, thick_layer
 from ..scene.properties import OVERRIDABLE
 from .active_material import OnActiveMaterial, active_material
-from .widths import CHARACTER_WIDTH, LABELS, MARGINS, width
 
 INDICES = {"air": 1.0, "water": 1.333, "oil": 1.47}
 UNKNOWN = (0.0, 0.0, 0.0)
@@ -204,21 +203,16 @@ class MESOGRAIN_OT_choose_model(OnActiveMaterial, bpy.types.Operator):
         return {"FINISHED"}
 
 
-def draw(layout, context, look):
+def draw(layout, look):
     """The rows that stand for sigma_s, sigma_a and scale."""
     layout.prop(look, "colour")
-    draw_channels(layout, context, look, "mean_free_path", "Path")
+    draw_channels(layout, look, "mean_free_path", "Path")
 
 
-def draw_channels(layout, context, owner, name, text):
-    """Three numbers that are no colour: a row each, which says of which channel it is. What they are is said before the
-    first, or above it in a region that is too narrow for that."""
+def draw_channels(layout, owner, name, text):
+    """Three numbers that are no colour: a row each, which says of which channel it is."""
     column = layout.column(align=True)
-    labels = [f"{text} R", "G", "B"]
-    if len(labels[0]) * CHARACTER_WIDTH > LABELS * (width(context) - MARGINS):
-        column.label(text=text)
-        labels[0] = "R"
-    for index, label in enumerate(labels):
+    for index, label in enumerate((f"{text} R", "G", "B")):
         column.prop(owner, name, index=index, text=label)
 
 

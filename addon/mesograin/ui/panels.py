@@ -8,7 +8,7 @@ from ..engine import engine, passes, status
 from ..scene import budgets, export, plain_materials
 from ..schema import models, parameters
 from . import conversion, look, named_things, presets
-from .widths import CHARACTER_WIDTH, MARGINS, width
+from .widths import CHARACTER_WIDTH, MARGINS, arrange, choose, width
 
 ENGINES = {engine.MesograinRenderEngine.bl_idname}
 # What is left for text of one of a popover's units of width, 20 pixels.
@@ -73,7 +73,7 @@ class MESOGRAIN_PT_material(MesograinPanel, bpy.types.Panel):
 
     def draw(self, context):
         layout, grain = self.layout, context.material.mesograin
-        layout.use_property_split = True
+        arrange(layout, context)
         layout.use_property_decorate = True
         if not draw_native_problem(layout, context):
             self._draw_material_problem(context)
@@ -130,11 +130,11 @@ class MESOGRAIN_PT_material(MesograinPanel, bpy.types.Panel):
         row.prop(said, "way", expand=True)
         sigma_t = [(sigma_s + sigma_a) * grain.scale for sigma_s, sigma_a in zip(grain.sigma_s, grain.sigma_a)]
         if said.way == "look":
-            look.draw(layout, context, said)
+            look.draw(layout, said)
             units = f"Path in mm; sigma_t {', '.join(f'{value:.3g}' for value in sigma_t)} per mm"
         else:
-            look.draw_channels(layout, context, grain, "sigma_s", "sigma_s")
-            look.draw_channels(layout, context, grain, "sigma_a", "sigma_a")
+            look.draw_channels(layout, grain, "sigma_s", "sigma_s")
+            look.draw_channels(layout, grain, "sigma_a", "sigma_a")
             layout.prop(grain, "scale")
             paths = ", ".join(f"{1.0 / value:.3g}" if value > 0.0 else "endless" for value in sigma_t)
             units = f"sigma per mm; mean free path {paths} mm"
@@ -153,7 +153,10 @@ class MESOGRAIN_PT_material(MesograinPanel, bpy.types.Panel):
             if name in takes:
                 row = self.layout.row()
                 row.active = name == "boundary" or "boundary" not in takes or grain.boundary in boundaries
-                row.prop(grain, name)
+                if parameters.PARAMETERS[name].kind == "choice":
+                    choose(row, grain, name, parameters.PARAMETERS[name].label)
+                else:
+                    row.prop(grain, name)
 
 
 class MESOGRAIN_MT_profiles(bpy.types.Menu):
@@ -179,7 +182,7 @@ class MESOGRAIN_PT_light(MesograinPanel, bpy.types.Panel):
 
     def draw(self, context):
         layout, light = self.layout, context.light
-        layout.use_property_split = True
+        arrange(layout, context)
         layout.use_property_decorate = True
         layout.prop(light, "type")
         if hasattr(light, "use_temperature"):
@@ -220,7 +223,7 @@ class MESOGRAIN_PT_sampling(MesograinPanel, bpy.types.Panel):
 
     def draw(self, context):
         layout, settings = self.layout, context.scene.mesograin
-        layout.use_property_split = True
+        arrange(layout, context)
         layout.use_property_decorate = True
         if not draw_native_problem(layout, context):
             draw_complaints(layout, context)
@@ -230,7 +233,7 @@ class MESOGRAIN_PT_sampling(MesograinPanel, bpy.types.Panel):
         column.prop(settings, name, text=text)
         column.prop(settings, "viewport_samples", text="Viewport")
         layout.prop(settings, "millimetres_per_unit", text="Unit, mm")
-        layout.prop(settings, "exchange", text="Exchange")
+        choose(layout, settings, "exchange", "Exchange")
         layout.prop(settings, "denoise")
         layout.column(heading="Film").prop(context.scene.render, "film_transparent", text="Transparent")
 
@@ -245,7 +248,7 @@ class MESOGRAIN_PT_motion_blur(MesograinPanel, bpy.types.Panel):
 
     def draw(self, context):
         layout, render = self.layout, context.scene.render
-        layout.use_property_split = True
+        arrange(layout, context)
         layout.active = render.use_motion_blur
         owner = compat.owner_of_motion_blur_position(context.scene)
         if owner is not None:
@@ -260,7 +263,7 @@ class MESOGRAIN_PT_passes(MesograinPanel, bpy.types.Panel):
 
     def draw(self, context):
         layout = self.layout
-        layout.use_property_split = True
+        arrange(layout, context)
         column = layout.column(heading="Data")
         for one in (*passes.SURFACES, *passes.INDICES):
             column.prop(context.view_layer, one.asked_for, text=one.shown)

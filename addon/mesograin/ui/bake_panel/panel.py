@@ -5,13 +5,14 @@ from ...cycles import reference_cache
 from .. import panels
 from ..side_task import panel as side_task
 from ..side_task import results
+from ..widths import arrange, choose
 from . import operators
 from .session import session
 
 
 def draw_settings(layout, context):
     asked = context.scene.mesograin_bake
-    layout.use_property_split = True
+    arrange(layout, context)
     layout.use_property_decorate = False
     column = layout.column(align=True)
     column.prop(asked, "width", text="Texels X")
@@ -22,7 +23,7 @@ def draw_settings(layout, context):
         layout.prop(asked, "direction_samples", text="Samples")
     else:
         layout.prop(asked, "samples")
-        layout.prop(asked, "view_from")
+        choose(layout, asked, "view_from", "View from")
     layout.prop(asked, "margin")
     layout.prop(asked, "half")
     layout.prop(asked, "out")
@@ -31,7 +32,7 @@ def draw_settings(layout, context):
     layout.column(heading="Cycles").prop(asked, "compare", text="Compare")
     if asked.compare:
         column = layout.column(align=True)
-        column.prop(asked, "reference")
+        choose(column, asked, "reference", "Reference")
         column.prop(asked, "reference_samples", text="Samples")
         reference_cache.draw(layout)
 

@@ -8,6 +8,7 @@ from ...studies.match import files
 from .. import panels
 from ..side_task import panel as side_task
 from ..side_task import pictures
+from ..widths import arrange, choose
 from . import operators, properties
 from .session import session
 
@@ -20,9 +21,9 @@ def draw_settings(layout, context):
     layout.template_ID(asked, "image", open="image.open")
     layout.row().prop(asked, "parameters", expand=True)
     column = layout.column()
-    column.use_property_split = True
+    arrange(column, context)
     column.use_property_decorate = False
-    column.prop(asked, "reference")
+    choose(column, asked, "reference", "Made by")
     if asked.reference != properties.AS_MATERIAL:
         column.prop(asked, "corrections", text="Checks")
     column.column(heading="Exposure").prop(asked, "free_exposure", text="Unknown")
