@@ -84,7 +84,7 @@ void render(render::View& view, int samples) {
   done.get();
 }
 
-// A scene or a camera that is being taken, for a caller who has something else to do.
+// A scene, a camera, a moment or portions that are being taken, for a caller who has something else to do.
 class Taking {
  public:
   explicit Taking(std::shared_future<void> done) : done_(std::move(done)) {}
@@ -167,12 +167,15 @@ render::Portion portion_of(const std::string& name) {
   return static_cast<render::Portion>(found - render::portion_names.begin());
 }
 
-void set_portions(render::View& view, const std::vector<std::string>& names) {
+Taking start_portions(render::View& view, const std::vector<std::string>& names) {
   std::vector<render::Portion> portions;
   portions.reserve(names.size());
   for (const std::string& name : names) portions.push_back(portion_of(name));
-  const py::gil_scoped_release release;
-  view.set_portions(portions);
+  return Taking(view.start_portions(std::move(portions)));
+}
+
+Taking start_moment(render::View& view, const scene::Camera& camera, std::optional<scene::Scene> scene) {
+  return Taking(view.start_moment(camera, std::move(scene)));
 }
 
 Pixels read_portion(render::View& view, const std::string& name) {
@@ -374,12 +377,12 @@ void bind_view(py::module_& module) {
       .def("result", &result_of,
            "Waits for that: {'pixels': as View.read() gives them, 'timings': and 'statistics': as View's, of the same "
            "samples}.");
-  py::class_<Taking>(module, "Taking", "A scene or a camera that the view was given without waiting.")
+  py::class_<Taking>(module, "Taking",
+                     "What the view was given without waiting: a scene, a camera, a moment or portions.")
       .def_property_readonly("done", &Taking::done, "Whether the view has it, or it has failed.")
       .def("wait", &Taking::wait, py::arg("seconds") = py::none(), Release(),
            "Waits for that, if `seconds` is given at most so long; whether it has come.")
-      .def("result", &Taking::result, Release(),
-           "Waits for that. Raises Error as View.set_scene() or View.set_camera() does.");
+      .def("result", &Taking::result, Release(), "Waits for that. Raises Error as View.set_scene() and its like do.");
   py::class_<News>(module, "News", "What View.start_news() takes in.")
       .def_property_readonly("done", &News::done, "Whether that is done, or has failed.")
       .def("wait", &News::wait, py::arg("seconds") = py::none(), Release(),
@@ -426,19 +429,25 @@ void bind_view(py::module_& module) {
           "As resize() and set_camera(), without waiting: gives the Taking under way, as start_scene().")
       .def(
           "set_moment",
-          [](render::View& view, const scene::Camera& camera, const std::optional<scene::Scene>& scene) {
-            const py::gil_scoped_release release;
-            view.set_moment(camera, scene ? &*scene : nullptr);
+          [](render::View& view, const scene::Camera& camera, std::optional<scene::Scene> scene) {
+            start_moment(view, camera, std::move(scene)).result();
           },
-          py::arg("camera"), py::arg("scene") = py::none(),
+          py::arg("camera"), py::arg("scene") = py::none(), Release(),
           "Another moment of the exposure: what set_scene() took elsewhere, if a scene is given, seen through this "
           "camera. Samples from now on are added to those before; nothing but transforms is sent. Light between grains "
           "stays each grain's own as it was found for set_scene(). Raises Error for a scene of other things, and for a "
           "bake.")
-      .def("set_portions", &set_portions, py::arg("portions"),
-           "Has these portions of the picture's light told beside it: any of 'diffuse', 'specular', 'subsurface', "
-           "'single_scattering', 'transmission', 'exchange', 'emission', 'environment', whose sum is the picture, and "
-           "'normal'. Restarts the accumulation; each costs about its own shading. A bake has none.")
+      .def("start_moment", &start_moment, py::arg("camera"), py::arg("scene") = py::none(), Release(),
+           "As set_moment(), without waiting: gives the Taking under way, as start_scene().")
+      .def(
+          "set_portions",
+          [](render::View& view, const std::vector<std::string>& names) { start_portions(view, names).result(); },
+          py::arg("portions"), Release(),
+          "Has these portions of the picture's light told beside it: any of 'diffuse', 'specular', 'subsurface', "
+          "'single_scattering', 'transmission', 'exchange', 'emission', 'environment', whose sum is the picture, and "
+          "'normal'. Restarts the accumulation; each costs about its own shading. A bake has none.")
+      .def("start_portions", &start_portions, py::arg("portions"), Release(),
+           "As set_portions(), without waiting: gives the Taking under way, as start_scene().")
       .def("read_portion", &read_portion, py::arg("portion"),
            "The mean of one of set_portions()'s, (height, width, 4) float32, linear RGB, or the normal's x, y and z "
            "premultiplied by coverage; row 0 at the top. Raises Error for one that is not told.")

@@ -56,7 +56,7 @@ void View::wait_for_scene() const {
 
 void View::wait_for_changes() const {
   wait_for_scene();
-  if (moving_.valid()) moving_.wait();
+  if (changing_.valid()) changing_.wait();
   if (under_way_.valid()) under_way_.wait();
 }
 
@@ -142,19 +142,27 @@ std::shared_future<void> View::start_camera(const scene::Camera& camera, int wid
     shared->height = height;
     shared->samples = 0;
   };
-  moving_ = post(std::move(take)).share();
-  return moving_;
+  changing_ = post(std::move(take)).share();
+  return changing_;
 }
 
-void View::set_moment(const scene::Camera& camera, const scene::Scene* scene) {
+std::shared_future<void> View::start_moment(const scene::Camera& camera, std::optional<scene::Scene> scene) {
   validate(camera);
-  if (scene != nullptr) validate(*scene);
-  change([&] { frame(id_).set_moment(camera, scene); });
+  if (scene) validate(*scene);
+  wait_for_changes();
+  auto take = [=, id = id_, scene = std::move(scene)] { frame(id).set_moment(camera, scene ? &*scene : nullptr); };
+  changing_ = post(std::move(take)).share();
+  return changing_;
 }
 
-void View::set_portions(const std::vector<Portion>& portions) {
-  change([&] { frame(id_).set_portions(portions); });
-  shared_->samples = 0;
+std::shared_future<void> View::start_portions(std::vector<Portion> portions) {
+  wait_for_changes();
+  auto take = [id = id_, shared = shared_, portions = std::move(portions)] {
+    frame(id).set_portions(portions);
+    shared->samples = 0;
+  };
+  changing_ = post(std::move(take)).share();
+  return changing_;
 }
 
 void View::read_portion(Portion portion, float* pixels) {

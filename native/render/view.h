@@ -59,11 +59,12 @@ class View {
   /// Another moment of the exposure: what set_scene() took elsewhere, if a scene is given, seen through this camera.
   /// Samples from now on are added to those before. Light between grains stays each grain's own as it was found for
   /// set_scene(). Throws Error for a scene of other things, and for a bake.
-  void set_moment(const scene::Camera& camera, const scene::Scene* scene);
+  /// Without waiting; as start_camera().
+  std::shared_future<void> start_moment(const scene::Camera& camera, std::optional<scene::Scene> scene);
 
   /// Has these told beside the picture from now on, each by about the cost of its own shading. Restarts the
-  /// accumulation. A bake has none.
-  void set_portions(const std::vector<Portion>& portions);
+  /// accumulation. A bake has none. Without waiting; as start_camera().
+  std::shared_future<void> start_portions(std::vector<Portion> portions);
 
   /// The mean of one of them, as read(). Throws Error if it is not told.
   void read_portion(Portion portion, float* pixels);
@@ -153,7 +154,7 @@ class View {
   std::shared_ptr<Shared> shared_;
   std::shared_future<void> made_;
   std::shared_future<void> taking_;       // a scene; not valid before the first
-  std::shared_future<void> moving_;       // a camera being taken; not valid before the first
+  std::shared_future<void> changing_;     // by a camera, a moment or portions; not valid before the first
   std::shared_future<bool> news_;         // being taken in; not valid before the first
   std::shared_future<double> under_way_;  // what was started last; not valid before
   std::atomic<std::uint64_t> started_ = 0;

@@ -1,11 +1,12 @@
 # F12 ended by the Escape key, as the X server delivers it: Blender looks for that key before it looks at any event, and
 # takes none from the server where it is to simulate events.
 import subprocess
+import time
 
 import bpy
 import held_device
 import numpy as np
-from mesograin.engine import status
+from mesograin.engine import motion, passes, status
 
 DISTANCES = (6.0, 5.0, 4.0)
 
@@ -89,3 +90,46 @@ def check_the_window_and_escape_answer_while_the_device_is_busy(window):
     yield from window.press_f12(area)
     yield from window.until(lambda: status.get(status.RENDER) is not None and not bpy.app.is_job_running("RENDER"))
     assert status.get(status.RENDER).samples == 4 and status.complaints() == []
+
+
+def end_render_where_the_device_gets_busy(window, owner, name, blurred=False):
+    """Escape, once owner.name, which a final render calls, was called and the device's thread has been held since."""
+    area = yield from window.open("sphere")
+    area.spaces.active.shading.type = "SOLID"
+    if window.native.device_info()["hardware"]:
+        return
+    render = bpy.context.scene.render
+    bpy.context.preferences.view.render_display_type = "NONE"
+    render.resolution_x = render.resolution_y = 64
+    render.use_motion_blur = blurred
+    status.clear()
+    view, held = held_device.view(window.native, 144), []
+    called = getattr(owner, name)
+
+    def hold_and_call(*arguments):
+        if not held:
+            held.append(view.start(1))
+            time.sleep(0.3)  # the thread takes what is asked of it next before it begins a sample
+        return called(*arguments)
+
+    setattr(owner, name, hold_and_call)
+    try:
+        yield from window.press_f12(area)
+        yield from window.until(lambda: held)
+        yield from window.seconds(0.5)
+        press_escape()
+        yield from window.until(lambda: not bpy.app.is_job_running("RENDER"))
+    finally:
+        setattr(owner, name, called)
+    assert not held[0].done, "the render waited for the device"
+    assert status.get(status.RENDER) == status.Status(), "the picture was drawn, or what ended it is an error"
+    yield from window.until(lambda: held[0].done, timeout=600.0)
+    del view
+
+
+def check_escape_ends_a_render_that_asks_a_busy_device_for_portions(window):
+    yield from end_render_where_the_device_gets_busy(window, passes, "portions")
+
+
+def check_escape_ends_a_render_that_gives_a_busy_device_a_moment(window):
+    yield from end_render_where_the_device_gets_busy(window, motion, "moved", blurred=True)

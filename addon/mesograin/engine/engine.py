@@ -73,7 +73,7 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
         budgets = rounds.of(depsgraph.scene.mesograin, exposure.values, started, len(eyes))
         view = native.View(region.width, region.height, patient=budgets[0].patient)
         self._result(view.start_scene(exposure.native_scene(exposure.values)), view)
-        view.set_portions(passes.portions(depsgraph.view_layer))
+        self._result(view.start_portions(passes.portions(depsgraph.view_layer)), view)
         for warning in warnings:
             self.report({"WARNING"}, warning)
 
@@ -90,7 +90,7 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
                     self.update_progress((number + share) / len(eyes))
                 if view.samples:  # a cancelled render keeps what it has
                     self._show(result, view, opaque)
-                    view.set_moment(read_camera(), exposure.native_scene(exposure.values))
+                    self._result(view.start_moment(read_camera(), exposure.native_scene(exposure.values)), view)
                     beside = passes.pixels(view, depsgraph.view_layer, exposure, read_camera)
                     for name_, pixels in beside.items():
                         _set_pass(result, name_, pixels)
@@ -133,7 +133,8 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
             with contextlib.closing(exposure.moments(read_camera, count)) as moments:
                 for values, camera, samples in moments:
                     if exposure.blurred:
-                        view.set_moment(camera, None if values is seen else exposure.native_scene(values))
+                        other = None if values is seen else exposure.native_scene(values)
+                        self._result(view.start_moment(camera, other), view)
                         seen = values
                     for now in self._draw_some(view, samples, budget):
                         if now - shown > SHOW_SECONDS:
