@@ -143,8 +143,10 @@ def casts_shadows(light):
 
 
 def has_even_lights():
-    """Whether Cycles takes an area light's watts for those of a Lambertian emitter, and a spot for a point light in a
-    cone. Before Blender 4.0 an area light had pi / 4 of that, and a spot weakened with the cosine from its axis."""
+    """Whether Cycles takes an area light's watts for those of a Lambertian emitter, a spot for a point light in a cone,
+    and a sun for a disc in the sky that is as bright all over, of which a plane that faces it receives the strength.
+    Before Blender 4.0 an area light had pi / 4 of that, a spot weakened with the cosine from its axis, and a sun was a
+    flat disc, brighter towards its rim: a plane received 2 cos(angle / 2) / (1 + cos(angle / 2)) of its strength."""
     import bpy
 
     # That shows in no property; lights for some objects alone came with the same version.
@@ -195,6 +197,14 @@ def rough_diffuse_keeps_energy():
     import bpy
 
     return bpy.app.version >= (4, 2, 0)
+
+
+def has_principled_default():
+    """Whether Cycles gives a Principled node to what wears no material; before Blender 5 it is a Diffuse one."""
+    import bpy
+
+    # That shows in no property; scenes' compositing groups came no earlier.
+    return "compositing_node_group" in bpy.types.Scene.bl_rna.properties
 
 
 def bumps():

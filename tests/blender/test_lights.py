@@ -61,6 +61,13 @@ def assert_as_in_cycles(scene, render, tolerance=0.01, samples=1024):
     return theirs
 
 
+@pytest.mark.parametrize("degrees, tolerance", [
+    (5.0, 0.002), (30.0, 0.005), (90.0, 0.01 if compat.has_even_lights() else 0.035)])  # see compat.has_even_lights
+def test_a_wide_sun(ground, render, degrees, tolerance):
+    add_light("SUN", (0.0, 0.0, 3.0), (0.6, 0.2, 0.0), angle=math.radians(degrees))
+    assert_as_in_cycles(ground, render, tolerance)
+
+
 NEAR_AND_FAR = pytest.mark.parametrize("height", [1.0, 6.0])
 
 

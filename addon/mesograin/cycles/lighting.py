@@ -1,14 +1,11 @@
 # Lights and the world of a reference: copies of the scene's, told only what both sides can mean alike.
 """See `copy_light` and `fill_world`."""
 
-import math
-
 import bpy
 from mathutils import Matrix, Vector
 
 from .. import compat
 from ..scene import lights, surroundings
-from . import nodes
 
 KIND_PROPERTIES = {
     "SUN": (),
@@ -34,9 +31,7 @@ def copy_light(source, least_sun):
     made.energy, made.color = lights.energy_and_colour(source)
     if source.type == "SUN":
         made.angle = max(source.angle, least_sun)
-        # Where Cycles' sun is even, it is brighter than ours by what the cosine takes from its rim: a plane facing
-        # theirs receives the strength, one facing ours a little less.
-        made.energy *= (1.0 + math.cos(0.5 * made.angle)) / 2.0 if nodes.features().even_suns else 1.0
+        made.energy *= lights.sun_irradiance(source.angle) / lights.sun_irradiance(made.angle)
     return made
 
 
@@ -47,7 +42,7 @@ def add_sun(values, least_sun):
     made.angle = max(values.angle, least_sun)
     made.energy = max(values.irradiance)
     made.color = [channel / made.energy for channel in values.irradiance]
-    made.energy *= (1.0 + math.cos(0.5 * made.angle)) / 2.0 if nodes.features().even_suns else 1.0
+    made.energy /= lights.sun_irradiance(made.angle)
     return made, Vector(values.direction_to_light).to_track_quat("Z", "Y").to_matrix().to_4x4()
 
 

@@ -243,8 +243,9 @@ def material_values(material, millimetres_per_unit, reading=None):
     """MaterialValues of a Blender material, or of what Cycles shows where a slot is empty (None). reading:
     plain_materials.Reading of what is no grain, if that was read already."""
     if material is None:
-        values = {**dict(_default_parameters(millimetres_per_unit)), **plain_materials.NO_MATERIAL}
-        return MaterialValues("(none)", tuple(values.items()))
+        values, finish = plain_materials.of_no_material()
+        return MaterialValues("(none)", tuple({**dict(_default_parameters(millimetres_per_unit)), **values}.items()),
+                              finish)
     values = dict(_parameters(material.mesograin, millimetres_per_unit))
     if not plain_materials.is_plain(material):
         return MaterialValues(material.name_full, tuple(values.items()))

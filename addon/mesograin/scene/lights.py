@@ -124,7 +124,13 @@ def _sun(light, name, power, matrix_world):
     angle = min(light.angle, math.pi)
     if not getattr(light, "normalize", True) and angle > 0.0:
         power = _times(power, math.pi * math.sin(0.5 * angle) ** 2)
-    return SunValues(name, tuple(direction), tuple(power), angle)
+    return SunValues(name, tuple(direction), _times(power, sun_irradiance(angle)), angle)
+
+
+def sun_irradiance(angle):
+    """What a sun of this full angle and of Blender's strength 1 has as `irradiance`, of which a plane that faces it
+    receives (1 + cos(angle / 2)) / 2: where Cycles' suns are even, it receives the strength there."""
+    return 2.0 / (1.0 + math.cos(0.5 * angle)) if compat.has_even_lights() else 1.0
 
 
 def _ball(light, power, matrix_world):

@@ -7,9 +7,6 @@ from . import node_colours, textures
 
 PLAIN, METAL = "lambert", "conductor"
 
-NO_MATERIAL = {"model": PLAIN, "reflectance": (0.8, 0.8, 0.8)}
-"""What Cycles gives to what wears none."""
-
 
 @dataclasses.dataclass(frozen=True)
 class FinishValues:
@@ -129,6 +126,16 @@ class Reading:
         self.set(normal_strength=self.number(bending.inputs["Strength"]), **compat.bumps())
         if bending.inputs["Color"].is_linked:
             self._map(bending.inputs["Color"], "normal", numbers=False)
+
+
+def of_no_material():
+    """({parameter: value}, FinishValues or None): what Cycles gives to what wears none."""
+    values = {"model": PLAIN, "reflectance": (0.8, 0.8, 0.8)}
+    if not compat.has_principled_default():
+        return values, None
+    # Of the node when it is new: an IOR of 1.5, seen straight on.
+    finish = {"coat": 0.04, "coat_roughness": 0.5, "facets_keep_energy": True, **compat.principled_layers()}
+    return {**values, "masking": compat.facets_masking()}, FinishValues(tuple(finish.items()))
 
 
 def is_plain(material):
