@@ -48,7 +48,7 @@ HeapLight light_alone(const Heap& heap, const transport::Effort& effort) {
   // What goes straight through a grain asks for no walks.
   constexpr int walks = GrainTable::outcomes;
   HeapLight light;
-  light.kinds = kinds_of(heap.grains, walks, effort);
+  light.kinds = kinds_of(heap.grains.kinds, walks, effort);
   light.seats = std::make_shared<const Seats>(heap.grains.grains.size());
   return light;
 }

@@ -72,6 +72,7 @@ Gather::Gather(Heap heap, std::shared_ptr<const Found> found)
       seen_by_camera_(heap_.world.seen_by_camera()) {
   lights_.reserve(heap_.lights.size());
   for (const scene::Light& light : heap_.lights) lights_.push_back(lights::pack(light, heap_.anchor));
+  of_others_ = heap_.exchanges ? of_others(heap_.grains.kinds) : heap_.grains.kinds;
 }
 
 Gather::Gather(const Heap& heap, std::shared_ptr<const HeapLight> light)
@@ -312,8 +313,11 @@ glm::vec3 Gather::glare_along(std::uint32_t grain, const Passage& passage, float
 
 Ray Gather::ray_through(std::uint32_t grain, const glm::vec3& normal, const glm::vec3& towards) const {
   const float mu = std::clamp(glm::dot(normal, towards), 0.0F, 1.0F);
-  return {space_.place(space_.grains()[grain], normal - 2.0F * mu * towards), -towards,
-          space_.kind(grain).from_viewer->crossing(mu)};
+  // Its table may be that of another medium (of_others).
+  const Optics& optics = heap_.grains.kinds[space_.grains()[grain].kind];
+  const glm::vec3 left = optics.transparent() ? glm::exp(-2.0F * mu * glm::vec3(optics.sigma_t))
+                                              : space_.kind(grain).from_viewer->crossing(mu);
+  return {space_.place(space_.grains()[grain], normal - 2.0F * mu * towards), -towards, left};
 }
 
 }  // namespace mesograin::heap

@@ -142,23 +142,6 @@ class Gather {
   /// What is left of a light on its way to a grain's surface.
   glm::vec3 passed_towards(std::uint32_t grain, const glm::vec3& place, const glm::vec3& to_light, float reach,
                            const Facets& facets) const;
-  /// A place of a ball's surface, from its middle, as it is seen.
-  struct SeenBall {
-    std::uint32_t grain;
-    glm::vec3 place;
-    glm::vec3 normal;
-    glm::vec3 towards;
-  };
-  /// Through how many grains more a walk goes on by walks in them, before what others send ends it: numbers a grain
-  /// tell from where light leaves it, not that it goes on as it came. None of grains that scatter about evenly.
-  int followed_on(std::uint32_t grain) const;
-  /// `share` of what one walk finds, which may go on through `on` grains more.
-  void add_walk(const SeenBall& seen, const glm::vec3& share, int on, transport::Random& random, All& all) const;
-  void add_walk(const SeenFacet& seen, const std::optional<End>& across, const Facets& facets, const glm::vec3& share,
-                int on, transport::Random& random, All& all) const;
-  /// Along a ray that has left a grain; `wall`: what it meets first, if that is known.
-  void follow_on(std::uint32_t grain, std::optional<Meeting> wall, Ray ray, const Facets& facets, int on,
-                 transport::Random& random, All& all) const;
   /// What is sent along a ray, if it meets anything.
   std::optional<glm::vec3> sent_along(Ray& ray, transport::Random& random) const;
   /// What a world without a picture sends to the end of it.
@@ -168,16 +151,16 @@ class Gather {
   void show_what_is_behind(const Ray& through, All& all) const;
   /// One direction of each light, as it comes to a grain.
   std::vector<Asking> asking(std::uint32_t grain, transport::Random& random) const;
-  /// Of a grain's medium, per unit of the heap's lengths.
-  glm::vec3 sigma_t(std::uint32_t grain) const;
   bool is_transparent(std::uint32_t grain) const;
   /// Whether a walk tells what lights do in a grain.
   bool is_lit(std::uint32_t grain) const;
   /// Where a way straight through a grain ends, from a place of its surface or in it; nothing, if there is none.
   std::optional<End> end_across(std::uint32_t grain, const glm::vec3& place, const glm::vec3& direction,
                                 const Facets& facets) const;
-  /// What is left of light there.
-  glm::vec3 left_across(std::uint32_t grain, const std::optional<End>& end) const;
+  /// What is left of light there, of the grain that is seen and of others, which are what of_others_ has.
+  glm::vec3 left_across_seen(std::uint32_t grain, const std::optional<End>& end) const;
+  glm::vec3 left_across_other(std::uint32_t grain, const std::optional<End>& end) const;
+  glm::vec3 left_across(const Optics& optics, std::uint32_t grain, const std::optional<End>& end) const;
   /// And on through others, on the way from a grain's surface to a light.
   glm::vec3 passed_between(std::uint32_t grain, glm::vec3 place, const glm::vec3& to_light, float reach,
                            const Facets& facets) const;
@@ -201,6 +184,7 @@ class Gather {
   std::vector<Draw> draws_;
   scene::Backdrop seen_by_camera_;
   std::vector<lights::DeviceLight> lights_;  // of the heap, its places from the anchor
+  std::vector<Optics> of_others_;            // by kind: of grains that are on the way of light
 };
 
 }  // namespace mesograin::heap

@@ -19,15 +19,15 @@ float mean(const glm::vec3& colour) { return (colour.r + colour.g + colour.b) / 
 
 }  // namespace
 
-std::vector<Kind> kinds_of(const Grains& grains, int most_walks, const transport::Effort& effort) {
+std::vector<Kind> kinds_of(const std::vector<Optics>& of, int most_walks, const transport::Effort& effort) {
   // What one kind's table is too bright another's is too dark, the more so the more there are.
   constexpr std::size_t few = 8;
-  const std::size_t shares = std::bit_floor(std::max(grains.kinds.size() / few, std::size_t{1}));
+  const std::size_t shares = std::bit_floor(std::max(of.size() / few, std::size_t{1}));
   const int walks = std::max(most_walks / static_cast<int>(std::min(shares, std::size_t{1024})), GrainTable::outcomes);
   std::vector<Kind> kinds;
   double done = 0.0;
-  for (const Optics& optics : grains.kinds) {
-    const double next = done + 1.0 / static_cast<double>(grains.kinds.size());
+  for (const Optics& optics : of) {
+    const double next = done + 1.0 / static_cast<double>(of.size());
     const transport::Effort part = transport::part_of(effort, done, next);
     kinds.push_back(
         {grain_table(optics, Sense::from_light, part, walks), grain_table(optics, Sense::from_viewer, part, walks)});

@@ -34,7 +34,7 @@ struct Kind {
 };
 
 /// `walks` for each interval of a table, or fewer where kinds are many.
-std::vector<Kind> kinds_of(const Grains& grains, int walks, const transport::Effort& effort);
+std::vector<Kind> kinds_of(const std::vector<Optics>& optics, int walks, const transport::Effort& effort);
 
 /// Whether grains of any kind are clear.
 bool any_clear(const std::vector<Kind>& kinds);

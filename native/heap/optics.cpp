@@ -63,4 +63,22 @@ Optics optics_of(const scene::Material& material, double radius) {
   return optics;
 }
 
+Optics of_others(const Optics& optics) {
+  if (!optics.transparent() || !(optics.g > 0.0)) return optics;
+  Optics similar = optics;
+  similar.g = 0.0;
+  for (int channel = 0; channel < 3; ++channel) {
+    const double sigma_s = (1.0 - optics.g) * optics.albedo[channel] * optics.sigma_t[channel];
+    const double sigma_t = (1.0 - optics.albedo[channel]) * optics.sigma_t[channel] + sigma_s;
+    similar.sigma_t[channel] = sigma_t;
+    similar.albedo[channel] = sigma_t > 0.0 ? sigma_s / sigma_t : 0.0;
+  }
+  return similar;
+}
+
+std::vector<Optics> of_others(std::vector<Optics> kinds) {
+  for (Optics& optics : kinds) optics = of_others(optics);
+  return kinds;
+}
+
 }  // namespace mesograin::heap

@@ -4,6 +4,7 @@
 #include <array>
 #include <glm/vec3.hpp>
 #include <string_view>
+#include <vector>
 
 #include "scene/material.h"
 
@@ -38,5 +39,11 @@ struct Optics {
 /// Of a sphere of `radius` in scene units. What is too thick for its depth to matter is made as thick as that.
 /// A rough dielectric surface counts as smooth.
 Optics optics_of(const scene::Material& material, double radius);
+
+/// What grains are to each other. Few numbers a grain tell from where light leaves it, not that it goes on as it came:
+/// what a transparent one scatters forwards (g > 0) counts as what crosses it, as the similar medium has it that
+/// scatters evenly, sigma_s (1 - g) (van de Hulst 1980, section 14.1.3).
+Optics of_others(const Optics& optics);
+std::vector<Optics> of_others(std::vector<Optics> kinds);
 
 }  // namespace mesograin::heap

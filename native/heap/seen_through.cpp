@@ -31,7 +31,7 @@ glm::vec3 Gather::lit_behind(const SeenFacet& seen, const Facets& facets, transp
   const glm::vec3 direction = -seen.towards;
   const std::optional<End> across = end_across(seen.grain, seen.place, direction, facets);
   if (across && across->wall) return glm::vec3(0.0F);
-  glm::vec3 weight = left_across(seen.grain, across);
+  glm::vec3 weight = left_across_seen(seen.grain, across);
   glm::vec3 place = seen.place + (across ? across->distance : 0.0F) * direction;
   std::uint32_t grain = seen.grain;
   for (int crossed = 0; crossed < most_crossed; ++crossed) {
@@ -40,7 +40,7 @@ glm::vec3 Gather::lit_behind(const SeenFacet& seen, const Facets& facets, transp
     if (!meeting || meeting->wall) break;
     grain = meeting->number;
     const std::optional<End> end = end_across(grain, meeting->place, direction, facets);
-    const glm::vec3 left = weight * left_across(grain, end);
+    const glm::vec3 left = weight * left_across_other(grain, end);
     const float share = (left.r + left.g + left.b) / (weight.r + weight.g + weight.b);
     if (random.uniform() >= share) {
       const SeenFacet behind{grain, meeting->place, meeting->normal, -direction};

@@ -169,7 +169,7 @@ void Solver::find_matter(const Grains& grains, const Quality& quality, const tra
     matter->walks = matter_->walks;
     matter->kinds = matter_->kinds;
   } else {
-    matter->kinds = kinds_of(grains, quality.walks, effort);
+    matter->kinds = kinds_of(of_others(grains.kinds), quality.walks, effort);
     ++parts_.tables;
   }
   if (grains.grains.size() >= (any_clear(matter->kinds) ? quality.clear_shared_from : quality.shared_from)) {

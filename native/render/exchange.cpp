@@ -422,7 +422,7 @@ void Exchange::send() {
     numbers.push_back(open ? known_->light->open[known_->light->seats->seat(*role.grain)].first : glm::vec4(0.0F));
   }
   for (std::size_t kind = 0; known_ && kind < known_->light->kinds.size(); ++kind) {
-    const heap::Optics& optics = known_->grains().kinds[kind];
+    const heap::Optics optics = heap::of_others(known_->grains().kinds[kind]);
     // What is not transparent lets nothing through.
     const heap::GrainTable& table = *known_->light->kinds[kind].from_light;
     const std::vector<glm::vec2>& offsets = table.came_in().offsets();

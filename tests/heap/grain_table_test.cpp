@@ -59,6 +59,29 @@ TEST(GrainTable, ChannelsDoNotKnowOfEachOther) {
   }
 }
 
+TEST(OfOthers, LightScatteredForwardsCrossesAndWhatIsAbsorbedStays) {
+  Optics optics = medium(Surface::index_matched, {1.0, 2.0, 0.0}, {0.9, 1.0, 0.0});
+  optics.g = 0.8;
+  const Optics others = of_others(optics);
+  EXPECT_EQ(others.g, 0.0);
+  const glm::dvec3 sigma_t{0.1 + 0.2 * 0.9, 0.2 * 2.0, 0.0};
+  const glm::dvec3 albedo{0.18 / 0.28, 1.0, 0.0};
+  for (int channel = 0; channel < 3; ++channel) {
+    EXPECT_NEAR(others.sigma_t[channel], sigma_t[channel], 1e-12) << channel;
+    EXPECT_NEAR(others.albedo[channel], albedo[channel], 1e-12) << channel;
+  }
+}
+
+TEST(OfOthers, WhatScattersEvenlyOrBackwardsOrRefractsIsAsItIs) {
+  Optics optics = medium(Surface::index_matched, glm::dvec3(2.0), glm::dvec3(0.9));
+  EXPECT_EQ(of_others(optics), optics);
+  optics.g = -0.5;
+  EXPECT_EQ(of_others(optics), optics);
+  optics = medium(Surface::dielectric, glm::dvec3(2.0), glm::dvec3(0.9));
+  optics.g = 0.5;
+  EXPECT_EQ(of_others(optics), optics);
+}
+
 TEST(GrainTable, TheNoiseOfManyKindsIsNotThatOfTheirMean) {
   Grains grains;
   constexpr int kinds = 64;
@@ -66,7 +89,7 @@ TEST(GrainTable, TheNoiseOfManyKindsIsNotThatOfTheirMean) {
     grains.kind(medium(Surface::index_matched, glm::dvec3(3.0 * (1.0 + 1e-9 * i)), glm::dvec3(0.9)));
   double sum = 0.0;
   double squares = 0.0;
-  for (const Kind& kind : kinds_of(grains, GrainTable::most_walks, {})) {
+  for (const Kind& kind : kinds_of(grains.kinds, GrainTable::most_walks, {})) {
     const auto albedo = static_cast<double>(kind.from_light->albedo().r);
     sum += albedo;
     squares += albedo * albedo;

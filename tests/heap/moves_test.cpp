@@ -34,7 +34,7 @@ void expect_same(const Links& found, const Links& right) {
 
 /// Expects that after the change all is found as from nothing, by looking at most this share of the grains.
 void expect_renewed(const Heap& before, const Heap& after, double most, const char* what) {
-  const std::vector<Kind> kinds = kinds_of(before.grains, 512, {});
+  const std::vector<Kind> kinds = kinds_of(before.grains.kinds, 512, {});
   const Space old_space(before.grains, kinds);
   const Space space(after.grains, kinds);
   Ways ways = ways_in(old_space);

@@ -125,12 +125,16 @@ def test_what_refracts_sends_light_on_as_much_forward_as_it_does(file, eta, radi
     assert numpy.abs(found - truth).sum() < error * truth.sum()
 
 
-# Two mean free paths to the radius, albedo .99, g .9, under an even sky (its lower half dark), as mesograin-referee
-# heap has it from 128 paths (noise in blocks 1.5 %). Numbers a grain alone do not tell that light goes on as it
-# came: they made 1.77 of it, 77 %. Measured: 1.089, 11 %.
-def test_light_goes_on_forwards_from_grain_to_grain():
-    truth = numpy.loadtxt(DATA / "forward_sky.csv", delimiter=",")
-    look = native.Material(model="model_2", sigma_a=(0.02,) * 3, sigma_s=(1.98,) * 3, g=0.9, boundary="index_matched")
+# Albedo .99 under an even sky (its lower half dark), as mesograin-referee heap has it: two mean free paths to the
+# radius and g .9, 128 paths (noise in blocks 1.5 %), and one at g .5, 64 paths (1.3 %). Numbers a grain alone do not
+# tell that light goes on as it came: they made 1.77 and 1.15 of it, 77 and 15 %. Measured: 1.012, 3.9 %, and
+# .996, 1.8.
+@pytest.mark.parametrize("file, radius, g, total, error", [("forward_sky.csv", 2.0, 0.9, 0.05, 0.09),
+                                                           ("forward_thin_sky.csv", 1.0, 0.5, 0.03, 0.04)])
+def test_light_goes_on_forwards_from_grain_to_grain(file, radius, g, total, error):
+    truth = numpy.loadtxt(DATA / file, delimiter=",")
+    look = native.Material(model="model_2", sigma_a=(0.01 * radius,) * 3, sigma_s=(0.99 * radius,) * 3, g=g,
+                           boundary="index_matched")
     sky = numpy.zeros((64, 128, 3), numpy.float32)
     sky[:32] = 1.0
     view = native.View(*MANIFEST["resolution"])
@@ -138,8 +142,9 @@ def test_light_goes_on_forwards_from_grain_to_grain():
     view.set_camera(camera())
     view.render(16)
     found = blocks(view.read()[..., 1])
-    assert found.sum() == pytest.approx(truth.sum(), rel=0.15)
-    assert numpy.abs(found - truth).sum() < 0.2 * truth.sum()
+    print(f"{found.sum() / truth.sum():.3f} {numpy.abs(found - truth).sum() / truth.sum():.4f}")
+    assert found.sum() == pytest.approx(truth.sum(), rel=total)
+    assert numpy.abs(found - truth).sum() < error * truth.sum()
 
 
 @pytest.mark.parametrize("file, model", [("L8_s45.exr", "lambert"), ("M9_3_s45.exr", "model_2")])
