@@ -267,7 +267,7 @@ std::shared_ptr<const GrainTable> grain_table(const Optics& optics, Sense sense,
     int walks;
     std::shared_ptr<const GrainTable> table;
   };
-  constexpr std::size_t most_kept = 256;  // of 300 KiB
+  constexpr std::size_t most_gone = 64;  // of 300 KiB, that nobody has any more
   static std::mutex mutex;
   static std::list<Entry> kept;  // the last used first
   // Only there do the two differ.
@@ -285,7 +285,8 @@ std::shared_ptr<const GrainTable> grain_table(const Optics& optics, Sense sense,
   auto table = std::make_shared<const GrainTable>(optics, sense, own, walks);
   const std::lock_guard lock(mutex);
   kept.push_front({optics, sense, walks, table});
-  if (kept.size() > most_kept) kept.pop_back();
+  std::size_t gone = 0;
+  kept.remove_if([&gone](const Entry& entry) { return entry.table.use_count() == 1 && ++gone > most_gone; });
   return table;
 }
 

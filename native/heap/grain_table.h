@@ -94,8 +94,9 @@ class GrainTable {
   glm::vec2 seen_by_{1.0F, 0.0F};
 };
 
-/// Tables that were made before are kept, by what they were made of. Each has random numbers of its own, so that the
-/// noise of many kinds' tables is none of their heap's.
+/// Tables that were made before are found by what they were made of: those that somebody has, and the last 64 that
+/// nobody has any more. Each has random numbers of its own, so that the noise of many kinds' tables is none of their
+/// heap's.
 std::shared_ptr<const GrainTable> grain_table(const Optics& optics, Sense sense, const transport::Effort& effort,
                                               int walks);
 

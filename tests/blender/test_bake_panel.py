@@ -2,6 +2,7 @@
 import json
 import random
 import time
+import weakref
 
 import bpy
 import numpy as np
@@ -45,6 +46,22 @@ def test_a_cancelled_bake_writes_nothing(asked, tmp_path):
     bake.cancel()
     bake.wait()
     assert not bake.finished and bake.error == "" and not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("cancelled", [False, True])
+def test_a_bake_that_has_ended_holds_no_view(asked, cancelled):
+    """Of 4096 x 4096 texels that would be most of a gigabyte, until the next bake."""
+    asked.samples = 1 << 20 if cancelled else 2
+    bake = prepare(bpy.context)
+    views = [weakref.ref(view) for view in bake.surface._views]
+    assert views and all(view() is not None for view in views)
+    bake.start()
+    if cancelled:
+        bake.cancel()
+    bake.wait()
+    assert bake.finished != cancelled and [view() for view in views] == [None] * len(views)
+    assert bake.before_first_step == "First sample"
+    bake.cancel()
 
 
 def test_a_bake_that_waits_for_transport_says_so(asked):

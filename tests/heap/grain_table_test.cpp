@@ -7,6 +7,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <memory>
 
 #include "heap/heap.h"
 
@@ -30,6 +31,20 @@ TEST(GrainTable, LosesNoLightWithoutAbsorption) {
         EXPECT_NEAR(table.albedo()[channel], table.met()[channel], 1e-4F * table.met()[channel])
             << static_cast<int>(surface) << " " << radius;
     }
+}
+
+TEST(GrainTable, IsKeptWhileSomebodyHasItElseAmongTheLast64) {
+  const auto table_of = [](double radius) {
+    constexpr int walks = 16;
+    const Optics optics = medium(Surface::index_matched, glm::dvec3(radius), glm::dvec3(0.5));
+    return grain_table(optics, Sense::from_light, {}, walks);
+  };
+  const std::shared_ptr<const GrainTable> held = table_of(1.0);
+  const std::weak_ptr<const GrainTable> last = table_of(2.0);
+  EXPECT_FALSE(last.expired());
+  for (int others = 0; others < 65; ++others) table_of(3.0 + others);
+  EXPECT_TRUE(last.expired());
+  EXPECT_EQ(table_of(1.0), held);
 }
 
 TEST(GrainTable, MeetsLightAsGeometricExtinctionHasIt) {

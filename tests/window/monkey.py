@@ -6,6 +6,7 @@ import math
 import random
 import statistics
 import subprocess
+import sys
 import time
 
 import bmesh
@@ -192,10 +193,12 @@ class Monkey:
             started = time.monotonic()
             yield from self.home()
             self.took["home"] += time.monotonic() - started
-            memory.append(resident.settled())
             # Not after each operation: that would wait for all that the device's thread has to do, as no artist does.
+            # Here it is done with the views of the file before, too, whose memory is free then.
             assert self.window._take_gl_errors() == []
+            memory.append(resident.settled())
             print(f"monkey at home: {memory[-1] / 1e6:.0f} MB, {resident.holders()}, {self.window.native.sent()}, "
+                  f"{sys.getallocatedblocks()} blocks of Python's, "
                   f"{self.unanswered} keys not taken, "
                   f"s so far: {', '.join(f'{name} {took:.0f}' for name, took in self.took.most_common(MOST_TOLD))}",
                   flush=True)

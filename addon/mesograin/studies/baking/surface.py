@@ -102,14 +102,19 @@ class Surface:
     def awaited(self):
         """(what, share done) of what the first sample waits for, as native.View's `awaited` and `preparing`; None if
         that is nothing."""
-        share = self._views[0].preparing
-        return None if share is None else (self._views[0].awaited, share)
+        views = self._views  # which another thread may let go
+        share = views[0].preparing if views else None
+        return None if share is None else (views[0].awaited, share)
 
     def cancel(self):
         """Ends `render` after its current sample; from any thread."""
         self._cancelled = True
         for view in self._views:
             view.cancel()
+
+    def let_go(self):
+        """Gives the device's memory back; nothing can be rendered or read any more."""
+        self._views = []
 
     @property
     def samples(self):

@@ -104,10 +104,14 @@ class Bake(_Threaded):
         return f"{self.path.name}: {self.surface.name}, {width} x {height} texels in {duration(self.seconds)}"
 
     def make(self):
-        if not self.surface.render(self.samples, self._advance):
-            return False
-        surface.write(self.path, self.surface.texture(self._margin), self.surface.provenance(self._margin), self._half)
-        return True
+        try:
+            if not self.surface.render(self.samples, self._advance):
+                return False
+            surface.write(self.path, self.surface.texture(self._margin), self.surface.provenance(self._margin),
+                          self._half)
+            return True
+        finally:
+            self.surface.let_go()  # what came of it is shown until the next one, or another file
 
     def cancel(self):
         self.surface.cancel()
