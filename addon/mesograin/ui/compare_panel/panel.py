@@ -68,7 +68,7 @@ class MESOGRAIN_PT_compare_references(panels.MesograinPanel, bpy.types.Panel):
         column.enabled = not session.running
         column.prop(settings, "references")
         if not settings.references:
-            panels.draw_sentence(self.layout, context, "None chosen: each model's usual one", icon="INFO")
+            panels.draw_sentence(self.layout, context, "None: each model's usual one", icon="INFO")
         reference_cache.draw(self.layout)
 
 
