@@ -138,6 +138,31 @@ def test_a_material_goes_to_another_file(tmp_path, link):
     assert taken.copy().mesograin.model == "model_2"
 
 
+def test_no_button_changes_a_linked_material(tmp_path):
+    """It would be as it was when the file is opened again."""
+    bpy.ops.mesh.primitive_uv_sphere_add()
+    bpy.context.object.name = "Sphere"
+    bpy.context.object.active_material = bpy.data.materials.new("Grain")
+    bpy.context.object.active_material.mesograin.model = "model_2"
+    library = str(tmp_path / "library.blend")
+    buttons = (bpy.ops.mesograin.make_grain, bpy.ops.mesograin.apply_preset, bpy.ops.mesograin.choose_model,
+               bpy.ops.mesograin.to_cycles, bpy.ops.mesograin.from_cycles)
+    assert all(button.poll() for button in buttons)
+    bpy.ops.wm.save_as_mainfile(filepath=library)
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
+    with bpy.data.libraries.load(library, link=True) as (_, here):
+        here.objects = ["Sphere"]
+    linked = here.objects[0]
+    bpy.context.scene.collection.objects.link(linked)
+    bpy.context.view_layer.objects.active = linked
+    assert not any(button.poll() for button in buttons)
+    bpy.ops.mesh.primitive_uv_sphere_add()
+    bpy.context.object.active_material = linked.active_material
+    assert not any(button.poll() for button in buttons)
+    bpy.context.object.active_material = linked.active_material.copy()
+    assert all(button.poll() for button in buttons)
+
+
 def test_a_library_override_keeps_what_was_changed(tmp_path, native):
     material = bpy.data.materials.new("Grain")
     material.use_fake_user, material.mesograin.model = True, "model_2"

@@ -6,6 +6,7 @@ import bpy
 from ..engine import status
 from ..scene import plain_materials, surroundings
 from . import panels, presets
+from .active_material import is_own
 
 SUN_ANGLE = math.radians(0.53)  # as seen from the Earth
 SUN_STRENGTH = 3.0
@@ -49,7 +50,8 @@ class MESOGRAIN_OT_make_grain(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context):
-        return context.object is not None and context.object.type == "MESH"
+        thing = context.object
+        return thing is not None and thing.type == "MESH" and is_own(cls, thing.active_material or thing)
 
     def execute(self, context):
         thing = context.object

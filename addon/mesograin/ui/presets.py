@@ -6,7 +6,7 @@ from bpy.props import EnumProperty
 from ..schema import models
 from ..schema.parameters import PARAMETERS
 from ..schema.presets import BY_IDENTIFIER, GROUPS
-from .active_material import active_material
+from .active_material import active_material, is_own
 
 
 def _sentence(group, preset):
@@ -37,7 +37,8 @@ class MESOGRAIN_OT_apply_preset(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context):
-        return active_material(context) is not None
+        material = active_material(context)
+        return material is not None and is_own(cls, material)
 
     def execute(self, context):
         material = active_material(context)
