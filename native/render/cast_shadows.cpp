@@ -99,29 +99,41 @@ void CastShadows::bind(const gl::Program& program) const {
 }
 
 bool cast_shadow_map(const CastContent& cast, const Content& content, const glm::dmat4& anchor_to_clip,
-                     const ShadowEye& eye, int resolution, std::vector<glm::vec2>& texels, const GoOn& go_on) {
+                     const ShadowEye& eye, const ThroughToMap& through, int resolution, std::vector<glm::vec2>& texels,
+                     const GoOn& go_on) {
   const PixelRays rays(anchor_to_clip, glm::dvec2(resolution), glm::dvec2(0.0), content.bounds());
   texels.resize(static_cast<std::size_t>(resolution) * static_cast<std::size_t>(resolution));
   const glm::vec3 from(eye);
   const auto cast_packet = [&](int x, int y) {
     casting::Packet packet;
     casting::Hits hits;
+    PixelRay pixels[casting::rays_in_packet];
     for (unsigned ray = 0; ray < casting::rays_in_packet; ++ray) {
-      const PixelRay through = rays.at(x + static_cast<int>(ray) % across, y + static_cast<int>(ray) / across);
-      packet.set(ray, through.origin, through.direction, through.farthest);
+      const PixelRay& pixel = pixels[ray] =
+          rays.at(x + static_cast<int>(ray) % across, y + static_cast<int>(ray) / across);
+      packet.set(ray, pixel.origin, pixel.direction, pixel.farthest);
     }
     cast.first_hits(packet, hits);
     for (unsigned ray = 0; ray < casting::rays_in_packet; ++ray) {
       const auto row = static_cast<std::size_t>(y) + ray / across;
-      glm::vec2& texel =
-          texels[row * static_cast<std::size_t>(resolution) + static_cast<std::size_t>(x) + ray % across];
-      texel = glm::vec2(-3e38F, 0.0F);
+      const std::size_t number =
+          row * static_cast<std::size_t>(resolution) + static_cast<std::size_t>(x) + ray % across;
+      texels[number] = glm::vec2(-3e38F, 0.0F);
       if (!hits.met[ray]) continue;
-      const glm::vec3 place =
-          glm::vec3(packet.origin_x[ray], packet.origin_y[ray], packet.origin_z[ray]) +
-          hits.distance[ray] * glm::vec3(packet.direction_x[ray], packet.direction_y[ray], packet.direction_z[ray]);
+      const PixelRay& pixel = pixels[ray];
+      float distance = hits.distance[ray];
+      std::uint32_t of = hits.number[ray];
+      if (through.straight != nullptr) {
+        const float drawn = draw_of(number, through.light, through.index);
+        const std::optional<casting::Hit> stopped = through.straight->stopped(
+            {.origin = pixel.origin, .direction = pixel.direction, .farthest = pixel.farthest}, drawn);
+        if (!stopped) continue;
+        distance = stopped->distance;
+        of = stopped->number;
+      }
+      const glm::vec3 place = pixel.origin + distance * pixel.direction;
       const float nearness = eye.w > 0.0 ? -glm::distance(place, from) : glm::dot(place, from);
-      texel = {nearness, static_cast<float>(hits.number[ray] + 1)};
+      texels[number] = {nearness, static_cast<float>(of + 1)};
     }
   };
   return cast_rows(resolution, go_on, [&](int first, int end) {

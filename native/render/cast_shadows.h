@@ -57,8 +57,17 @@ class CastShadows {
   std::size_t channels_ = 0;  // of it
 };
 
+/// What goes straight through what stands in a light's way to its shadow map, or null if nothing does: a share of light
+/// is the texels that it is stopped at no more, others in the samples of these indices.
+struct ThroughToMap {
+  const StraightThrough* straight;
+  std::size_t light;
+  std::uint32_t index;
+};
+
 /// Fills a shadow map of this many texels on a side. False if ended.
 bool cast_shadow_map(const CastContent& cast, const Content& content, const glm::dmat4& anchor_to_clip,
-                     const ShadowEye& eye, int resolution, std::vector<glm::vec2>& texels, const GoOn& go_on);
+                     const ShadowEye& eye, const ThroughToMap& through, int resolution, std::vector<glm::vec2>& texels,
+                     const GoOn& go_on);
 
 }  // namespace mesograin::render

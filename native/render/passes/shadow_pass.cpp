@@ -26,6 +26,15 @@ bool known_by_pixel(const Sample& sample) {
   return true;
 }
 
+// Whether what goes straight through a draw may come into another object below its surface.
+bool crosses_into_others(const Sample& sample) {
+  if (!sample.straight_through || sample.unwrapping != nullptr) return false;
+  int below = 0;
+  for (std::size_t unit = 0; unit < sample.content.units(); ++unit)
+    if (!is_opaque(sample.content.material(unit))) ++below;
+  return below > 1;
+}
+
 Receivers receivers_of(const Sample& sample) {
   const Content& content = sample.content;
   if (sample.unwrapping == nullptr)
@@ -76,16 +85,20 @@ bool ShadowPass::update_maps(const Sample& sample, const ArrayVisibility& arrays
     casters_.clear();
     receivers_ = receivers_of(sample);
   }
-  // About a texel a pixel: the jitter makes them finer with every sample.
+  // About a texel a pixel, or two pixels where a ray finds each: the jitter makes them finer with every sample.
+  const bool through = crosses_into_others(sample);
+  const int pixels = std::max(sample.size.x, sample.size.y) / (through ? 2 : 1);
   const int resolution =
-      std::clamp(static_cast<int>(std::bit_ceil(static_cast<unsigned>(std::max(sample.size.x, sample.size.y)))),
-                 least_resolution, most_resolution);
+      std::clamp(static_cast<int>(std::bit_ceil(static_cast<unsigned>(pixels))), least_resolution, most_resolution);
   const glm::dvec2 jitter = r2_point(sample.index, seeded_offset(sample.seed + 0x20000U));
   std::vector<glm::vec2> texels;
   const auto draw = [&](const glm::dmat4& to_clip, const ShadowEye& eye, gl::TextureArray& maps, int layer,
                         const gl::Texture& depth) {
-    if (sample.cast) {
-      if (!cast_shadow_map(arrays.tree(), content, to_clip, eye, resolution, texels, sample.go_on)) return false;
+    if (sample.cast || through) {
+      const StraightThrough straight(arrays.tree(), content);
+      const ThroughToMap straight_on{through ? &straight : nullptr, static_cast<std::size_t>(layer), sample.index};
+      if (!cast_shadow_map(arrays.tree(), content, to_clip, eye, straight_on, resolution, texels, sample.go_on))
+        return false;
       maps.upload(layer, GL_RG, GL_FLOAT, texels.data());
       return true;
     }
