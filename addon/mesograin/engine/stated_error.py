@@ -37,8 +37,9 @@ MEASURED = (
     Measured("lambert", (0.0, 0.0), (0.8, 0.8), True, False, 0.032, 0.045, 0.067),
     Measured("lambert", (0.0, 0.0), (0.8, 0.8), False, False, 0.02, 0.03),
     Measured("index_matched", (1.0, 10.0), (0.9, 0.999), True, True, 0.03, 0.033, 0.036),
+    Measured("index_matched", (1.0, 10.0), (0.99, 0.99), True, True, 0.02, 0.037, g=(0.0, 0.7)),
     Measured("index_matched", (1.0, 3.0), (0.9, 0.999), True, False, 0.03, 0.051, 0.05),
-    Measured("index_matched", (0.35, 6.49), (0.8, 0.999), False, True, 0.02, 0.034, 0.081),
+    Measured("index_matched", (0.35, 6.49), (0.8, 0.999), False, True, 0.03, 0.034, 0.081),
     Measured("index_matched", (2.25, 5.69), (0.914, 0.991), False, False, 0.03, 0.052),
     Measured("dielectric", (0.2, 5.0), (0.8, 0.999), True, False, 0.035, 0.075, 0.12, eta=(1.3, 1.55)),
     Measured("dielectric", (0.11, 2.9), (0.8, 0.999), False, False, 0.04, 0.09, 0.09, eta=(1.3, 1.55)),
@@ -67,4 +68,4 @@ def sentence(exchange):
     low = [known.low_sun for known in found if known.low_sun]
     under = f", {max(low):.0%} under a low sun" if low else ""
     return (f"within {max(known.total for known in found):.0%} in all and {max(known.blocks for known in found):.1%} in"
-            f" blocks of 8 x 8 pixels where it was measured{under}")
+            f" blocks of 8 x 8 pixels where it was measured, of grains that do not lie in each other{under}")
