@@ -91,9 +91,7 @@ void extrapolate(const Nodes& nodes, const glm::ivec3& node, float spacing, Entr
   }
 }
 
-}  // namespace
-
-BetweenNodes between_nodes(const Grid& grid) {
+BetweenNodes amounts_of(const Grid& grid, bool straightened) {
   const Nodes nodes(grid);
   const glm::vec3& spacing = grid.spacing();
   const float mean_spacing = std::cbrt(spacing.x * spacing.y * spacing.z);
@@ -105,15 +103,21 @@ BetweenNodes between_nodes(const Grid& grid) {
         const int self = nodes.used(node);
         if (self < 0) continue;
         entries.emplace_back(self, self, 1.0F);
-        if (nodes.inside(node))
-          straighten(nodes, node, entries);
-        else
+        if (!nodes.inside(node))
           extrapolate(nodes, node, mean_spacing, entries);
+        else if (straightened)
+          straighten(nodes, node, entries);
       }
   const auto count = static_cast<Eigen::Index>(grid.places().size());
   BetweenNodes amounts(count, count);
   amounts.setFromTriplets(entries.begin(), entries.end());
   return amounts;
 }
+
+}  // namespace
+
+BetweenNodes between_nodes(const Grid& grid) { return amounts_of(grid, true); }
+
+BetweenNodes beyond_surface(const Grid& grid) { return amounts_of(grid, false); }
 
 }  // namespace mesograin::transport

@@ -166,6 +166,7 @@ StoredTransport compute_transport(Walks& walks, const StoredMedium& asked, const
   for (const double sigma_t : extinctions) exchanges.push_back(walks.exchange(sigma_t));
 
   const BetweenNodes between = between_nodes(grid);
+  const BetweenNodes beyond = beyond_surface(grid);
   // Channels have lobes of their own: light in a thick one is sharper in its direction than in a thin one.
   stored.lobes.resize(static_cast<std::size_t>(kept * channels) * octahedron_texels);
   for (int channel = 0; channel < channels; ++channel) {
@@ -179,8 +180,10 @@ StoredTransport compute_transport(Walks& walks, const StoredMedium& asked, const
                        part_of(effort, 0.8 + 0.2 * channel / channels, 0.8 + 0.2 * (channel + 1) / channels));
     // What is scattered again is told by these terms well enough, and all that is not is known.
     const Lights scattered = (solved - first.amounts) * first.lobes;
+    // What view rays see just below the surface lies between nodes beyond it and those below. Even light stays even.
+    // Where light that was scattered before is told beside it (below), its fall towards the surface is in that.
     if (stored.has_unscattered)
-      light += scattered;
+      light = Lights(beyond * (light + scattered));
     else
       light = scattered;
     Terms terms = principal_terms(seen, light, first, kept);

@@ -92,6 +92,19 @@ def test_the_dark_side_of_a_thick_grain_is_as_dark(image):
     assert shapes.compare(drawn, GRAINS.truth(image))["relative_l1"] < DARK_BARS[round(shapes.albedo(image), 6)]
 
 
+# A curved grain of radius 10 from the front: its total was .973 of the truth's while nodes beyond the surface, between
+# which and those below it view rays pass, were stored as it is at the surface's nearest point.
+THICK = shapes.Shapes(native, TESTS / "data/thick_shapes")
+THICK_BAR = 0.015
+
+
+@pytest.mark.parametrize("image", THICK.images, ids=lambda image: image["file"])
+def test_the_lit_side_of_a_thick_curved_grain_is_as_bright(image, tmp_path):
+    made = {**image, "mesh": str(tmp_path / shape_pictures.write_mesh("sand", tmp_path))}
+    drawn = THICK.draw(made, "transport", samples=4)[..., 0]
+    assert shapes.compare(drawn, THICK.truth(image))["total"] == pytest.approx(1.0, abs=THICK_BAR)
+
+
 @pytest.mark.parametrize("image", GRAINS.images, ids=lambda image: f"{image['file']} {image.get('channel', 'R')}")
 @pytest.mark.parametrize("model", ["model_2", "model_3"])
 def test_a_picture_is_that_of_the_photons(image, model):
