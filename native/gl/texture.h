@@ -13,6 +13,11 @@ class Texture : public TextureStorage<GL_TEXTURE_2D> {
   /// Uploads tightly packed rows, first row at v = 0.
   void upload(GLenum components, GLenum type, const void* texels);
 
+  /// For compute shaders to read and write, as texels of its own format.
+  void bind_image(GLuint unit, GLenum format) const {
+    glBindImageTexture(unit, name(), 0, GL_FALSE, 0, GL_READ_WRITE, format);
+  }
+
   /// Whether its texels are integers, for a usampler2D.
   bool holds_numbers() const { return holds_numbers_; }
 

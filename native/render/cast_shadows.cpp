@@ -85,13 +85,18 @@ bool CastShadows::cast(const CastContent& cast, const Content& content, const Se
       for (int x = 0; x < size.x; x += across) cast_packet({x, y}, end);
   });
   if (!whole) return false;
+  on_device(size, channels);
+  device_->upload(channels == 3 ? GL_RGB_INTEGER : GL_RED_INTEGER, GL_UNSIGNED_INT, reached_.data());
+  return true;
+}
+
+const gl::Texture& CastShadows::on_device(const glm::ivec2& size, std::size_t channels) {
   if (!device_ || device_->width() != size.x || device_->height() != size.y || channels_ != channels) {
     device_.emplace(channels == 3 ? GL_RGB32UI : GL_R32UI, size.x, size.y);
     if (channels == 1) device_->show_first_as_all();
     channels_ = channels;
   }
-  device_->upload(channels == 3 ? GL_RGB_INTEGER : GL_RED_INTEGER, GL_UNSIGNED_INT, reached_.data());
-  return true;
+  return *device_;
 }
 
 void CastShadows::bind(const gl::Program& program) const {

@@ -48,6 +48,9 @@ class CastShadows {
             const std::function<bool(std::size_t)>& asks, const std::vector<ShadowEye>& eyes,
             const StraightThrough* through, std::uint32_t index, const GoOn& go_on);
 
+  /// Where rays that the device follows tell them, for a picture of this size.
+  const gl::Texture& on_device(const glm::ivec2& size, std::size_t channels = 1);
+
   /// Makes them what shaders/scene/shadows.glsl reads.
   void bind(const gl::Program& program) const;
 

@@ -9,11 +9,10 @@
 #include <glm/gtc/type_ptr.hpp>
 #include <utility>
 
+#include "render/device_layout.h"
+
 namespace mesograin::render {
 namespace {
-
-// How far a level's surface may be from the mesh's, in pixels.
-constexpr double most_error = 0.1;
 
 constexpr std::size_t fewest_triangles = 12;
 
@@ -51,7 +50,7 @@ double volume(const scene::Mesh& mesh, const std::vector<glm::uvec3>& triangles)
 
 // Without the vertices that no triangle uses. Chords lie inside a grain: a coarse level would be seen as smaller, and
 // so grows until it has the mesh's volume. An open mesh, whose volume says nothing, stays.
-std::shared_ptr<gl::VertexArray> compact(const scene::Mesh& mesh, std::vector<glm::uvec3> triangles) {
+scene::MeshPointer compact(const scene::Mesh& mesh, std::vector<glm::uvec3> triangles) {
   const double ratio = volume(mesh, mesh.triangles()) / volume(mesh, triangles);
   const double growth = ratio > 1.0 && ratio < most_growth ? std::cbrt(ratio) : 1.0;
   const glm::vec3 middle = 0.5F * (mesh.lower() + mesh.upper());
@@ -71,26 +70,43 @@ std::shared_ptr<gl::VertexArray> compact(const scene::Mesh& mesh, std::vector<gl
       }
       triangle[corner] = place;
     }
-  return std::make_shared<gl::VertexArray>(positions, normals, uvs, triangles);
+  return std::make_shared<const scene::Mesh>(std::move(positions), std::move(normals), std::move(triangles),
+                                             std::move(uvs));
 }
 
 }  // namespace
 
-Details::Details(const scene::Mesh& mesh, std::shared_ptr<gl::VertexArray> full) {
+Details::Details(const scene::Mesh& mesh, std::shared_ptr<gl::VertexArray> full)
+    : mesh_(mesh), half_(0.5 * (glm::dvec3(mesh.upper()) - glm::dvec3(mesh.lower()))) {
+  const glm::vec3 middle = 0.5F * (mesh.lower() + mesh.upper());
   std::size_t triangles = mesh.triangles().size();
-  levels_.push_back({std::move(full), 0.0});
+  levels_.push_back({std::move(full), 0.0, nullptr});
   while (triangles / 2 >= fewest_triangles) {
     Simplified coarser = simplified(mesh, triangles / 2);
     // Where hardly anything is gained, such as on a soup of triangles that share no vertices, nothing more will be.
     if (coarser.triangles.size() < fewest_triangles || coarser.triangles.size() * 4 > triangles * 3) break;
     triangles = coarser.triangles.size();
-    levels_.push_back({compact(mesh, std::move(coarser.triangles)), coarser.error});
+    scene::MeshPointer coarse = compact(mesh, std::move(coarser.triangles));
+    levels_.push_back(
+        {std::make_shared<gl::VertexArray>(coarse->positions(), coarse->normals(), coarse->uvs(), coarse->triangles()),
+         coarser.error, coarse});
+    half_ = glm::max(half_, glm::max(coarse->upper() - middle, middle - coarse->lower()));
   }
+}
+
+const casting::FlatMesh& Details::flat(std::size_t level) const {
+  const Level& of = levels_[level];
+  if (!of.flat) {
+    const glm::vec3 middle(0.5 * (glm::dvec3(mesh_.lower()) + glm::dvec3(mesh_.upper())));
+    of.flat = std::make_unique<const casting::FlatMesh>(
+        casting::flat_mesh(of.coarse ? *of.coarse : mesh_, middle, layout::MOST_DEPTH_OF_MESH));
+  }
+  return *of.flat;
 }
 
 std::size_t Details::level(double pixels_across) const {
   std::size_t level = levels_.size() - 1;
-  while (level > 0 && levels_[level].error * pixels_across > most_error) --level;
+  while (level > 0 && levels_[level].error * pixels_across > most_detail_error) --level;
   return level;
 }
 

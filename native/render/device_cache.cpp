@@ -272,6 +272,17 @@ const gl::Program& DeviceCache::shadow_program(bool instanced) {
                  gl::ShaderSource({"passes/shadow.frag"}, {}));
 }
 
+const gl::Program& DeviceCache::ray_program(const std::string& pass, bool textured) {
+  std::vector<std::string> defines;
+  if (textured) defines.emplace_back("TEXTURED");
+  return programs_.find(textured ? pass + " textured" : pass,
+                        {{GL_COMPUTE_SHADER, gl::ShaderSource({"passes/" + pass + ".comp"}, defines)}});
+}
+
+const gl::Program& DeviceCache::mark_program() {
+  return program("mark", gl::ShaderSource({"passes/full_screen.vert"}, {}), gl::ShaderSource({"passes/mark.frag"}, {}));
+}
+
 const gl::Program& DeviceCache::light_map_program(bool tessellated) {
   std::vector<gl::Stage> stages = {{GL_VERTEX_SHADER, gl::ShaderSource({"passes/light_map.vert"}, {})}};
   if (tessellated) {

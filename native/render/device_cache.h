@@ -159,6 +159,10 @@ class DeviceCache {
   /// The program that draws a shadow map.
   const gl::Program& shadow_program(bool instanced);
 
+  /// A program that follows rays through instances, and the one that tells their depths and marks the stencil.
+  const gl::Program& ray_program(const std::string& pass, bool textured);
+  const gl::Program& mark_program();
+
   /// The program that draws a light map, of triangles or of patches; compiled when the first material needs one.
   const gl::Program& light_map_program(bool tessellated);
 

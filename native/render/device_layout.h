@@ -14,5 +14,6 @@ using glm::vec4;
 #include "render/distant_light.glsl"
 #include "render/shadow_view.glsl"
 #include "render/stored_light_frame.glsl"
+#include "render/tree_node.glsl"
 
 }  // namespace mesograin::render::layout

@@ -148,6 +148,7 @@ Sample Frame::begin_sample(const GoOn& go_on) {
                 .jitter = glm::vec2((2.0 * r2_point(index, seeded_offset(seed_)) - 1.0) / glm::dvec2(size_)),
                 .lights = lighting_.sample(index, seed_, own_maps ? 1 : most_world_directions),
                 .cast = cast,
+                .device_rays = arrays_.casts_on_device(*content_),
                 .traced = traced,
                 .gathers = gathers,
                 .denoises = scene_.denoise,
@@ -185,8 +186,10 @@ bool Frame::add_sample(const GoOn& go_on) {
 
 bool Frame::draw_seen(const Sample& sample) {
   for (std::size_t first = 0; first < content_->units() || first == 0; first += most_in_stencil) {
+    if (first == 0) timers_.surfaces.start();
     if (!surfaces_.run(sample, arrays_, first)) return false;
     if (first == 0) {
+      timers_.surfaces.stop();
       if (!update_shadows(sample) || !gather_.run(sample, arrays_, surfaces_)) return false;
       // Rays are not the device's work.
       if (sample.cast) timers_.shade.start();
@@ -279,6 +282,11 @@ std::vector<PassTiming> Frame::timings() const {
   if (arrays_.casts(*content_)) {
     passes.push_back({"surfaces", surfaces_.milliseconds()});
     if (shadows_.ran()) passes.push_back({"shadows", shadows_.milliseconds()});
+  } else if (arrays_.casts_on_device(*content_)) {
+    passes.push_back({"surfaces", timers_.surfaces.milliseconds()});
+    if (shadows_.ran()) passes.push_back({"shadows", timers_.shadows.milliseconds()});
+    for (const PassTiming& before : passes)
+      if (before.pass != "light_maps") shade -= before.milliseconds;
   } else if (shadows_.ran()) {
     // The shadows are drawn once it is known what is seen, and so amid the rest.
     const double shadows = timers_.shadows.milliseconds();
@@ -304,6 +312,8 @@ Statistics Frame::statistics() const {
   if (arrays_.casts(*content_)) {
     result.cast = result.instances;
     result.seen = surfaces_.instances_seen();
+  } else if (arrays_.casts_on_device(*content_)) {
+    result.cast = result.instances;
   } else {
     result.drawn = arrays_.selection()->selection.instances.size();
   }

@@ -35,7 +35,7 @@ struct Statistics {
   std::size_t instances = 0;  ///< there are
   std::size_t drawn = 0;      ///< that the device drew for the camera, in as few triangles as they deserve
   std::size_t cast = 0;       ///< that rays were cast at
-  std::size_t seen = 0;       ///< of those, that rays met
+  std::size_t seen = 0;       ///< of those, that rays met; not told where the device follows them
   std::optional<ExchangeStatistics> exchange;  ///< where light goes from grain to grain
 };
 

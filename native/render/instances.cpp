@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 #include <iterator>
 #include <utility>
 
+#include "casting/flat_tree.h"
 #include "render/device_layout.h"
 
 namespace mesograin::render {
@@ -108,6 +110,7 @@ void Instances::place(std::size_t instance, const scene::Mesh& mesh, const glm::
 void Instances::place(const std::vector<scene::InstanceArray>& arrays, const glm::dvec3& anchor) {
   bounds_ = {};
   tree_.reset();
+  device_tree_.reset();
   device_.reset();
   std::size_t instance = 0;
   for (const scene::InstanceArray& array : arrays) {
@@ -131,6 +134,7 @@ void Instances::take_places(Instances& before) {
   // The tree looks at these very rows.
   rows_ = std::move(before.rows_);
   tree_ = std::move(before.tree_);
+  device_tree_ = std::move(before.device_tree_);
   device_ = std::move(before.device_);
 }
 
@@ -171,6 +175,41 @@ const casting::PlacedTree& Instances::tree(DeviceCache& cache) {
     groups.push_back({cache.tree(prototypes_[group.prototype].mesh), rows(group.first), group.count, group.first});
   tree_ = std::make_unique<casting::PlacedTree>(std::move(groups));
   return *tree_;
+}
+
+const gl::Buffer& Instances::device_tree() {
+  if (device_tree_) return *device_tree_;
+  std::vector<casting::Box> boxes(count());
+  std::vector<float> groups(count());
+  for (std::size_t g = 0; g < groups_.size(); ++g) {
+    const InstanceGroup& group = groups_[g];
+    const glm::vec3& half = prototypes_[group.prototype].details->half();
+    for (std::uint32_t i = group.first; i < group.first + group.count; ++i) {
+      const glm::vec4* of = rows(i);
+      const glm::vec3 place(of[0].w, of[1].w, of[2].w);
+      // What rounding may move a ray by on its way into the mesh's axes.
+      constexpr float rounding = 1e-6F;
+      const glm::vec3 reach = (1.0F + 10.0F * rounding) * glm::vec3(glm::dot(glm::abs(glm::vec3(of[0])), half),
+                                                                    glm::dot(glm::abs(glm::vec3(of[1])), half),
+                                                                    glm::dot(glm::abs(glm::vec3(of[2])), half)) +
+                              rounding * glm::abs(place);
+      boxes[i] = {place - reach, place + reach};
+      groups[i] = static_cast<float>(g);
+    }
+  }
+  casting::FlatTree tree = casting::flat_tree(boxes, 1, layout::MOST_DEPTH_OF_SCENE);
+  const auto name = [&](glm::vec4& lower, glm::vec4& upper) {
+    if (!(lower.w < 0.0F)) return;
+    const std::uint32_t instance = tree.order[static_cast<std::size_t>(-1.0F - lower.w)];
+    lower.w = -1.0F - static_cast<float>(instance);
+    upper.w = groups[instance];
+  };
+  for (casting::FlatNode& node : tree.nodes) {
+    name(node.first_lower, node.first_upper);
+    name(node.second_lower, node.second_upper);
+  }
+  device_tree_.emplace(tree.nodes);
+  return *device_tree_;
 }
 
 Selection Instances::select(const glm::dmat4& anchor_to_clip, int width, int height) const {

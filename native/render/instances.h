@@ -106,6 +106,10 @@ class Instances {
   /// What rays are cast into; made on first use. Its groups are these.
   const casting::PlacedTree& tree(DeviceCache& cache);
 
+  /// The same for rays that the device follows, as shaders/scene/rays.glsl reads it; made on first use. Throws Error if
+  /// there are too many.
+  const gl::Buffer& device_tree();
+
   /// Those that a picture of `width` x `height` pixels may show, `anchor_to_clip` being its projection.
   Selection select(const glm::dmat4& anchor_to_clip, int width, int height) const;
 
@@ -130,6 +134,7 @@ class Instances {
   std::vector<std::uint32_t> members_;  // of each instance, which it is of its array; empty where they are in order
   Bounds bounds_;
   std::unique_ptr<casting::PlacedTree> tree_;
+  std::optional<gl::Buffer> device_tree_;
   mutable std::optional<gl::Buffer> device_;  // the rows, sent on first use
 };
 

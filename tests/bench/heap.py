@@ -1,11 +1,13 @@
 """What heaps of grains cost: milliseconds a sample, as ratios to a Lambert sphere that fills the same picture.
 
-    heap.py BUILD_FOLDER [--grains N ...] [--samples N] [--shapes sphere ...] [--models lambert ...] [--json FILE]
+    heap.py BUILD_FOLDER [--grains N ...] [--samples N] [--shapes sphere ...] [--models lambert ...] [--size W H]
+        [--visibility V] [--json FILE]
 
-The picture has 960x540 pixels, and the heap fills it; one sun, which casts shadows, and no light between grains, which
-exchange.py measures. Each heap is measured in a process of its own. Its peak memory is told, in which this program's
-own arrays count and a second scene while a material changes, and what is held once the picture is there and those are
-gone; so is the first picture after a material has changed, in samples.
+The picture has 960x540 pixels unless told, and the heap fills it; one sun, which casts shadows, and no light between
+grains, which exchange.py measures. Each heap is measured in a process of its own. Its peak memory is told, in which
+this program's own arrays count and a second scene while a material changes, and what is held once the picture is there
+and those are gone; so is the first picture after a material has changed, in samples, and a frame of one sample while
+the camera moves with each.
 """
 import argparse
 import json
@@ -75,28 +77,28 @@ def milliseconds(view, samples):
     return statistics.median(times)
 
 
-def make_view(native, visibility):
-    view = native.View(*SIZE)
+def make_view(native, size, visibility):
+    view = native.View(*size)
     view.set_visibility(visibility)
     return view
 
 
-def sphere_view(native, visibility):
+def sphere_view(native, size, visibility):
     """A Lambert sphere that covers all of the picture."""
-    view = make_view(native, visibility)
+    view = make_view(native, size, visibility)
     mesh = shapes(native)["sphere"]
     grain = native.Instance(mesh, native.Material(model="lambert", **PARAMETERS), numpy.eye(4))
     view.set_scene(native.Scene(instances=[grain], lights=[native.DirectionalLight(*SUN)]))
-    view.set_camera(native.Camera.look_at((0.0, 0.0, 8.0), (0.0, 0.0, 0.0), (0.0, 1.0, 0.0), 7.0, SIZE[0] / SIZE[1]))
+    view.set_camera(native.Camera.look_at((0.0, 0.0, 8.0), (0.0, 0.0, 0.0), (0.0, 1.0, 0.0), 7.0, size[0] / size[1]))
     return view
 
 
-def measure(native, shape, model, count, samples, visibility):
+def measure(native, shape, model, count, samples, size, visibility):
     """What one heap costs, as a dictionary."""
-    reference = sphere_view(native, visibility)
+    reference = sphere_view(native, size, visibility)
     reference.render(3)
     transforms, width = places(count)
-    view = make_view(native, visibility)
+    view = make_view(native, size, visibility)
     material = native.Material(model=model, **PARAMETERS)
     heap = native.InstanceArray(shapes(native)[shape], material, transforms)
     del transforms
@@ -105,8 +107,11 @@ def measure(native, shape, model, count, samples, visibility):
         changed = heap.with_material(native.Material(model=model, **{**PARAMETERS, **changes}))
         return native.Scene(arrays=[changed], lights=[native.DirectionalLight(*SUN)], exchange="off")
 
+    def look_from(eye):
+        return native.Camera.look_at(eye, (0.0, 0.0, -0.15 * width), (0.0, 0.0, 1.0), 18.0, size[0] / size[1])
+
     eye = (0.0, -0.6 * width, 1.05 * width)
-    view.set_camera(native.Camera.look_at(eye, (0.0, 0.0, -0.15 * width), (0.0, 0.0, 1.0), 18.0, SIZE[0] / SIZE[1]))
+    view.set_camera(look_from(eye))
     start = time.perf_counter()
     view.set_scene(scene())
     view.render(1)
@@ -124,10 +129,19 @@ def measure(native, shape, model, count, samples, visibility):
         after.append((time.perf_counter() - start) * 1e3)
     view.render(1)
     pixels = view.read()
+    orbit = []
+    for number in range(4 * samples):
+        angle = math.radians(number + 1)
+        turned = (math.sin(angle) * 0.6 * width, -math.cos(angle) * 0.6 * width, eye[2])
+        start = time.perf_counter()
+        view.set_camera(look_from(turned))
+        view.render(1)
+        orbit.append((time.perf_counter() - start) * 1e3)
     sample = statistics.median(times)
     return {"shape": shape, "model": model, "grains": count, "sphere_milliseconds": statistics.median(alone),
             "milliseconds": sample, "ratio": sample / statistics.median(alone), "first_milliseconds": first,
-            "after_a_slider": statistics.median(after) / sample, "coverage": float(pixels[..., 3].mean()),
+            "orbit_milliseconds": statistics.median(orbit), "after_a_slider": statistics.median(after) / sample,
+            "coverage": float(pixels[..., 3].mean()),
             "passes": {entry["pass"]: entry["milliseconds"] for entry in view.timings()},
             "held_megabytes": held_megabytes(),
             "peak_megabytes": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0,
@@ -142,15 +156,16 @@ def held_megabytes():
 def run_apart(options, shape, model, count):
     """measure(), in a process of its own."""
     words = [sys.executable, __file__, options.build, "--one", shape, model, str(count),
-             "--samples", str(options.samples), "--visibility", options.visibility]
+             "--samples", str(options.samples), "--visibility", options.visibility,
+             "--size", *map(str, options.size)]
     return json.loads(subprocess.run(words, check=True, stdout=subprocess.PIPE, text=True).stdout)
 
 
 def show(case):
-    passes = ", ".join(f"{name} {milliseconds:.0f}" for name, milliseconds in case["passes"].items())
-    print(f"{case['shape']:<10}{case['model']:<9}{case['grains']:>9}{case['milliseconds']:>9.0f}{case['ratio']:>8.1f}"
-          f"{case['after_a_slider']:>8.2f}{case['first_milliseconds']:>9.0f}{case['held_megabytes']:>7.0f}"
-          f"{case['peak_megabytes']:>7.0f}  {passes}",
+    passes = ", ".join(f"{name} {milliseconds:.1f}" for name, milliseconds in case["passes"].items())
+    print(f"{case['shape']:<10}{case['model']:<9}{case['grains']:>9}{case['milliseconds']:>9.1f}{case['ratio']:>8.1f}"
+          f"{case['after_a_slider']:>8.2f}{case['orbit_milliseconds']:>9.1f}{case['first_milliseconds']:>9.0f}"
+          f"{case['held_megabytes']:>7.0f}{case['peak_megabytes']:>7.0f}  {passes}",
           flush=True)
 
 
@@ -187,7 +202,8 @@ def main():
     parser.add_argument("--shapes", nargs="+", default=["sphere", "irregular"], choices=["sphere", "irregular"])
     parser.add_argument("--models", nargs="+", default=["lambert", "model_1", "model_2", "model_3"],
                         help=f"lambert's heaps are of all sizes, those of other models have {MODELS_AT} grains")
-    parser.add_argument("--visibility", default="automatic", choices=["automatic", "drawn", "cast"],
+    parser.add_argument("--size", type=int, nargs=2, default=SIZE, metavar=("W", "H"), help="of the picture, pixels")
+    parser.add_argument("--visibility", default="automatic", choices=["automatic", "drawn", "cast", "device_rays"],
                         help="how it is found what is seen (default: automatic)")
     parser.add_argument("--one", nargs=3, metavar=("SHAPE", "MODEL", "GRAINS"), help=argparse.SUPPRESS)
     parser.add_argument("--json", type=pathlib.Path, metavar="FILE", help="also writes the result there")
@@ -197,11 +213,12 @@ def main():
         import mesograin_native as native
 
         shape, model, count = options.one
-        print(json.dumps(measure(native, shape, model, int(count), options.samples, options.visibility)))
+        print(json.dumps(measure(native, shape, model, int(count), options.samples, tuple(options.size),
+                                 options.visibility)))
         return
 
-    print(f"{'shape':<10}{'model':<9}{'grains':>9}{'ms':>9}{'ratio':>8}{'slider':>8}{'first':>9}{'held':>7}{'peak':>7}"
-          "  milliseconds of the passes")
+    print(f"{'shape':<10}{'model':<9}{'grains':>9}{'ms':>9}{'ratio':>8}{'slider':>8}{'orbit':>9}{'first':>9}{'held':>7}"
+          f"{'peak':>7}  milliseconds of the passes")
     cases = []
     for shape in options.shapes:
         for model in options.models:
@@ -216,7 +233,8 @@ def main():
     for sentence in bars(of):
         print(sentence)
     print("ratio: to a Lambert sphere that fills the picture; slider: the first picture after a material changed, in"
-          f" samples; first: from no scene to a picture; held, peak: megabytes; on {cases[0]['device']}")
+          " samples; orbit: milliseconds of a frame while the camera moves; first: from no scene to a picture;"
+          f" held, peak: megabytes; on {cases[0]['device']}")
     if options.json:
         options.json.write_text(json.dumps(cases, indent=1) + "\n")
 

@@ -217,7 +217,7 @@ void write_finishes(Writer& writer) {
 }
 
 void write_passes(Writer& writer) {
-  for (const std::string pass : {"accumulate", "background", "gathered", "resolve"})
+  for (const std::string pass : {"accumulate", "background", "gathered", "mark", "resolve"})
     writer.write(pass, ShaderSource({"passes/full_screen.vert"}, {}), ShaderSource({"passes/" + pass + ".frag"}, {}));
   writer.write("mirror", ShaderSource({"passes/full_screen.vert"}, {}), ShaderSource({"passes/mirror.frag"}, {}));
   writer.write("count", ShaderSource({"passes/bake.vert"}, {}), ShaderSource({"passes/count.frag"}, {}));
@@ -225,6 +225,9 @@ void write_passes(Writer& writer) {
     for (const std::string instanced : {"", "instanced_"})
       writer.write(instanced + pass, ShaderSource({fmt::format("passes/{}{}.vert", instanced, pass)}, {}),
                    ShaderSource({fmt::format("passes/{}.frag", pass)}, {}));
+  for (const std::string pass : {"cast_surfaces", "cast_shadows", "cast_shadow_map"})
+    writer.write_stage(pass + ".comp", ShaderSource({"passes/" + pass + ".comp"}, {}));
+  writer.write_stage("cast_surfaces+textured.comp", ShaderSource({"passes/cast_surfaces.comp"}, {"TEXTURED"}));
   for (const std::string name : {"light_map", "light_map+tessellated"})
     writer.write(name, ShaderSource({"passes/light_map.vert"}, {}), ShaderSource({"passes/light_map.frag"}, {}));
   for (const std::string suffix : {".tesc", ".tese"})

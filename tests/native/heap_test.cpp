@@ -193,6 +193,32 @@ TEST_F(HeapTest, WhatIsCastIsWhatIsDrawn) {
   EXPECT_NEAR(of_translucent.total, 1.0, 0.002);
 }
 
+// On a surface that wears a picture, too.
+TEST_F(HeapTest, WhatTheDevicesRaysFindIsWhatIsDrawn) {
+  const scene::Camera camera = scene::Camera::look_at({0, -9, 16}, {0, 0, 0}, {0, 1, 0}, 35.0, 2.0);
+  const auto expect_same = [&](const scene::Scene& scene, double most_in_blocks) {
+    const Difference found = difference(picture(scene, camera, 128, 64, 16, Visibility::device_rays),
+                                        picture(scene, camera, 128, 64, 16, Visibility::drawn), 128, 64);
+    EXPECT_LT(found.blocks, most_in_blocks);
+    EXPECT_NEAR(found.total, 1.0, 0.004);
+  };
+  // As of what is cast.
+  const auto ball = std::make_shared<scene::Mesh>(scene::unit_sphere(48, 24));
+  expect_same(small_heap(ball, scene::Model::lambert), 0.01);
+  expect_same(small_heap(bumpy(), scene::Model::model_1), 0.015);
+  expect_same(small_heap(few_triangles(), scene::Model::model_2), 0.005);
+
+  std::vector<glm::vec2> uvs;
+  for (const glm::vec3& position : ball->positions()) uvs.emplace_back(0.5F * position.x, 0.7F * position.z);
+  scene::Scene worn = small_heap(
+      std::make_shared<scene::Mesh>(ball->positions(), ball->normals(), ball->triangles(), uvs), scene::Model::lambert);
+  const std::vector<glm::u8vec4> texels = {{255, 0, 0, 255}, {0, 255, 0, 255}, {0, 0, 255, 255}, {255, 255, 255, 255}};
+  worn.arrays.front().material.finish.emplace();
+  worn.arrays.front().material.finish->reflectance.picture =
+      std::make_shared<const scene::Picture>(2, 2, scene::Picture::Bytes(texels.begin(), texels.end()), true);
+  expect_same(worn, 0.01);
+}
+
 // More groups than the stencil tells apart.
 TEST_F(HeapTest, ManyCastMaterialsAreEachShadedWithTheirOwn) {
   const auto ball = std::make_shared<scene::Mesh>(scene::unit_sphere(16, 8));
@@ -209,13 +235,15 @@ TEST_F(HeapTest, ManyCastMaterialsAreEachShadedWithTheirOwn) {
   const scene::Camera camera{glm::translate(glm::dmat4(1.0), glm::dvec3(0.5 - side / 2.0, 0.5 - side / 2.0, -5.0)),
                              glm::ortho(-side / 2.0, side / 2.0, -side / 2.0, side / 2.0, 0.1, 20.0)};
   constexpr int size = side * 5;
-  const std::vector<float> pixels = picture(scene, camera, size, size, 1, Visibility::cast);
-  for (int i = 0; i < side * side; ++i) {
-    const auto x = static_cast<std::size_t>(i % side * 5 + 2);
-    const auto y = static_cast<std::size_t>(size - 1 - (i / side * 5 + 2));
-    const float* pixel = &pixels[4 * (y * static_cast<std::size_t>(size) + x)];
-    const double expected = (0.2 + 0.6 * i / (side * side)) / 0.5;
-    EXPECT_NEAR(pixel[0] / pixel[1], expected, 1e-4) << i;
+  for (const Visibility visibility : {Visibility::cast, Visibility::device_rays}) {
+    const std::vector<float> pixels = picture(scene, camera, size, size, 1, visibility);
+    for (int i = 0; i < side * side; ++i) {
+      const auto x = static_cast<std::size_t>(i % side * 5 + 2);
+      const auto y = static_cast<std::size_t>(size - 1 - (i / side * 5 + 2));
+      const float* pixel = &pixels[4 * (y * static_cast<std::size_t>(size) + x)];
+      const double expected = (0.2 + 0.6 * i / (side * side)) / 0.5;
+      EXPECT_NEAR(pixel[0] / pixel[1], expected, 1e-4) << i;
+    }
   }
 }
 

@@ -11,10 +11,13 @@ AccumulatePass::AccumulatePass()
 
 void AccumulatePass::run(const Targets& targets, const Sum& sum, bool first) {
   sum.accumulate.bind();
-  if (first) sum.accumulate.clear();
   glDisable(GL_DEPTH_TEST);
-  glEnable(GL_BLEND);
-  glBlendFunc(GL_ONE, GL_ONE);
+  if (first) {
+    glDisable(GL_BLEND);  // it covers all of what was there
+  } else {
+    glEnable(GL_BLEND);
+    glBlendFunc(GL_ONE, GL_ONE);
+  }
   accumulate_program_.use();
   accumulate_program_.set("image", targets.sample);
   full_screen_.draw();

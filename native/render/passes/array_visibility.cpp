@@ -18,16 +18,23 @@ bool reads_light_maps(const Instances& instances) {
 }  // namespace
 
 void ArrayVisibility::set(Visibility visibility) {
-  if (visibility == Visibility::cast && !casting::available())
+  if ((visibility == Visibility::cast || visibility == Visibility::device_rays) && !casting::available())
     throw Error("Rays cannot be cast on this machine: Embree needs AVX.");
   visibility_ = visibility;
   forget_view();
 }
 
 bool ArrayVisibility::casts(const Content& content) const {
-  if (content.instances() == nullptr || visibility_ == Visibility::drawn) return false;
+  if (content.instances() == nullptr) return false;
   return visibility_ == Visibility::cast ||
-         (!gl::ContextThread::instance().device_info().hardware && casting::available());
+         (visibility_ == Visibility::automatic && !gl::ContextThread::instance().device_info().hardware &&
+          casting::available());
+}
+
+bool ArrayVisibility::casts_on_device(const Content& content) const {
+  if (!DeviceRays::suit(content) || !casting::available()) return false;
+  return visibility_ == Visibility::device_rays ||
+         (visibility_ == Visibility::automatic && gl::ContextThread::instance().device_info().hardware);
 }
 
 bool ArrayVisibility::traces(const Content& content) const {
@@ -46,15 +53,17 @@ void ArrayVisibility::prepare(const Sample& sample) {
   if ((sample.cast || sample.looks_into_facets() || sample.mirrors == Mirrors::hindered) && !tree_)
     tree_ = std::make_unique<CastContent>(sample.cache, sample.content);
   const Instances* instances = sample.content.instances();
+  if (sample.device_rays && !device_rays_) device_rays_ = std::make_unique<DeviceRays>(sample.cache, sample.content);
   if (instances == nullptr || selection_) return;
   // Light maps are as fine as the largest grain in the picture.
-  if (!sample.cast || reads_light_maps(*instances))
+  if (!(sample.cast || sample.device_rays) || reads_light_maps(*instances))
     selection_ = std::make_unique<DeviceSelection>(
         instances->select(anchor_to_clip(sample.content, sample.camera), sample.size.x, sample.size.y));
 }
 
 void ArrayVisibility::forget_content() {
   tree_.reset();
+  device_rays_.reset();
   selection_.reset();
 }
 

@@ -8,26 +8,31 @@
 #include <string_view>
 
 #include "render/cast_content.h"
+#include "render/device_rays.h"
 #include "render/passes/sample.h"
 #include "render/surfaces.h"
 
 namespace mesograin::render {
 
 enum class Visibility {
-  automatic,  ///< drawn where there is a GPU, else cast
-  drawn,      ///< by the device's rasteriser
-  cast,       ///< by rays, on all cores
+  automatic,    ///< by rays: the device's where there is a GPU, else cast; drawn where they cannot be
+  drawn,        ///< by the device's rasteriser
+  cast,         ///< by rays, on all cores
+  device_rays,  ///< by rays that the device follows
 };
 
-inline constexpr std::array<std::string_view, 3> visibility_names = {"automatic", "drawn", "cast"};
+inline constexpr std::array<std::string_view, 4> visibility_names = {"automatic", "drawn", "cast", "device_rays"};
 
 class ArrayVisibility {
  public:
   /// Throws Error where rays are asked for and cannot be cast.
   void set(Visibility visibility);
 
-  /// Whether rays are cast for this content.
+  /// Whether rays are cast for this content, on all cores.
   bool casts(const Content& content) const;
+
+  /// Whether the device casts them.
+  bool casts_on_device(const Content& content) const;
 
   /// Whether rays can be followed through all of it: a tree of arrays that the device draws is not worth its memory.
   bool traces(const Content& content) const;
@@ -43,6 +48,9 @@ class ArrayVisibility {
   /// For a sample that casts rays.
   const CastContent& tree() const { return *tree_; }
 
+  /// For a sample that has the device's.
+  const DeviceRays& device_rays() const { return *device_rays_; }
+
   /// What the camera may see; null without arrays, or where rays find it and no light map must know how near it is.
   const DeviceSelection* selection() const { return selection_.get(); }
 
@@ -52,6 +60,7 @@ class ArrayVisibility {
  private:
   Visibility visibility_ = Visibility::automatic;
   std::unique_ptr<CastContent> tree_;
+  std::unique_ptr<DeviceRays> device_rays_;
   std::unique_ptr<DeviceSelection> selection_;
 };
 

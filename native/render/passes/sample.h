@@ -47,10 +47,11 @@ struct Sample {
   std::uint32_t seed;
   glm::vec2 jitter;  ///< of the picture, in clip space
   SampledLights lights;
-  bool cast;      ///< rays find what is seen of arrays
-  bool traced;    ///< rays can be followed through all of the content
-  bool gathers;   ///< light between grains is gathered for pixels that show them
-  bool denoises;  ///< and neighbours that show the same tell each other what was found
+  bool cast;         ///< rays find what is seen of arrays
+  bool device_rays;  ///< or the device's own, which know of arrays what surface.frag draws, and no more
+  bool traced;       ///< rays can be followed through all of the content
+  bool gathers;      ///< light between grains is gathered for pixels that show them
+  bool denoises;     ///< and neighbours that show the same tell each other what was found
   Mirrors mirrors = Mirrors::none;
   bool straight_through = false;  ///< light that goes straight through single draws is followed
   const GoOn& go_on;

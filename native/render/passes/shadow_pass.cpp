@@ -20,7 +20,7 @@ bool is_opaque(const DeviceMaterial& material) {
 
 // Whether it is enough to know for each pixel which lights of this sample reach it.
 bool known_by_pixel(const Sample& sample) {
-  if (sample.unwrapping != nullptr || !sample.cast) return false;
+  if (sample.unwrapping != nullptr || !(sample.cast || sample.device_rays)) return false;
   for (std::size_t unit = 0; unit < sample.content.units(); ++unit)
     if (!is_opaque(sample.content.material(unit)) && sample.asks_model(unit)) return false;
   return true;
@@ -58,9 +58,21 @@ bool ShadowPass::run(const Sample& sample, const ArrayVisibility& arrays, Surfac
   const auto start = std::chrono::steady_clock::now();
   const auto asks = [&](std::size_t number) { return !sample.gathers_all_of(number); };
   bool whole = by_pixel_ || update_maps(sample, arrays, eyes);
-  if (whole && (by_pixel_ || opaque_by_pixel_)) whole = cast(sample, arrays, surfaces.seen(sample), asks, eyes, cast_);
+  if (by_pixel_ && sample.device_rays)
+    cast_on_device(sample, arrays, surfaces, eyes);
+  else if (whole && (by_pixel_ || opaque_by_pixel_))
+    whole = cast(sample, arrays, surfaces.seen(sample), asks, eyes, cast_);
   milliseconds_ = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   return whole;
+}
+
+void ShadowPass::cast_on_device(const Sample& sample, const ArrayVisibility& arrays, const SurfacePass& surfaces,
+                                const std::vector<ShadowEye>& eyes) {
+  const gl::Texture& reached = cast_.on_device(sample.size);
+  for (std::size_t light = 0; light < eyes.size(); ++light)
+    cast_shadows(sample.cache, arrays.device_rays(), anchor_to_clip(sample.content, sample.camera), sample.targets,
+                 surfaces.of_device(), sample.viewer(sample.content.anchor()), static_cast<int>(light), eyes[light],
+                 reached);
 }
 
 bool ShadowPass::cast(const Sample& sample, const ArrayVisibility& arrays, const SeenSurfaces& seen,
@@ -101,6 +113,10 @@ bool ShadowPass::update_maps(const Sample& sample, const ArrayVisibility& arrays
         return false;
       maps.upload(layer, GL_RG, GL_FLOAT, texels.data());
       return true;
+    }
+    if (sample.device_rays && sample.unwrapping == nullptr) {
+      cast_shadow_map(sample.cache, arrays.device_rays(), content, to_clip, eye, maps, layer);
+      return sample.go_on();
     }
     const gl::Framebuffer target(maps, layer, depth);
     return draw_casters(sample.cache, content,

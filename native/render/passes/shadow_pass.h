@@ -53,6 +53,10 @@ class ShadowPass {
   bool cast(const Sample& sample, const ArrayVisibility& arrays, const SeenSurfaces& seen,
             const std::function<bool(std::size_t)>& asks, const std::vector<ShadowEye>& eyes, CastShadows& shadows);
 
+  /// The same by the device's rays.
+  void cast_on_device(const Sample& sample, const ArrayVisibility& arrays, const SurfacePass& surfaces,
+                      const std::vector<ShadowEye>& eyes);
+
   bool update_maps(const Sample& sample, const ArrayVisibility& arrays, const std::vector<ShadowEye>& eyes);
 
   /// What a light of this layer sees: the same as in the sample before where it has not moved.

@@ -18,12 +18,19 @@ bool SurfacePass::run(const Sample& sample, const ArrayVisibility& arrays, std::
       return false;
     cast_.found().upload(targets, first);
   }
+  const bool found = sample.cast || sample.device_rays;
+  if (sample.device_rays) {
+    if (first == 0)
+      device_.cast(sample.cache, arrays.device_rays(), sample.content, anchor_to_clip(sample.content, sample.camera),
+                   sample.jitter, targets);
+    device_.mark(sample.cache, sample.content, targets, first);
+  }
   targets.surfaces.bind();
   glDisable(GL_BLEND);
-  if (!sample.cast && first == 0) targets.surfaces.clear();
-  if (!sample.cast && first > 0) targets.surfaces.clear_depth();
-  const bool whole = draw_surfaces(sample.cache, sample.content, sample.cast ? nullptr : arrays.selection(),
-                                   sample.camera, sample.jitter, first, sample.go_on);
+  if (!found && first == 0) targets.surfaces.clear();
+  if (!found && first > 0) targets.surfaces.clear_depth();
+  const bool whole = draw_surfaces(sample.cache, sample.content, found ? nullptr : arrays.selection(), sample.camera,
+                                   sample.jitter, first, sample.go_on);
   if (sample.cast) glFinish();
   milliseconds_ = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   return whole;

@@ -7,6 +7,7 @@
 
 #include "render/cast_shadows.h"
 #include "render/cast_surfaces.h"
+#include "render/device_casting.h"
 #include "render/passes/array_visibility.h"
 #include "render/passes/sample.h"
 
@@ -21,6 +22,9 @@ class SurfacePass {
   /// What was found, on this side of the device.
   SeenSurfaces seen(const Sample& sample);
 
+  /// Of a sample that has the device's rays.
+  const DeviceSurfaces& of_device() const { return device_; }
+
   /// How many instances rays met.
   std::size_t instances_seen() const { return cast_.seen(); }
 
@@ -29,6 +33,7 @@ class SurfacePass {
 
  private:
   CastSurfaces cast_;
+  DeviceSurfaces device_;
   std::vector<glm::vec4> read_positions_;
   std::vector<glm::vec4> read_normals_;
   double milliseconds_ = 0.0;

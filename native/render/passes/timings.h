@@ -16,6 +16,7 @@ struct PassTiming {
 /// On the device.
 struct PassTimers {
   gl::Timer light_maps;
+  gl::Timer surfaces;
   gl::Timer shadows;
   gl::Timer shade;
   gl::Timer accumulate;
