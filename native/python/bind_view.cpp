@@ -411,13 +411,14 @@ void bind_view(py::module_& module) {
            "Sets how many light map samples model 3 takes for one pixel and sample, over all lights (default 16), and "
            "restarts the\n"
            "accumulation. Raises Error unless it is in [1, 65536].")
-      .def(
-          "set_visibility", &set_visibility, py::arg("by"),
-          "How it is found what is seen of arrays and what stands in their light: 'drawn' by the device, 'cast' by "
-          "rays "
-          "on all cores, or\n"
-          "'automatic', which is drawn where there is a GPU. Restarts the accumulation. Raises Error where rays cannot "
-          "be cast.")
+      .def("set_visibility", &set_visibility, py::arg("by"),
+           "How it is found what is seen of arrays and what stands in their light: 'drawn' by the device, 'cast' by "
+           "rays on all cores,\n"
+           "'device_rays' by rays that the device follows, which it draws instead beside more than 32 single objects, "
+           "or 'automatic',\n"
+           "the device's where there is a GPU, else all cores'. Restarts the accumulation. Raises Error where rays "
+           "cannot "
+           "be cast.")
       .def("set_camera", &render::View::set_camera, py::arg("camera"), Release(),
            "Restarts the accumulation; sends nothing.")
       .def(
