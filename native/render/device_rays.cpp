@@ -102,7 +102,7 @@ void DeviceRays::bind(const gl::Program& program, const glm::dmat4& anchor_to_cl
   program.set("detail_depth", glm::vec4(rows[3]));
   program.set("detail_pixels", static_cast<float>(0.5 * std::max(glm::length(glm::dvec3(rows[0])) * size.x,
                                                                  glm::length(glm::dvec3(rows[1])) * size.y)));
-  program.set("most_detail_error", static_cast<float>(most_detail_error));
+  program.set("most_detail_error", in_full_ ? 0.0F : static_cast<float>(most_detail_error));
 }
 
 }  // namespace mesograin::render

@@ -20,8 +20,11 @@ class DeviceRays {
   /// Whether its rays are worth it: there are arrays, and so little else that each ray can ask all of it.
   static bool suit(const Content& content);
 
-  /// Makes them what shaders/scene/rays.glsl reads. Meshes are as coarse as a picture of this size may show them
-  /// through this projection.
+  /// Has them all met in full from now on, or as coarse as what shows them allows.
+  void meet_in_full(bool full) { in_full_ = full; }
+
+  /// Makes them what shaders/scene/rays.glsl reads, as coarse as a picture of this size may show them through this
+  /// projection.
   void bind(const gl::Program& program, const glm::dmat4& anchor_to_clip, const glm::ivec2& size) const;
 
  private:
@@ -49,6 +52,7 @@ class DeviceRays {
   gl::Buffer placed_;
   gl::Buffer lone_;
   int lone_count_;
+  bool in_full_ = false;
 };
 
 }  // namespace mesograin::render

@@ -77,7 +77,7 @@ void Frame::set_bake(const Bake& bake) {
 
 UvUse Frame::uv_use() {
   if (!unwrapping_) throw Error("The use of UVs is known of a bake only: call set_bake first.");
-  return count_uv_use(begin_sample([] { return true; }));
+  return count_uv_use(begin_sample([] { return true; }, false));
 }
 
 void Frame::set_taps(int taps) {
@@ -125,14 +125,14 @@ scene::Camera Frame::seen_through(std::uint32_t index) const {
   return camera_.lens ? camera_.through(camera_.lens->place(scrambled_point(index, seed_ + lens_seed))) : camera_;
 }
 
-Sample Frame::begin_sample(const GoOn& go_on) {
+Sample Frame::begin_sample(const GoOn& go_on, bool hurried) {
   cache_.begin_sample();
-  const auto index = static_cast<std::uint32_t>(samples_);
+  const auto index = static_cast<std::uint32_t>(added_to());
   const std::vector<Draw>& draws = content_->draws();
   const bool own_maps =
       std::any_of(draws.begin(), draws.end(), [](const Draw& draw) { return draw.light_maps != nullptr; });
   const bool cast = arrays_.casts(*content_);
-  const bool traced = arrays_.traces(*content_);
+  const bool traced = arrays_.traces(*content_, hurried);
   const bool gathers = !unwrapping_ && exchange_.gather() != nullptr && (exchange_.gathers_all() || traced);
   Sample sample{.cache = cache_,
                 .content = *content_,
@@ -157,16 +157,17 @@ Sample Frame::begin_sample(const GoOn& go_on) {
   // Of what light goes between it is known otherwise what is seen behind.
   const bool behind = !exchange_.any() && content_->any_shows_behind();
   sample.straight_through = behind && traced;
-  sample.mirrors = arrays_.mirrors(*content_, lighting_.world().shines(), behind,
+  sample.mirrors = arrays_.mirrors(*content_, traced, lighting_.world().shines(), behind,
                                    [&](std::size_t unit) { return sample.asks_model(unit); });
   if (sample.mirrors == Mirrors::hindered && !targets_->mirror)
     targets_->mirror.emplace(targets_->sample, targets_->depth);
   return sample;
 }
 
-bool Frame::add_sample(const GoOn& go_on) {
+bool Frame::add_sample(const GoOn& go_on, bool hurried) {
   if (looks_through_lens()) forget_what_is_seen();
-  const Sample sample = begin_sample(go_on);
+  hurried = hurried && samples_ == 0 && arrays_.casts_on_device(*content_);
+  const Sample sample = begin_sample(go_on, hurried);
   arrays_.prepare(sample);
   timers_.light_maps.start();
   if (!light_maps_.run(sample, arrays_)) return false;
@@ -176,11 +177,12 @@ bool Frame::add_sample(const GoOn& go_on) {
   timers_.shade.stop();
   if (!mirror_.run(sample, arrays_, surfaces_, shadows_, shade_)) return false;
   timers_.accumulate.start();
-  accumulate_.run(*targets_, targets_->sum, samples_ == 0);
+  accumulate_.run(*targets_, targets_->sum, added_to() == 0);
   timers_.accumulate.stop();
   if (!add_portions(sample)) return false;
   timed_ = true;
-  ++samples_;
+  samples_ = added_to() + 1;
+  hurried_ = hurried;
   return true;
 }
 
@@ -204,7 +206,7 @@ bool Frame::add_portions(Sample sample) {
   if (unwrapping_) return true;
   const std::size_t units = content_->units();
   for (auto& [portion, told] : portions_) {
-    if (samples_ == 0) told.samples = 0;
+    if (added_to() == 0) told.samples = 0;
     sample.portion = portion;
     shade_.clear(sample);
     for (std::size_t first = 0; first < units || first == 0; first += most_in_stencil) {
@@ -265,7 +267,7 @@ void Frame::read_surfaces(float* positions, float* normals) {
   if (unwrapping_)
     throw Error("A bake has no view whose surfaces could be read: set a camera and a scene without bake.");
   const GoOn to_the_end = [] { return true; };
-  Sample sample = begin_sample(to_the_end);
+  Sample sample = begin_sample(to_the_end, true);
   sample.jitter = glm::vec2(0.0F);
   sample.camera = pinhole();
   if (looks_through_lens()) arrays_.forget_view();

@@ -80,7 +80,12 @@ class Frame {
 
   /// Adds one sample to the sum. `go_on` is asked between its parts; where it says no, nothing is added, and the answer
   /// is false.
-  bool add_sample(const GoOn& go_on);
+  /// `hurried`: it is shown alone, to someone who waits for it: where the device follows rays itself, rays on this side
+  /// are left to the samples after it, which begin anew.
+  bool add_sample(const GoOn& go_on, bool hurried = false);
+
+  /// That the sum holds.
+  int samples() const { return samples_; }
 
   /// Takes in what has become known since the scene was set; if anything has, the samples begin anew. Returns whether
   /// they did.
@@ -112,7 +117,10 @@ class Frame {
 
  private:
   /// Of this content, seen as it is now.
-  Sample begin_sample(const GoOn& go_on);
+  Sample begin_sample(const GoOn& go_on, bool hurried);
+
+  /// How many samples the next one is added to.
+  int added_to() const { return hurried_ && samples_ == 1 ? 0 : samples_; }
 
   /// The surfaces, what stands in their light, and their shading.
   bool draw_seen(const Sample& sample);
@@ -161,6 +169,7 @@ class Frame {
   PassTimers timers_;
   bool timed_ = false;
   int samples_ = 0;
+  bool hurried_ = false;  // the only one of them lacks what others have
 };
 
 }  // namespace mesograin::render

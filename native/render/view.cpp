@@ -252,17 +252,17 @@ std::shared_future<double> View::start(int samples, std::shared_ptr<Picture> pic
   const auto cancelled = [shared = shared_, number = ++started_] { return shared->cancelled >= number; };
   const auto go_on = [cancelled] { return !cancelled(); };
   std::function<std::optional<double>()> add_sample = [id = id_, made = made_, shared = shared_, go_on,
-                                                       picture = std::move(picture), news = patient_, left = samples,
-                                                       seconds = 0.0]() mutable {
+                                                       picture = std::move(picture), news = patient_,
+                                                       patient = patient_, left = samples, seconds = 0.0]() mutable {
     if (!go_on()) return std::optional(seconds);
     const auto started = std::chrono::steady_clock::now();
     made.get();
     Frame& target = frame(id);
     if (std::exchange(news, false) && target.take_news()) shared->samples = 0;
-    const bool whole = target.add_sample(go_on);
+    const bool whole = target.add_sample(go_on, !patient && left == 1);
     // Without this the driver would queue samples faster than it draws them, and cancelling would come too late.
     target.finish();
-    if (whole) ++shared->samples;
+    if (whole) shared->samples = target.samples();
     seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
     if (whole && --left > 0) return std::optional<double>();
     if (whole && picture) fill(*picture, target);

@@ -78,7 +78,7 @@ def milliseconds(view, samples):
 
 
 def make_view(native, size, visibility):
-    view = native.View(*size)
+    view = native.View(*size, patient=False)
     view.set_visibility(visibility)
     return view
 

@@ -23,6 +23,7 @@ std::vector<Box> boxes_in_disorder(std::size_t count) {
   std::mt19937 engine(5);
   std::uniform_real_distribution<float> place(-10.0F, 10.0F), size(0.0F, 2.0F);
   std::vector<Box> boxes;
+  boxes.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
     const glm::vec3 lower(place(engine), place(engine), place(engine));
     boxes.push_back({lower, lower + glm::vec3(size(engine), size(engine), size(engine))});
@@ -93,6 +94,7 @@ TEST(FlatTree, OfManyEqualBoxesIsShallow) {
 
 TEST(FlatTree, BoxesThatNeedALongWayAreRefused) {
   std::vector<Box> boxes;
+  boxes.reserve(60);
   for (int i = 0; i < 60; ++i) boxes.push_back({glm::vec3(0.0F), glm::vec3(std::exp2(static_cast<float>(i)))});
   test::expect_error([&] { flat_tree(boxes, 1, 9); }, "too unequal");
 }

@@ -219,6 +219,51 @@ TEST_F(HeapTest, WhatTheDevicesRaysFindIsWhatIsDrawn) {
   expect_same(worn, 0.01);
 }
 
+// Metal mirrors its neighbours, which rays on this side find.
+TEST_F(HeapTest, WhatADeviceDrawsInAHurryGoesWithTheNextSample) {
+  const scene::Camera camera = scene::Camera::look_at({0, -9, 16}, {0, 0, 0}, {0, 1, 0}, 35.0, 2.0);
+  const scene::Scene scene =
+      small_heap(std::make_shared<scene::Mesh>(scene::unit_sphere(24, 12)), scene::Model::conductor);
+  constexpr int width = 64, height = 32;
+  const auto pictures = [&](Visibility visibility, const std::vector<int>& steps) {
+    View view(width, height, 0, false);
+    view.set_visibility(visibility);
+    view.set_scene(scene);
+    view.set_camera(camera);
+    std::vector<std::vector<float>> pictures;
+    for (const int samples : steps) {
+      view.render(samples);
+      pictures.emplace_back(static_cast<std::size_t>(width) * height * 4);
+      view.read(pictures.back().data());
+    }
+    return std::pair(pictures, view.samples());
+  };
+  const auto [stepwise, after_steps] = pictures(Visibility::device_rays, {1, 1, 1, 30});
+  EXPECT_EQ(after_steps, 32);
+  const auto [at_once, after_all] = pictures(Visibility::device_rays, {2, 30});
+  EXPECT_EQ(after_all, 32);
+  EXPECT_EQ(stepwise[2], at_once[0]);
+  EXPECT_EQ(stepwise[3], at_once[1]);
+  EXPECT_NE(stepwise[0], stepwise[1]);
+  const auto [cast, after_cast] = pictures(Visibility::cast, {1, 1, 30});
+  EXPECT_EQ(after_cast, 32);
+  EXPECT_LT(difference(at_once[1], cast[2], width, height).blocks, 1e-3);
+}
+
+// What crosses single grains is followed from what the device's rays have found.
+TEST_F(HeapTest, WhatIsGatheredOfGrainsIsTheSameFromTheDevicesRays) {
+  const scene::Camera camera = scene::Camera::look_at({0, -9, 16}, {0, 0, 0}, {0, 1, 0}, 35.0, 2.0);
+  for (const scene::Boundary boundary : {scene::Boundary::index_matched, scene::Boundary::dielectric}) {
+    scene::Scene scene = small_heap(few_triangles(), scene::Model::model_2);
+    scene.arrays.front().material.boundary = boundary;
+    scene.exchange = scene::Exchange::heaps;
+    EXPECT_LT(difference(picture(scene, camera, 64, 32, 4, Visibility::device_rays),
+                         picture(scene, camera, 64, 32, 4, Visibility::cast), 64, 32)
+                  .blocks,
+              1e-3);
+  }
+}
+
 // More groups than the stencil tells apart.
 TEST_F(HeapTest, ManyCastMaterialsAreEachShadedWithTheirOwn) {
   const auto ball = std::make_shared<scene::Mesh>(scene::unit_sphere(16, 8));

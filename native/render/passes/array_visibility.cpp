@@ -37,23 +37,27 @@ bool ArrayVisibility::casts_on_device(const Content& content) const {
          (visibility_ == Visibility::automatic && gl::ContextThread::instance().device_info().hardware);
 }
 
-bool ArrayVisibility::traces(const Content& content) const {
-  return casts(content) || (content.instances() == nullptr && casting::available());
+bool ArrayVisibility::traces(const Content& content, bool hurried) const {
+  return casts(content) || (content.instances() == nullptr && casting::available()) ||
+         (casts_on_device(content) && !hurried);
 }
 
-Mirrors ArrayVisibility::mirrors(const Content& content, bool world, bool behind,
+Mirrors ArrayVisibility::mirrors(const Content& content, bool traced, bool world, bool behind,
                                  const std::function<bool(std::size_t unit)>& asks) const {
-  if (behind && traces(content)) return Mirrors::hindered;
+  if (behind && traced) return Mirrors::hindered;
   if (!content.facets(asks)) return Mirrors::none;
   if (!content.shadows()) return world ? Mirrors::unhindered : Mirrors::none;
-  return traces(content) ? Mirrors::hindered : Mirrors::none;
+  return traced ? Mirrors::hindered : Mirrors::none;
 }
 
 void ArrayVisibility::prepare(const Sample& sample) {
   if ((sample.cast || sample.looks_into_facets() || sample.mirrors == Mirrors::hindered) && !tree_)
     tree_ = std::make_unique<CastContent>(sample.cache, sample.content);
   const Instances* instances = sample.content.instances();
-  if (sample.device_rays && !device_rays_) device_rays_ = std::make_unique<DeviceRays>(sample.cache, sample.content);
+  if (sample.device_rays) {
+    if (!device_rays_) device_rays_ = std::make_unique<DeviceRays>(sample.cache, sample.content);
+    device_rays_->meet_in_full(sample.sees_in_full());
+  }
   if (instances == nullptr || selection_) return;
   // Light maps are as fine as the largest grain in the picture.
   if (!(sample.cast || sample.device_rays) || reads_light_maps(*instances))

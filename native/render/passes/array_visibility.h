@@ -34,12 +34,13 @@ class ArrayVisibility {
   /// Whether the device casts them.
   bool casts_on_device(const Content& content) const;
 
-  /// Whether rays can be followed through all of it: a tree of arrays that the device draws is not worth its memory.
-  bool traces(const Content& content) const;
+  /// Whether rays can be followed through all of it on this side: a tree of arrays that the device draws is not worth
+  /// its memory, and where the device follows rays itself, none is made for a sample in a hurry.
+  bool traces(const Content& content, bool hurried) const;
 
-  /// What surfaces of facets can do to find what they mirror, of those units whose models are asked. `world`: there is
-  /// one to be mirrored. `behind`: what stands behind others is looked for, too.
-  Mirrors mirrors(const Content& content, bool world, bool behind,
+  /// What surfaces of facets can do to find what they mirror, of those units whose models are asked. `traced`: as
+  /// traces(). `world`: there is one to be mirrored. `behind`: what stands behind others is looked for, too.
+  Mirrors mirrors(const Content& content, bool traced, bool world, bool behind,
                   const std::function<bool(std::size_t unit)>& asks) const;
 
   /// Makes ready what the passes of this sample need of the arrays.

@@ -73,6 +73,9 @@ struct Sample {
     return gathers && traced && (exchange.gather()->sees_into_any() || !exchange.balls());
   }
 
+  /// Whether what is seen must be of the meshes in full: rays go on from there on this side.
+  bool sees_in_full() const { return gathers || straight_through || mirrors == Mirrors::hindered; }
+
   /// Whether all light of an object that is seen is gathered; its unit's others are then, too.
   bool gathers_all_of(std::size_t number) const;
 

@@ -58,7 +58,7 @@ bool ShadowPass::run(const Sample& sample, const ArrayVisibility& arrays, Surfac
   const auto start = std::chrono::steady_clock::now();
   const auto asks = [&](std::size_t number) { return !sample.gathers_all_of(number); };
   bool whole = by_pixel_ || update_maps(sample, arrays, eyes);
-  if (by_pixel_ && sample.device_rays)
+  if (by_pixel_ && sample.device_rays && !sample.straight_through)
     cast_on_device(sample, arrays, surfaces, eyes);
   else if (whole && (by_pixel_ || opaque_by_pixel_))
     whole = cast(sample, arrays, surfaces.seen(sample), asks, eyes, cast_);
