@@ -11,10 +11,7 @@ CastContent::CastContent(DeviceCache& cache, Content& content)
   rows_.reserve(3 * content.draws().size());
   for (std::size_t i = 0; i < content.draws().size(); ++i) {
     const Draw& draw = content.draws()[i];
-    const glm::dvec3 place = draw.centre - content.anchor();
-    for (int row = 0; row < 3; ++row)
-      rows_.emplace_back(draw.object_to_world[0][row], draw.object_to_world[1][row], draw.object_to_world[2][row],
-                         place[row]);
+    for (const glm::vec4& row : draw.rows(content.anchor())) rows_.push_back(row);
     groups.push_back(
         {cache.tree(draw.source), rows_.data() + 3 * i, 1, static_cast<std::uint32_t>(content.object_number(i))});
   }

@@ -21,10 +21,7 @@ std::vector<glm::vec4> lone_meshes(const Content& content) {
   const std::size_t groups = content.units() - content.draws().size();
   for (std::size_t i = 0; i < content.draws().size(); ++i) {
     const Draw& draw = content.draws()[i];
-    const glm::dvec3 place = draw.centre - content.anchor();
-    for (int row = 0; row < 3; ++row)
-      rows.emplace_back(draw.object_to_world[0][row], draw.object_to_world[1][row], draw.object_to_world[2][row],
-                        place[row]);
+    for (const glm::vec4& row : draw.rows(content.anchor())) rows.push_back(row);
     rows.emplace_back(static_cast<float>(draw.radius), static_cast<float>(content.object_number(i)),
                       content.shades_itself(draw) ? 1.0F : 0.0F, static_cast<float>(groups + i));
   }

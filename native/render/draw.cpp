@@ -52,6 +52,15 @@ void Draw::measure() {
   reach = source->reach() * std::sqrt(stretch_squared);
 }
 
+std::array<glm::vec4, 3> Draw::rows(const glm::dvec3& anchor) const {
+  const glm::dvec3 place = centre - anchor;
+  std::array<glm::vec4, 3> rows;
+  for (int row = 0; row < 3; ++row)
+    rows[static_cast<std::size_t>(row)] =
+        glm::vec4(object_to_world[0][row], object_to_world[1][row], object_to_world[2][row], place[row]);
+  return rows;
+}
+
 void Draw::place(const glm::dmat4& to_world) {
   object_to_world = to_world;
   measure();

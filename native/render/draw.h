@@ -2,10 +2,12 @@
 // own.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
 #include <memory>
 #include <vector>
 
@@ -39,6 +41,9 @@ struct Draw {
   std::unique_ptr<LightMaps> light_maps;  // only if its material reads them
 
   glm::dmat4 object_to_grain() const;
+
+  /// Its transform as Instances::rows has those of instances.
+  std::array<glm::vec4, 3> rows(const glm::dvec3& anchor) const;
 
   /// Puts it elsewhere; it keeps the tables that its material has for its size.
   void place(const glm::dmat4& to_world);
