@@ -27,11 +27,9 @@ void dispatch(const glm::ivec2& size) {
 void set_seen_along(const gl::Program& program, const glm::dmat4& anchor_to_clip, const glm::ivec2& size,
                     const glm::dvec2& jitter, const Bounds& bounds) {
   const glm::dmat4 clip_to_anchor = glm::inverse(anchor_to_clip);
-  program.set("near_x", glm::vec4(clip_to_anchor[0]));
-  program.set("near_y", glm::vec4(clip_to_anchor[1]));
+  program.set("along_x", glm::vec4(clip_to_anchor[0]));
+  program.set("along_y", glm::vec4(clip_to_anchor[1]));
   program.set("near_of_all", glm::vec4(clip_to_anchor[3] - clip_to_anchor[2]));
-  program.set("far_x", glm::vec4(clip_to_anchor[0]));
-  program.set("far_y", glm::vec4(clip_to_anchor[1]));
   program.set("far_of_all", glm::vec4(clip_to_anchor[3] + clip_to_anchor[2]));
   const glm::dvec2 across(size);
   program.set("pixel_scale", glm::vec2(2.0 / across));

@@ -1,5 +1,5 @@
 // Rays through the instances of a heap and through what stands alone, followed on the device: a tree over all instances, whose leaves are the meshes'
-// trees. A mesh is met as coarse as the camera sees it there.
+// trees. A mesh is met as coarse as the picture allows, or in full.
 //
 // What is chosen at compile time:
 //   OCCLUSION     it is only asked whether anything is met
@@ -53,7 +53,7 @@ struct ToMesh {
 };
 
 // Nodes, and instances as minus one minus their numbers, above the mesh of each. The trees of the scene and of a mesh are walked one inside the
-// other. An NVIDIA H200 takes 1.6 times as long where this is shared memory, and three times as long where it also holds how far away each is.
+// other. An NVIDIA H200 takes 1.6 times as long where this is shared memory, and four times as long where it also holds how far away each is.
 const int MOST_WAITING = MOST_DEPTH_OF_SCENE + 1 + MOST_DEPTH_OF_MESH;
 int waiting[MOST_WAITING];
 
