@@ -152,7 +152,7 @@ def test_a_render_that_waits_for_transport_says_so_and_how_far_it_is(render, ble
             said.append((tuple(awaited), share))
             return super().sentence(awaited, share, now)
 
-    monkeypatch.setattr(engine, "POLL_SECONDS", 0.005)
+    monkeypatch.setattr(engine.grace, "POLL_SECONDS", 0.005)
     monkeypatch.setattr(engine.waiting, "Waiting", Told)
     render()
     shares = [share for _, share in said]

@@ -5,7 +5,7 @@ import bpy
 import numpy as np
 import pytest
 from mesograin import compat
-from mesograin.engine import identities, passes
+from mesograin.engine import grace, identities, passes
 from test_export import add_camera, add_sun
 from test_final_render import compositor_tree
 
@@ -169,6 +169,32 @@ def test_mattes_say_their_names_in_the_file(layers, native, tmp_path):
         "Sand", "Körner, gröber", "Sand thing", "Körner, gröber thing"}
     assert sorted(value.split(".")[1] for key, value in found.items() if key.endswith("name")) == [
         "CryptoMaterial", "CryptoObject"]
+
+
+def test_a_cancelled_render_s_mattes_are_of_the_samples_that_there_was_time_for(layers, tmp_path, monkeypatch):
+    drawn = []
+    monkeypatch.setattr(grace.Grace, "is_over", lambda _: len(drawn) == 3)
+    taken = identities._total
+    monkeypatch.setattr(identities, "_total", lambda *arguments: drawn.append(taken(*arguments)) or drawn[-1])
+    scene_of_two(tmp_path)
+    found = layers()
+    assert len(drawn) == 3
+    for share in mattes(found, "CryptoObject").values():
+        assert set(np.unique(np.round(3.0 * share, 4))) == {0.0, 1.0, 2.0, 3.0}
+    assert found[passes.OBJECT_INDEX.name].max() > 0.0
+
+
+def test_a_render_cancelled_before_its_mattes_has_all_else(layers, tmp_path, monkeypatch):
+    def give_up(*_):
+        raise grace.GivenUp
+
+    scene_of_two(tmp_path)
+    whole = layers()
+    monkeypatch.setattr(grace.Grace, "result", give_up)
+    found = layers()
+    assert set(found) == set(whole) and not mattes(found, "CryptoObject")
+    for name in ("Combined", "Depth", "Normal"):
+        assert whole[name].any() and np.array_equal(found[name], whole[name]), name
 
 
 @pytest.mark.parametrize("name, bits", [("", 0), ("hello", 0x248BFA47), ("hello, world", 0x149BBB7F),

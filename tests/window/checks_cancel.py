@@ -6,7 +6,7 @@ import time
 import bpy
 import held_device
 import numpy as np
-from mesograin.engine import motion, passes, status
+from mesograin.engine import identities, motion, passes, status
 
 DISTANCES = (6.0, 5.0, 4.0)
 
@@ -92,10 +92,12 @@ def check_the_window_and_escape_answer_while_the_device_is_busy(window):
     assert status.get(status.RENDER).samples == 4 and status.complaints() == []
 
 
-def end_render_where_the_device_gets_busy(window, owner, name, blurred=False):
+def end_render_where_the_device_gets_busy(window, owner, name, blurred=False, matted=False):
     """Escape, once owner.name, which a final render calls, was called and the device's thread has been held since."""
     area = yield from window.open("sphere")
     area.spaces.active.shading.type = "SOLID"
+    bpy.context.scene.mesograin.samples = 4
+    bpy.context.view_layer.use_pass_cryptomatte_object = matted
     if window.native.device_info()["hardware"]:
         return
     render = bpy.context.scene.render
@@ -122,7 +124,11 @@ def end_render_where_the_device_gets_busy(window, owner, name, blurred=False):
     finally:
         setattr(owner, name, called)
     assert not held[0].done, "the render waited for the device"
-    assert status.get(status.RENDER) == status.Status(), "the picture was drawn, or what ended it is an error"
+    ended = status.get(status.RENDER)
+    if matted:
+        assert ended.samples == 4 and ended.error == "", ended
+    else:
+        assert ended == status.Status(), "the picture was drawn, or what ended it is an error"
     yield from window.until(lambda: held[0].done, timeout=600.0)
     del view
 
@@ -133,3 +139,7 @@ def check_escape_ends_a_render_that_asks_a_busy_device_for_portions(window):
 
 def check_escape_ends_a_render_that_gives_a_busy_device_a_moment(window):
     yield from end_render_where_the_device_gets_busy(window, motion, "moved", blurred=True)
+
+
+def check_escape_ends_a_render_whose_cryptomatte_a_busy_device_is_to_draw(window):
+    yield from end_render_where_the_device_gets_busy(window, identities, "things_of", matted=True)

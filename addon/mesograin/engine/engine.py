@@ -11,13 +11,10 @@ import numpy as np
 from .. import compat, native_module
 from ..durations import duration
 from ..scene import export, lens
-from . import motion, passes, rounds, status, viewport, viewport_text, waiting
+from . import grace, motion, passes, rounds, status, viewport, viewport_text, waiting
 
-# How long a final render may go without looking whether it was cancelled, and without showing how far it is.
-POLL_SECONDS = 0.05
+# How long a final render may go without showing how far it is.
 SHOW_SECONDS = 0.5
-# How long a cancelled one waits for its last samples: a program that is being compiled cannot be given up.
-GRACE_SECONDS = 2.0
 # How often a viewport that waits for light between grains is asked for news. Redraws for that would take the processor
 # from what is waited for: Blender's own cost more than ours.
 LOOK_SECONDS = 0.05
@@ -25,10 +22,6 @@ LOOK_SECONDS = 0.05
 BEHIND_SECONDS = 1.0
 
 _sessions = weakref.WeakSet()
-
-
-class _GivenUp(Exception):
-    """Of a final render that was cancelled while the device did not answer: it ends with what it has shown."""
 
 
 class MesograinRenderEngine(bpy.types.RenderEngine):
@@ -56,7 +49,7 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
     def render(self, depsgraph):
         try:
             self._render(depsgraph)
-        except _GivenUp:
+        except grace.GivenUp:
             status.put(status.RENDER, status.Status())
         except _sentences() as error:
             self._complain(status.RENDER, status.Status(error=str(error)))
@@ -77,7 +70,7 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
         for warning in warnings:
             self.report({"WARNING"}, warning)
 
-        opaque = not depsgraph.scene.render.film_transparent
+        opaque, picture = not depsgraph.scene.render.film_transparent, None
         for number, (name, budget) in enumerate(zip(eyes, budgets)):
             read_camera = functools.partial(self._camera, depsgraph, width, height, region, name)
             self._result(view.start_camera(read_camera(), region.width, region.height), view)
@@ -89,12 +82,10 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
                     self.update_result(result)
                     self.update_progress((number + share) / len(eyes))
                 if view.samples:  # a cancelled render keeps what it has
-                    self._show(result, view, opaque)
+                    picture = self._show(result, view, opaque)
                     self._result(view.start_moment(read_camera(), exposure.native_scene(exposure.values)), view)
-                    beside = passes.pixels(view, depsgraph.view_layer, exposure, read_camera)
-                    for name_, pixels in beside.items():
-                        _set_pass(result, name_, pixels)
-            except _GivenUp:
+                    self._show_passes(result, view, depsgraph.view_layer, exposure, read_camera)
+            except grace.GivenUp:
                 self.end_result(result)
                 raise
             except Exception:  # whatever it is: Blender must not be left with a result that never ends
@@ -104,8 +95,9 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
         self._sign(passes.metadata(depsgraph.view_layer, exposure.values))
         for warning in view.warnings:
             self.report({"WARNING"}, warning)
-        timings = tuple((timing["pass"], timing["milliseconds"]) for timing in view.timings())
-        exchange = status.exchange(view.statistics())
+        # As of the last read: the device may be busy now.
+        timings = tuple((timing["pass"], timing["milliseconds"]) for timing in picture["timings"]) if picture else ()
+        exchange = status.exchange(picture["statistics"]) if picture else None
         came = budget.sentence(view.samples)
         if came:
             self.report({"INFO"}, f"{came}.")
@@ -127,7 +119,7 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
         self._await_light(view, budget)
         shown, first, seen = time.perf_counter(), True, exposure.values
         while not self.test_break():
-            count = budget.next(view.samples, lambda: self._read(view), time.perf_counter())
+            count = budget.next(view.samples, lambda: self._read(view)["pixels"], time.perf_counter())
             if count == 0:
                 return
             with contextlib.closing(exposure.moments(read_camera, count)) as moments:
@@ -161,7 +153,7 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
             yield now
             if budget.is_over(now):
                 return
-            if now - started < POLL_SECONDS:
+            if now - started < grace.POLL_SECONDS:
                 chunk *= 2
 
     def _await_light(self, view, budget):
@@ -171,7 +163,7 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
         patience = waiting.Waiting()
         while view.preparing is not None and budget.waits_for_light(time.perf_counter()) and not self.test_break():
             self.update_stats("", patience.sentence(view.awaited, view.preparing or 0.0, time.perf_counter()))
-            time.sleep(POLL_SECONDS)
+            time.sleep(grace.POLL_SECONDS)
             self._result(view.start_news(), view)
         self._result(view.start_news(), view)
 
@@ -188,15 +180,15 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
 
     def _result(self, task, view, tell=lambda: None):
         """Of a task of the view. Other views may hold its thread for long: the artist's wish to cancel is seen
-        meanwhile. Raises _GivenUp where it cannot be followed soon."""
+        meanwhile. Raises grace.GivenUp where it cannot be followed soon."""
         cancelled = None
-        while not task.wait(POLL_SECONDS):
+        while not task.wait(grace.POLL_SECONDS):
             now = time.perf_counter()
             if cancelled is None and self.test_break():
                 view.cancel()
                 cancelled = now
-            if cancelled is not None and now - cancelled > GRACE_SECONDS:
-                raise _GivenUp
+            if cancelled is not None and now - cancelled > grace.GRACE_SECONDS:
+                raise grace.GivenUp
             tell()
         return task.result()
 
@@ -207,13 +199,24 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
             whole.stamp_data_add_field(field, text)
 
     def _read(self, view):
-        return self._result(view.start_read(), view)["pixels"]
+        """As native.Reading.result gives it."""
+        return self._result(view.start_read(), view)
 
     def _show(self, result, view, opaque):
-        pixels = self._read(view)
+        """Gives what it read."""
+        picture = self._read(view)
         if opaque:
-            pixels[..., 3] = 1.0  # premultiplied, so this is the picture over black
-        _set_pass(result, "Combined", pixels)
+            picture["pixels"][..., 3] = 1.0  # premultiplied, so this is the picture over black
+        _set_pass(result, "Combined", picture["pixels"])
+        return picture
+
+    def _show_passes(self, result, view, view_layer, exposure, read_camera):
+        """Those that are asked for; what a cancelled render has no time to draw stays empty."""
+        try:
+            for name, pixels in passes.pixels(view, view_layer, exposure, read_camera, grace.Grace(self.test_break)):
+                _set_pass(result, name, pixels)
+        except grace.GivenUp:
+            self.report({"WARNING"}, "Indices, Cryptomatte or Denoising Data are empty: it was cancelled before.")
 
     # Rendered viewports
 

@@ -1,5 +1,6 @@
 # Which objects and materials cover each pixel, for indices and Cryptomatte, and their albedo, for denoisers: pictures
 # whose things shine by numbers.
+import contextlib
 import dataclasses
 import json
 import typing
@@ -9,6 +10,7 @@ import numpy as np
 from .. import native_module
 from ..scene import export, plain_materials, surroundings
 from ..schema import models
+from . import grace
 
 SAMPLES, BLURRED_SAMPLES = 16, 64
 """Of each pixel: edges are known to a sixteenth, blurred ones to a sixty-fourth."""
@@ -49,35 +51,46 @@ def _shining(values, finish_of):
         world=surroundings.WorldValues(), exchange="off")
 
 
-def seen(exposure, read_camera, width, height):
+def seen(exposure, read_camera, width, height, allowed):
     """(names, numbers): the names of Things, and (samples, h, w) int32 with row 0 at the top, the number of what each
-    sample sees, 0 for nothing. exposure: motion.Exposure; read_camera: gives the native.Camera of its moment."""
+    sample sees, 0 for nothing. exposure: motion.Exposure; read_camera: gives the native.Camera of its moment; allowed:
+    a grace.Grace, whose end leaves fewer samples, and raises GivenUp where there would be none."""
     view = native_module.get().View(width, height)
-    samples = _samples(exposure, read_camera)
-    found = np.empty((samples, height, width), dtype=np.int32)
-    before, names, sample = np.zeros((height, width)), None, 0
-    for values, camera, count in exposure.moments(read_camera, samples):
-        things = things_of(values)
-        if names is None:
-            names = things.names
-            view.set_scene(things.scene)
-        view.set_moment(camera, things.scene)
-        for sample in range(sample, sample + count):
-            view.render(1)
-            # The mean of whole numbers, whose sum floats hold exactly.
-            total = np.rint(view.read()[..., 0].astype(np.float64) * (sample + 1))
-            found[sample], before = total - before, total
-        sample += 1
-    return names, found
+    names, found, before = None, [], np.zeros((height, width))
+    with contextlib.closing(exposure.moments(read_camera, _samples(exposure, read_camera))) as moments:
+        try:
+            for values, camera, count in moments:
+                things = things_of(values)
+                if names is None:
+                    names = things.names
+                    allowed.result(view.start_scene(things.scene), view)
+                allowed.result(view.start_moment(camera, things.scene), view)
+                for _ in range(count):
+                    total = _total(view, allowed)
+                    found.append((total - before).astype(np.int32))
+                    before = total
+        except grace.GivenUp:
+            if not found:
+                raise
+    return names, np.stack(found)
+
+
+def _total(view, allowed):
+    """Of the numbers of one more sample and of those before."""
+    if view.samples and allowed.is_over():
+        raise grace.GivenUp
+    allowed.result(view.start(1), view)
+    # The mean of whole numbers, whose sum floats hold exactly.
+    return np.rint(allowed.result(view.start_read(), view)["pixels"][..., 0].astype(np.float64) * view.samples)
 
 
 def _samples(exposure, read_camera):
     return BLURRED_SAMPLES if exposure.blurred or read_camera().lens else SAMPLES
 
 
-def albedo(exposure, read_camera, width, height):
+def albedo(exposure, read_camera, width, height, allowed):
     """(h, w, 3) float32 with row 0 at the top: what a pixel's things send back of light from everywhere, 0 where
-    nothing is. exposure, read_camera: as of `seen`."""
+    nothing is. exposure, read_camera, allowed: as of `seen`."""
     native = native_module.get()
     view, known, begun = native.View(width, height), {}, False
 
@@ -86,14 +99,17 @@ def albedo(exposure, read_camera, width, height):
             known[drawn.material] = _albedo_of(drawn.material, native)
         return known[drawn.material]
 
-    for values, camera, count in exposure.moments(read_camera, _samples(exposure, read_camera)):
-        scene = _shining(values, finish_of).to_native()
-        if not begun:
-            view.set_scene(scene)
-            begun = True
-        view.set_moment(camera, scene)
-        view.render(count)
-    return view.read()[..., :3]
+    with contextlib.closing(exposure.moments(read_camera, _samples(exposure, read_camera))) as moments:
+        for values, camera, count in moments:
+            if view.samples and allowed.is_over():
+                break
+            scene = _shining(values, finish_of).to_native()
+            if not begun:
+                allowed.result(view.start_scene(scene), view)
+                begun = True
+            allowed.result(view.start_moment(camera, scene), view)
+            allowed.result(view.start(count), view)
+    return allowed.result(view.start_read(), view)["pixels"][..., :3]
 
 
 def _albedo_of(material, native):

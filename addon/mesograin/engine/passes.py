@@ -110,28 +110,32 @@ def portions(view_layer):
     return [*found, "normal"] if is_asked_for(view_layer, DENOISING_NORMAL) else found
 
 
-def pixels(view, view_layer, exposure, read_camera):
-    """{name: (h, w, channels) float32 with row 0 at the top} of a native.View that shows the frame of a motion.Exposure
-    through the native.Camera that `read_camera` gives."""
-    found = {}
+def pixels(view, view_layer, exposure, read_camera, allowed):
+    """Yields (name, (h, w, channels) float32 with row 0 at the top), what has to be drawn for it last, of a native.View
+    that shows the frame of a motion.Exposure through the native.Camera that `read_camera` gives. allowed: the
+    grace.Grace of what has to be drawn."""
     asked = of(view_layer)
+    names = {one.name for one in asked}
     if any(one in SURFACES for one in asked):
-        found.update(_surfaces(view, read_camera().world_to_camera))
+        yield from _of(names, _surfaces(view, read_camera().world_to_camera))
     if SAMPLE_COUNT in asked:
-        found[SAMPLE_COUNT.name] = np.full((view.height, view.width, 1), view.samples, dtype=np.float32)
+        yield SAMPLE_COUNT.name, np.full((view.height, view.width, 1), view.samples, dtype=np.float32)
     for name, one in PORTIONS.items():
         if one in asked:
-            found[one.name] = view.read_portion(name)[..., :3]
+            yield one.name, view.read_portion(name)[..., :3]
     if DENOISING_NORMAL in asked:
         to_camera = read_camera().world_to_camera[:3, :3].astype(np.float32)
-        found[DENOISING_NORMAL.name] = view.read_portion("normal")[..., :3] @ to_camera.T  # as Cycles has it
-        found[DENOISING_ALBEDO.name] = identities.albedo(exposure, read_camera, view.width, view.height)
+        yield DENOISING_NORMAL.name, view.read_portion("normal")[..., :3] @ to_camera.T  # as Cycles has it
+        yield DENOISING_ALBEDO.name, identities.albedo(exposure, read_camera, view.width, view.height, allowed)
     if any(one in INDICES for one in asked) or _mattes(view_layer):
-        names, numbers = identities.seen(exposure, read_camera, view.width, view.height)
-        found.update(_indices(names, numbers))
+        things, numbers = identities.seen(exposure, read_camera, view.width, view.height, allowed)
+        yield from _of(names, _indices(things, numbers))
         for matte in _mattes(view_layer):
-            found.update(_matte(matte, names, numbers, _ranks(view_layer)))
-    return {one.name: found[one.name] for one in asked}
+            yield from _matte(matte, things, numbers, _ranks(view_layer)).items()
+
+
+def _of(names, found):
+    return ((name, each) for name, each in found.items() if name in names)
 
 
 def _surfaces(view, world_to_camera):
