@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <glm/exponential.hpp>
 #include <glm/geometric.hpp>
 #include <list>
@@ -89,19 +88,6 @@ Optics grey(const Optics& optics, int channel) {
   return grey;
 }
 
-/// Of what a table is made of.
-std::uint64_t seed_of(const Optics& optics) {
-  std::size_t seed = static_cast<std::size_t>(optics.surface);
-  // As Boost's hash_combine does.
-  const auto mix = [&](double number) {
-    seed ^= std::hash<double>{}(number) + 0x9e3779b97f4a7c15U + (seed << 6U) + (seed >> 2U);
-  };
-  for (const glm::dvec3& colour : {optics.reflectance, optics.sigma_t, optics.albedo})
-    for (int channel = 0; channel < 3; ++channel) mix(colour[channel]);
-  for (const double number : {optics.g, optics.eta, optics.roughness}) mix(number);
-  return seed;
-}
-
 bool is_grey(const Optics& optics) {
   return optics.opaque() || (grey(optics, 0).sigma_t == optics.sigma_t && grey(optics, 0).albedo == optics.albedo);
 }
@@ -146,11 +132,12 @@ void GrainTable::trace(const Optics& optics, Sense sense, const transport::Effor
   std::vector<std::vector<Entries::Passage>> passages(entries);
   std::vector<glm::dvec2> along(entries, glm::dvec2(0.0));
   transport::run_pieces(effort, entries, [&](std::size_t entry) {
-    transport::Random random(effort.seed, entry);
     std::vector<Outcome> walks;
     glm::dvec3 sum(0.0);
     leaving[entry].fill(glm::dvec3(0.0));
     for (int i = 0; i < walks_; ++i) {
+      // Numbers of its own, so that one that a slider makes longer moves no other.
+      transport::Random random(effort.seed, entry * static_cast<std::size_t>(walks_) + static_cast<std::size_t>(i));
       // Light from everywhere comes in evenly over the squared cosine.
       const float squared = (static_cast<float>(entry) + (static_cast<float>(i) + random.uniform()) / walks_) / entries;
       const float mu = std::sqrt(squared);
@@ -170,6 +157,7 @@ void GrainTable::trace(const Optics& optics, Sense sense, const transport::Effor
       walks.push_back(*outcome);
     }
     albedos_[entry] = glm::vec3(sum / static_cast<double>(walks_));
+    transport::Random random(effort.seed, static_cast<std::size_t>(walks_) * entries + entry);
     resample(walks, walks_, random, kept[entry]);
   });
   outcomes_.reserve(static_cast<std::size_t>(entries) * outcomes);
@@ -260,14 +248,16 @@ glm::vec3 GrainTable::crossing(float mu) const {
 }
 
 std::shared_ptr<const GrainTable> grain_table(const Optics& optics, Sense sense, const transport::Effort& effort,
-                                              int walks) {
+                                              int walks, std::size_t number) {
   struct Entry {
     Optics optics;
     Sense sense;
     int walks;
+    std::size_t number;
     std::shared_ptr<const GrainTable> table;
   };
-  constexpr std::size_t most_gone = 64;  // of 300 KiB, that nobody has any more
+  constexpr std::uint64_t first_seed = 0x6ab1e5U;  // more than an effort's, whose streams are those of rays
+  constexpr std::size_t most_gone = 64;            // of 300 KiB, that nobody has any more
   static std::mutex mutex;
   static std::list<Entry> kept;  // the last used first
   // Only there do the two differ.
@@ -275,16 +265,16 @@ std::shared_ptr<const GrainTable> grain_table(const Optics& optics, Sense sense,
   {
     const std::lock_guard lock(mutex);
     for (auto entry = kept.begin(); entry != kept.end(); ++entry)
-      if (entry->optics == optics && entry->sense == sense && entry->walks == walks) {
+      if (entry->optics == optics && entry->sense == sense && entry->walks == walks && entry->number == number) {
         kept.splice(kept.begin(), kept, entry);
         return entry->table;
       }
   }
   transport::Effort own = effort;
-  own.seed += seed_of(optics);
+  own.seed += first_seed + number;
   auto table = std::make_shared<const GrainTable>(optics, sense, own, walks);
   const std::lock_guard lock(mutex);
-  kept.push_front({optics, sense, walks, table});
+  kept.push_front({optics, sense, walks, number, table});
   std::size_t gone = 0;
   kept.remove_if([&gone](const Entry& entry) { return entry.table.use_count() == 1 && ++gone > most_gone; });
   return table;

@@ -29,8 +29,9 @@ std::vector<Kind> kinds_of(const std::vector<Optics>& of, int most_walks, const 
   for (const Optics& optics : of) {
     const double next = done + 1.0 / static_cast<double>(of.size());
     const transport::Effort part = transport::part_of(effort, done, next);
-    kinds.push_back(
-        {grain_table(optics, Sense::from_light, part, walks), grain_table(optics, Sense::from_viewer, part, walks)});
+    const std::size_t number = kinds.size();
+    kinds.push_back({grain_table(optics, Sense::from_light, part, walks, number),
+                     grain_table(optics, Sense::from_viewer, part, walks, number)});
     done = next;
   }
   return kinds;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
@@ -113,6 +114,23 @@ TEST(GrainTable, TheNoiseOfManyKindsIsNotThatOfTheirMean) {
   const GrainTable one(grains.kinds[0], Sense::from_light, {});
   EXPECT_NEAR(mean, one.albedo().r, 0.003 * mean);
   EXPECT_GT(std::sqrt(std::max(squares / kinds - mean * mean, 0.0)), 0.0005 * mean) << "all have the same noise";
+}
+
+// What a slider's step changes beyond a line through many steps would be seen to flicker; each table's own noise is
+// ten times that.
+TEST(GrainTable, ASlidersStepsChangeNoRandomNumbers) {
+  for (const Surface surface : {Surface::index_matched, Surface::dielectric, Surface::lambert_lambert}) {
+    constexpr int steps = 9;
+    std::array<double, steps> albedo{};
+    for (int step = 0; step < steps; ++step) {
+      const Optics optics = medium(surface, glm::dvec3(10.0 + 0.01 * step), glm::dvec3(0.999));
+      const std::shared_ptr<const GrainTable> table = grain_table(optics, Sense::from_light, {}, 1024);
+      albedo[static_cast<std::size_t>(step)] = static_cast<double>(table->albedo().r);
+    }
+    for (std::size_t step = 1; step + 1 < steps; ++step)
+      EXPECT_NEAR(albedo[step], 0.5 * (albedo[step - 1] + albedo[step + 1]), 2e-4 * albedo[step])
+          << static_cast<int>(surface) << " " << step;
+  }
 }
 
 TEST(GrainTable, OutcomesAreEquallyHeavyAndSumUp) {
