@@ -13,6 +13,9 @@ class Texture : public TextureStorage<GL_TEXTURE_2D> {
   /// Uploads tightly packed rows, first row at v = 0.
   void upload(GLenum components, GLenum type, const void* texels);
 
+  /// To zero.
+  void clear() const { glClearTexImage(name(), 0, GL_RGBA, GL_FLOAT, nullptr); }
+
   /// For compute shaders to read and write, as texels of its own format.
   void bind_image(GLuint unit, GLenum format) const {
     glBindImageTexture(unit, name(), 0, GL_FALSE, 0, GL_READ_WRITE, format);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <glm/geometric.hpp>
 #include <optional>
 
@@ -11,6 +12,9 @@
 
 namespace mesograin::render {
 namespace {
+
+// Of what a ray has crossed, of its radius: how far from there it may be met again.
+constexpr float clear_of_crossed = 1e-4F;
 
 constexpr int across = 4, high = 2;  // as many have one mind whether a ray follows (shaders/models/mirrored_world.glsl)
 static_assert(across * high == static_cast<int>(casting::rays_in_packet));
@@ -66,9 +70,10 @@ bool is_part(const Content& content, std::size_t number) {
   return number >= instances && content.draws()[number - instances].part;
 }
 
-// What stands behind a draw, all of which lies before what it shows.
+// What stands behind a draw, all of which, as of those that were crossed before it, lies before what it shows.
 std::optional<HitSurface> behind(const CastContent& cast, const Content& content, const LitPlace& from,
-                                 const glm::vec3& look, std::size_t number) {
+                                 const glm::vec3& look, std::size_t number,
+                                 const std::function<bool(std::size_t)>& crossed) {
   casting::SingleRay ray{from.place, look};
   if (!is_part(content, number)) ray.from = from.object;
   // A ray enters and leaves what is no more folded than that.
@@ -77,10 +82,11 @@ std::optional<HitSurface> behind(const CastContent& cast, const Content& content
     const std::optional<casting::Hit> hit = cast.first_hit(ray);
     if (!hit) return std::nullopt;
     const HitSurface surface = hit_surface(cast, content, look, *hit);
-    if (number_of(surface.normal) != number) return surface;
+    const std::size_t met = number_of(surface.normal);
+    if (met != number && !crossed(met)) return surface;
     ray.origin += hit->distance * look;
-    ray.from = from.object;
-    ray.own = from.clearance;
+    ray.from = hit->number;
+    ray.own = clear_of_crossed * content.receiver(met).ball.w;
   }
   return std::nullopt;
 }
@@ -89,9 +95,13 @@ std::optional<HitSurface> behind(const CastContent& cast, const Content& content
 
 bool CastMirrors::cast(const CastContent& cast, const Content& content, const Exchange& exchange,
                        const Lighting& lighting, const SeenSurfaces& seen, const std::vector<glm::vec4>& looks,
-                       const GoOn& go_on) {
+                       std::size_t layer, const GoOn& go_on) {
   const glm::ivec2 size = seen.size;
-  found_.resize(size, content.textured());
+  layer_ = layer;
+  FoundSurfaces& found = this->found();
+  found.resize(size, content.textured());
+  if (crossed_.size() <= layer) crossed_.resize(layer + 1);
+  crossed_[layer].assign(looks.size(), crossed_none);
   const Told told(content, exchange);
   const bool world = lighting.world().shines();
   const std::vector<bool> lights = units_that_are_lights(content, lighting);
@@ -113,22 +123,31 @@ bool CastMirrors::cast(const CastContent& cast, const Content& content, const Ex
       const glm::vec3 look(looks[place]);
       if (glm::dot(look, from.normal) >= 0.0F) {
         any = set_off(packet, ray, from, look) || any;
-      } else if (const std::optional<HitSurface> surface = behind(cast, content, from, look, number_of(facing))) {
-        found_.put(place, *surface, 0.0F);
-        inside[ray] = false;
+      } else {
+        const std::size_t number = number_of(facing);
+        crossed_[layer][place] = static_cast<std::uint32_t>(number);
+        const auto crossed = [&](std::size_t met) {
+          for (std::size_t before = 0; before < layer; ++before)
+            if (crossed_[before][place] == met) return true;
+          return false;
+        };
+        if (const std::optional<HitSurface> surface = behind(cast, content, from, look, number, crossed)) {
+          found.put(place, *surface, 0.0F);
+          inside[ray] = false;
+        }
       }
     }
     if (any) cast.first_hits(packet, hits);
     for (unsigned ray = 0; ray < casting::rays_in_packet; ++ray) {
       if (!inside[ray]) continue;
       if (!hits.met[ray]) {
-        found_.put_nothing(places[ray]);
+        found.put_nothing(places[ray]);
         continue;
       }
       HitSurface surface = hit_surface(cast, content, packet, hits, ray);
       if (lights[surface.unit] || told(number_of(seen.normals[places[ray]]), number_of(surface.normal)))
         surface.unit = HitSurface::unshaded;
-      found_.put(places[ray], surface, 0.0F);
+      found.put(places[ray], surface, 0.0F);
     }
   };
   return cast_rows(size.y, go_on, [&](int first, int end) {

@@ -335,7 +335,7 @@ const gl::Program& DeviceCache::shading(const DeviceMaterial& material, const Sh
   if (shading.shadows == Shadows::cast) defines.emplace_back("CAST_SHADOWS");
   if (shading.exchange) defines.emplace_back("EXCHANGE");
   if (shading.gathered) defines.emplace_back("GATHERED");
-  const bool straight = material.shows_behind() && !shading.mirrored && !shading.unwrapped;
+  const bool straight = material.shows_behind() && !shading.unwrapped;
   const bool film = straight && shading.film_transparent;
   const bool backdrop = straight && shading.backdrop;
   const bool any_behind = shading.world || film || backdrop || shading.sees_behind;

@@ -6,6 +6,7 @@
 //   BACKDROP             the camera, which looks straight through the grain, sees the world otherwise than it lights
 //   FILM_TRANSPARENT     or not at all: what it sees of it makes the picture transparent
 //   SEES_BEHIND          something else may stand there: a later pass looks
+//   MIRRORED             the viewer is another surface: the camera behind it, if what it passes on goes straight on
 #include "heap/light_from_grains.glsl"
 #include "scene/grain.glsl"
 #include "scene/world.glsl"
@@ -27,13 +28,25 @@ vec3 seen_behind(vec3 direction) {
 #endif
 }
 
-// Of what goes on straight on towards what the camera sees, `left` of it.
+// Of what goes on straight on, `left` of it.
 vec3 seen_straight_on(vec3 left, vec3 direction) {
+#if defined(FILM_TRANSPARENT) || defined(BACKDROP)
+#ifdef MIRRORED
+  bool as_camera = passed_on().w > 0.0;
+#else
+  const bool as_camera = true;
+#endif
+  vec3 radiance;
+  if (!as_camera) {
+    radiance = left * seen_behind(direction);
+  } else {
 #ifdef FILM_TRANSPARENT
-  film_seen = (left.r + left.g + left.b) / 3.0;
-  vec3 radiance = vec3(0.0);
-#elif defined(BACKDROP)
-  vec3 radiance = left * radiance_around(backdrop_radiance, backdrop_has_image, world_to_backdrop, backdrop_image, direction);
+    film_seen = left;
+    radiance = vec3(0.0);
+#else
+    radiance = left * radiance_around(backdrop_radiance, backdrop_has_image, world_to_backdrop, backdrop_image, direction);
+#endif
+  }
 #else
   vec3 radiance = left * seen_behind(direction);
 #endif

@@ -35,7 +35,7 @@ struct Outwards {
 uniform int light_count;
 
 #ifdef FILM_TRANSPARENT
-float film_seen = 0.0;  // the share of the film's background in the pixel, the mean of the channels as Cycles has it
+vec3 film_seen = vec3(0.0);  // what the pixel shows of the film's background; of alpha the mean of the channels is lacking, as in Cycles
 #endif
 
 // Once for all lights.

@@ -69,7 +69,10 @@ vec3 settled_place() { return grain_place; }
 #endif
 
 #ifdef MIRRORED
-uniform sampler2D mirror_looks;  // xyz: along which each pixel's mirror looks, of unit length
+uniform sampler2D mirror_looks;   // xyz: along which each pixel's mirror looks, of unit length
+uniform sampler2D mirror_passes;  // as mirrored_passed of shade.frag
+
+vec4 passed_on() { return texelFetch(mirror_passes, ivec2(gl_FragCoord.xy), 0); }
 #endif
 
 vec3 direction_to_viewer(vec3 position) {

@@ -16,10 +16,7 @@ layout(location = 0) out vec4 radiance;
 #ifdef LOOKS_ON
 layout(location = 1) out vec4 mirrored_radiance;  // of the world, if nothing stands in the way; w: what alpha then lacks, negative
 layout(location = 2) out vec4 mirrored_from;      // w: 1 where there is any
-layout(location = 3) out vec4 mirrored_passed;    // what an object's radiance is multiplied by
-#endif
-#ifdef MIRRORED
-uniform sampler2D mirror_passes;  // as mirrored_passed
+layout(location = 3) out vec4 mirrored_passed;    // what an object's radiance is multiplied by; w: 1 if the camera looks straight on
 #endif
 
 void main() {
@@ -54,20 +51,30 @@ void main() {
 #endif
 
 #ifdef MIRRORED
-  radiance = vec4(lit_point(point) * texelFetch(mirror_passes, ivec2(gl_FragCoord.xy), 0).rgb, 0.0);
+  vec4 passed = passed_on();
+  radiance = vec4(lit_point(point) * passed.rgb, 0.0);
 #else
+  const vec4 passed = vec4(1.0);
   radiance = vec4(PORTION == NORMAL_PORTION ? point.normal : lit_point(point), 1.0);
-#if defined(FILM_TRANSPARENT) && !defined(LOOKS_ON)
-  radiance.a -= film_seen;
 #endif
+#ifdef FILM_TRANSPARENT
+  float alpha_lacks = dot(film_seen * passed.rgb, vec3(1.0 / 3.0));
+#endif
+#if defined(FILM_TRANSPARENT) && !defined(LOOKS_ON)
+  radiance.a -= alpha_lacks;
 #endif
 #ifdef LOOKS_ON
   bool any_mirrored = max(mirrored.passed.r, max(mirrored.passed.g, mirrored.passed.b)) > 0.0;
-  mirrored_radiance = vec4(mirrored.radiance, 0.0);
+  mirrored_radiance = vec4(mirrored.radiance * passed.rgb, 0.0);
 #ifdef FILM_TRANSPARENT
-  mirrored_radiance.a -= film_seen;
+  mirrored_radiance.a -= alpha_lacks;
 #endif
-  mirrored_passed = vec4(mirrored.passed, 0.0);
+#ifdef SEES_BEHIND
+  float straight_on = passed.w;
+#else
+  const float straight_on = 0.0;
+#endif
+  mirrored_passed = vec4(mirrored.passed * passed.rgb, straight_on);
   mirrored_from = vec4(mirrored.from, any_mirrored ? 1.0 : 0.0);
 #endif
 }

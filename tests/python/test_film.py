@@ -15,8 +15,8 @@ DARK_FILM = native.World(radiance=(0.0, 0.0, 0.0), film_transparent=True)
 
 
 def medium(model, **more):
-    return native.Material(model=model, sigma_a=SIGMA_A, sigma_s=SIGMA_S,
-                           **{"boundary": "index_matched", **more})
+    return native.Material(model=model,
+                           **{"sigma_a": SIGMA_A, "sigma_s": SIGMA_S, "boundary": "index_matched", **more})
 
 
 def place(x, y, z):
@@ -143,6 +143,42 @@ def test_what_stands_behind_a_grain_is_seen_through_it(model, world):
     numpy.testing.assert_allclose(pixels[right, :3], passed[right] * (1.0, 0.5, 0.2), atol=0.02)
     numpy.testing.assert_allclose(through[right], pixels[right, :3], atol=1e-6)
     assert pixels[left, :3].max() < 1e-6
+
+
+# One before the other, each an object of its own, or the last within the first, which is twice as thin. The world
+# alone was seen through the second. Measured: within .006.
+@pytest.mark.parametrize("model", ["model_2", "model_3", "transport"])
+@pytest.mark.parametrize(("count", "nested"), [(2, False), (3, False), (2, True)])
+@pytest.mark.parametrize("film", [False, True])
+def test_lone_grains_are_crossed_one_after_the_other(model, count, nested, film):
+    grains = [native.Instance(ROUND, medium(model), place(0, 3 * i, 0)) for i in range(count)]
+    passed = transmittances(1.25, spheres=count)
+    if nested:
+        large = numpy.diag([2.0, 2.0, 2.0, 1.0])
+        halved = medium(model, sigma_a=tuple(numpy.multiply(SIGMA_A, 0.5)), sigma_s=tuple(numpy.multiply(SIGMA_S, 0.5)))
+        grains = [native.Instance(ROUND, halved, large), native.Instance(ROUND, medium(model))]
+        side = 1.25 * ((numpy.arange(SIZE) + 0.5) / (0.5 * SIZE) - 1.0)
+        x, z = numpy.meshgrid(side, side)
+        passed = transmittances(1.25) * numpy.exp(-numpy.sqrt(4.0 - x * x - z * z)[..., None] * SIGMA_T)
+    within = inside(1.25)
+    world = native.World(radiance=(0.0,) * 3, film_transparent=film)
+    if film:
+        pixels = picture(world, grains)
+        numpy.testing.assert_allclose(pixels[within, 3], 1.0 - passed[within].mean(axis=-1), atol=0.02)
+    shining = native.Material(model="lambert", reflectance=(0.0,) * 3, finish=native.Finish(radiance=(1.0, 0.5, 0.2)))
+    pixels = picture(world, [*grains, native.Instance(wall(11.0), shining)])
+    numpy.testing.assert_allclose(pixels[..., 3], 1.0, atol=1e-6)
+    numpy.testing.assert_allclose(pixels[within, :3], passed[within] * (1.0, 0.5, 0.2), atol=0.02)
+
+
+# The camera sees it straight through both; a mirror shows the world that lights instead.
+@pytest.mark.parametrize("model", ["model_2", "transport"])
+def test_the_backdrop_is_seen_through_grains_in_line(model):
+    world = native.World(radiance=(0.0, 0.0, 0.5), seen=True, backdrop=native.Backdrop(radiance=(1.0, 0.2, 0.0)))
+    pixels = picture(world, [native.Instance(ROUND, medium(model), place(0, 3 * i, 0)) for i in range(2)])
+    passed = transmittances(1.25, spheres=2)
+    within = inside(1.25)
+    numpy.testing.assert_allclose(pixels[within, :2], passed[within, :2] * (1.0, 0.2), atol=0.02)
 
 
 # Measured in Cycles 3.4.1: camera rays that a volume did not scatter are camera rays.

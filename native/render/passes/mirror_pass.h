@@ -1,6 +1,7 @@
 // Adds what surfaces of facets mirror: the world, or what stands before it, which is shaded as if it were seen.
 #pragma once
 
+#include <array>
 #include <glm/vec4.hpp>
 #include <vector>
 
@@ -30,12 +31,22 @@ class MirrorPass {
   double milliseconds() const { return milliseconds_; }
 
  private:
-  void add_world(const Sample& sample);
+  /// Whether anything in these boxes, which rays found, shows what stands behind it.
+  static bool any_goes_on(const Sample& sample, const std::vector<PixelBox>& boxes);
+
+  /// Those that `through` are not, cleared.
+  static const MirrorTargets& targets_behind(Targets& targets, const MirrorTargets& through);
+
+  /// What the rays found. False if ended.
+  bool add(const Sample& sample, const ArrayVisibility& arrays, const MirroredBy& by,
+           const std::vector<PixelBox>& boxes, const std::vector<glm::vec4>& looks, ShadowPass& shadows,
+           ShadePass& shade);
+  void add_world(const Sample& sample, const MirrorTargets& through);
 
   gl::Program program_;
   gl::FullScreenTriangle full_screen_;
   CastMirrors cast_;
-  std::vector<glm::vec4> looks_;
+  std::array<std::vector<glm::vec4>, 2> looks_;  // of a layer and of the one before
   bool ran_ = false;
   double milliseconds_ = 0.0;
 };

@@ -159,27 +159,31 @@ void ShadePass::show_gathered(const Sample& sample, const GatherPass& gathered, 
   full_screen_.draw();
 }
 
-void ShadePass::shade_mirrored(const Sample& sample, const ShadowPass& shadows, const std::vector<PixelBox>& boxes,
-                               std::size_t first) {
+void ShadePass::shade_mirrored(const Sample& sample, const ShadowPass& shadows, const MirroredBy& by,
+                               const std::vector<PixelBox>& boxes, std::size_t first) {
   begin_shading();
   glDisable(GL_DEPTH_TEST);
-  glEnable(GL_BLEND);
   glBlendFunc(GL_ONE, GL_ONE);
-  sample.targets.shade.bind();
   for (std::size_t unit = first; unit < std::min(first + most_in_stencil, boxes.size()); ++unit) {
     const PixelBox& box = boxes[unit];
     if (box.first == box.end) continue;
     const DeviceMaterial& material = sample.content.material(unit);
+    const bool goes_on = by.onwards != nullptr && sample.content.shows_behind(unit);
     const gl::Program& program = prepare(sample, unit,
                                          {.instanced = sample.content.draw(unit) == nullptr,
                                           .mirrored = true,
-                                          .shadows = shadows.kind_mirrored(sample.content, material)});
+                                          .shadows = shadows.kind_mirrored(sample.content, material),
+                                          .sees_behind = goes_on});
     shadows.bind_mirrored(program, material);
-    program.set("mirror_looks", sample.targets.mirror->looks);
-    program.set("mirror_passes", sample.targets.mirror->passed);
+    program.set("mirror_looks", by.through.looks);
+    program.set("mirror_passes", by.through.passed);
+    (goes_on ? by.onwards->shade : sample.targets.shade).bind();
+    glDisable(GL_BLEND);
+    glEnablei(GL_BLEND, 0);  // the rest of what it draws tells of it alone
     glScissor(box.first.x, box.first.y, box.end.x - box.first.x, box.end.y - box.first.y);
     shade_unit(sample, program, unit, stencil_mark(unit, first));
   }
+  glDisable(GL_BLEND);
   end_shading();
 }
 

@@ -16,6 +16,12 @@
 
 namespace mesograin::render {
 
+/// What is seen in which other surfaces, and where it puts what is seen through itself; null: it shows the world.
+struct MirroredBy {
+  const MirrorTargets& through;
+  const MirrorTargets* onwards;
+};
+
 class ShadePass {
  public:
   ShadePass();
@@ -31,8 +37,8 @@ class ShadePass {
 
   /// What other surfaces mirror of those units that the stencil tells apart, each within its box, after run_mirrored()
   /// of ShadowPass: it is added.
-  void shade_mirrored(const Sample& sample, const ShadowPass& shadows, const std::vector<PixelBox>& boxes,
-                      std::size_t first);
+  void shade_mirrored(const Sample& sample, const ShadowPass& shadows, const MirroredBy& by,
+                      const std::vector<PixelBox>& boxes, std::size_t first);
 
   /// The instances that are baked, where their UVs lie.
   void shade_unwrapped(const Sample& sample, const ShadowPass& shadows);

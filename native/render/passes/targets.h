@@ -17,6 +17,11 @@ struct MirrorTargets {
         passed(GL_RGBA32F, colour.width(), colour.height()),
         shade({&colour, &radiance, &looks, &passed}, &depth) {}
 
+  /// But for the colour.
+  void clear() const {
+    for (const gl::Texture* texture : {&radiance, &looks, &passed}) texture->clear();
+  }
+
   gl::Texture radiance;  ///< of the world, if nothing stands in the way
   gl::Texture looks;     ///< along which, unit length; w: 1 where there is any
   gl::Texture passed;    ///< by what the radiance of an object is multiplied that does
@@ -54,6 +59,7 @@ struct Targets {
   gl::Framebuffer shade;
   Sum sum;
   std::optional<MirrorTargets> mirror;  ///< of a sample that has Mirrors::hindered
+  std::optional<MirrorTargets> behind;  ///< where what it met shows something behind itself; they take turns
 };
 
 }  // namespace mesograin::render
