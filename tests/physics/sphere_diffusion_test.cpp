@@ -28,12 +28,25 @@ double mean(const std::vector<double>& values) {
   return sum / static_cast<double>(values.size());
 }
 
+// Of each radius among others.
+std::vector<double> transfer_of(const SphereDiffusion& solution, double r) {
+  SideBySide radii{0.1, 0.7, r, 0.0, 1.0, 0.5, r, 0.3};
+  std::vector<SideBySide> several(static_cast<std::size_t>(solution.largest_order()) + 1);
+  solution.transfer(radii, several);
+  std::vector<double> transfer;
+  transfer.reserve(several.size());
+  for (const SideBySide& order : several) {
+    EXPECT_EQ(order[2], order[6]);
+    transfer.push_back(order[2]);
+  }
+  return transfer;
+}
+
 TEST(SphereDiffusion, AgreesWithTheClosedFormOfTheLowestOrders) {
   for (double decay : {0.01, 0.3, 1.0, 7.0, 60.0})
     for (double boundary_length : {0.01, 0.5, 3.0})
       for (double r : {0.0, 1e-3, 0.4, 0.97, 1.0}) {
-        std::vector<double> transfer(30);
-        SphereDiffusion(decay, boundary_length, 29).transfer(r, transfer);
+        const std::vector<double> transfer = transfer_of(SphereDiffusion(decay, boundary_length, 29), r);
         const auto i0 = [](double x) { return x < 1e-6 ? 1.0 : std::sinh(x) / x; };
         const auto i1 = [](double x) {
           return x < 1e-2 ? x / 3.0 * (1.0 + x * x / 10.0) : std::cosh(x) / x - std::sinh(x) / (x * x);
@@ -48,8 +61,7 @@ TEST(SphereDiffusion, AgreesWithTheClosedFormOfTheLowestOrders) {
 }
 
 TEST(SphereDiffusion, WithoutAbsorptionIsAPowerOfTheRadiusAndLosesNothing) {
-  std::vector<double> transfer(41);
-  SphereDiffusion(0.0, 0.7, 40).transfer(0.8, transfer);
+  const std::vector<double> transfer = transfer_of(SphereDiffusion(0.0, 0.7, 40), 0.8);
   for (int l = 0; l <= 40; ++l) EXPECT_NEAR(transfer[l], std::pow(0.8, l) / (1.0 + 0.7 * l), 1e-9) << l;
 }
 

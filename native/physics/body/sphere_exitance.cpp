@@ -47,6 +47,20 @@ std::vector<Beam> entering_beams(double eta, int nodes) {
   return beams;
 }
 
+// An exponential filter (Gottlieb & Shu 1997, section 2.3): a thick grain's terminator is sharper than these orders can
+// draw, and what they lack would ripple over the dark side.
+const std::vector<double>& filter() {
+  static const std::vector<double> shares = [] {
+    std::vector<double> of_orders;
+    for (int l = 0; l <= largest_order; ++l) {
+      const double share = static_cast<double>(l) / largest_order;
+      of_orders.push_back(std::exp(-14.0 * share * share * share * share));
+    }
+    return of_orders;
+  }();
+  return shares;
+}
+
 // Legendre moments of the source in the sphere, each sample already carried to the surface.
 class Moments {
  public:
@@ -58,32 +72,43 @@ class Moments {
         legendre_(largest_order + 1) {}
 
   void add(double radius, double cosine, double weight) {
-    solution_.transfer(radius, transfer_);
-    legendre_polynomials(cosine, legendre_);
-    for (int l = 0; l <= largest_order; ++l) sums_[l] += weight * transfer_[l] * legendre_[l];
+    radii_[waiting_] = radius;
+    cosines_[waiting_] = cosine;
+    weights_[waiting_] = weight;
+    if (++waiting_ == side_by_side) add_waiting();
+  }
+
+  // When all are added.
+  void end() {
+    while (waiting_ > 0) add(0.0, 0.0, 0.0);
   }
 
   double exitance(double cosine) const {
     std::vector<double> legendre(largest_order + 1);
     legendre_polynomials(cosine, legendre);
     double sum = 0.0;
-    for (int l = 0; l <= largest_order; ++l) {
-      // An exponential filter (Gottlieb & Shu 1997, section 2.3): a thick grain's terminator is sharper than these
-      // orders can draw, and what they lack would ripple over the dark side.
-      const double share = static_cast<double>(l) / largest_order;
-      sum += std::exp(-14.0 * share * share * share * share) * (l + 0.5) * sums_[l] * legendre[l];
-    }
+    for (int l = 0; l <= largest_order; ++l) sum += filter()[l] * (l + 0.5) * sums_[l] * legendre[l];
     return source_ * sum;
   }
 
   void scale_order(int order, double factor) { sums_[order] *= factor; }
 
  private:
+  void add_waiting() {
+    solution_.transfer(radii_, transfer_);
+    legendre_polynomials(cosines_, legendre_);
+    for (int l = 0; l <= largest_order; ++l)
+      for (std::size_t i = 0; i < side_by_side; ++i) sums_[l] += weights_[i] * transfer_[l][i] * legendre_[l][i];
+    waiting_ = 0;
+  }
+
   double source_;
   SphereDiffusion solution_;
   std::vector<double> sums_;
-  std::vector<double> transfer_;
-  std::vector<double> legendre_;
+  std::size_t waiting_ = 0;
+  SideBySide radii_{}, cosines_{}, weights_{};
+  std::vector<SideBySide> transfer_;
+  std::vector<SideBySide> legendre_;
 };
 
 Moments collimated_moments(const DiffusionPart& part, double eta) {
@@ -101,6 +126,7 @@ Moments collimated_moments(const DiffusionPart& part, double eta) {
       beam.direction -= 2.0 * glm::dot(beam.direction, beam.entry) * beam.entry;
     }
   }
+  moments.end();
   return moments;
 }
 
@@ -117,6 +143,7 @@ Moments cosine_entry_moments(const DiffusionPart& part) {
                   2.0 * mu * node.weight * weight);
     });
   }
+  moments.end();
   std::vector<double> irradiance(largest_order + 1);
   std::vector<double> legendre(largest_order + 1);
   for (const QuadratureNode& node : gauss_legendre(48)) {

@@ -53,17 +53,28 @@ void add_series(const DiffusionPart& part, const BodySurface& surface, double mu
                 std::vector<double>& coefficients) {
   const int largest = static_cast<int>(coefficients.size()) - 1;
   const SphereDiffusion solution(part.decay, part.boundary_length, largest);
-  std::vector<double> transfer(coefficients.size());
-  for (const QuadratureNode& entry : entry_cosines(surface, mu))
-    for (const Depth& depth : deposit(part, entry.x)) {
-      const double radius = 1.0 - depth.t;
-      solution.transfer(std::abs(radius), transfer);
-      const double weight = factor * part.source * entry.weight * depth.weight;
-      // Beyond the centre the point lies on the other side: P_l(-x) = (-1)^l P_l(x).
-      double sign = 1.0;
-      for (int l = 0; l <= largest; ++l, sign = radius < 0.0 ? -sign : 1.0)
-        coefficients[l] += sign * weight * (2.0 * l + 1.0) / (4.0 * PI) * transfer[l];
+  std::vector<SideBySide> transfer(coefficients.size());
+  for (const QuadratureNode& entry : entry_cosines(surface, mu)) {
+    const std::vector<Depth> depths = deposit(part, entry.x);
+    for (std::size_t first = 0; first < depths.size(); first += side_by_side) {
+      SideBySide radii{};
+      SideBySide even{};
+      SideBySide odd{};
+      for (std::size_t i = 0; i < std::min(side_by_side, depths.size() - first); ++i) {
+        const double radius = 1.0 - depths[first + i].t;
+        radii[i] = std::abs(radius);
+        even[i] = factor * part.source * entry.weight * depths[first + i].weight;
+        // Beyond the centre the point lies on the other side: P_l(-x) = (-1)^l P_l(x).
+        odd[i] = radius < 0.0 ? -even[i] : even[i];
+      }
+      solution.transfer(radii, transfer);
+      for (int l = 0; l <= largest; ++l) {
+        double sum = 0.0;
+        for (std::size_t i = 0; i < side_by_side; ++i) sum += (l % 2 == 0 ? even : odd)[i] * transfer[l][i];
+        coefficients[l] += (2.0 * l + 1.0) / (4.0 * PI) * sum;
+      }
     }
+  }
 }
 
 std::vector<double> series_kernel(const BodyMedium& medium, const BodySurface& surface,
