@@ -65,10 +65,17 @@ double roundness(const Shape& shape) {
 
 /// In the mean of all channels, straight in the roundness between what was measured.
 double error_of(const automatic::OfModel& model, const std::vector<double>& radii, double roundness) {
-  const double other = std::clamp((1.0 - roundness) / (1.0 - automatic::least_measured_roundness), 0.0, 1.0);
+  constexpr double less_round = automatic::roundness_of_less_round, flat = automatic::roundness_of_flat;
+  const double other = std::clamp((1.0 - roundness) / (1.0 - less_round), 0.0, 1.0);
+  const double flatter = std::clamp((less_round - roundness) / (less_round - flat), 0.0, 1.0);
   double sum = 0.0;
-  for (const double radius : radii)
-    sum += (1.0 - other) * error_at(model.round, radius) + other * error_at(model.less_round, radius);
+  for (const double radius : radii) {
+    const double of_less_round = error_at(model.less_round, radius);
+    // Thinner flat grains were not measured: they are no nearer than others.
+    const double of_flat = std::max(error_at(model.flat, radius), of_less_round);
+    sum +=
+        (1.0 - other) * error_at(model.round, radius) + other * ((1.0 - flatter) * of_less_round + flatter * of_flat);
+  }
   return sum / static_cast<double>(radii.size());
 }
 
@@ -138,13 +145,14 @@ Advice advise(const Material& material, const Shape& shape, double tolerance) {
     if (error <= tolerance) return measured(model.model, error, told, radius);
     if (!nearest || error < nearest->error) nearest = measured(model.model, error, told, radius);
   }
+  const bool thick = radius > automatic::most_transported;
+  const double of_model_3 = thick ? automatic::thick_model_3_error : automatic::model_3_error;
   const Advice any_shape =
       transported ? measured(Model::transport, automatic::transport_error, "cube, flake and rice", radius)
-                  : Advice{Model::model_3, automatic::model_3_error,
-                           fmt::format("{}: {}, which transport cannot take; measured {:.2g} % off on cube, flake and "
-                                       "rice.",
+                  : Advice{Model::model_3, of_model_3,
+                           fmt::format("{}: {}, which transport cannot take; measured {:.2g} % off on {}.",
                                        named(Model::model_3), shape.closed ? "it is too thick" : "its mesh is open",
-                                       automatic::model_3_error)};
+                                       of_model_3, thick ? "five shapes of radius 20" : "cube, flake and rice")};
   // Of shapes like a cube's the tables above say nothing beyond what is taken for near enough of any.
   const bool nearer = nearest->error <= automatic::tolerance && nearest->error < any_shape.error;
   return nearer && any_shape.error > tolerance ? *nearest : any_shape;

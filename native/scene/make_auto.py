@@ -13,10 +13,13 @@ def points(table):
 
 def header(text):
     auto = json.loads(text)
-    shapes = {"round": auto["round"], "less_round": {name: auto["less_round"][name] for name in auto["round"]}}
+    shapes = {"round": auto["round"]}
+    for shape in ("less_round", "flat"):
+        shapes[shape] = {name: auto[shape][name] for name in auto["round"]}
     tables = "".join(f"inline constexpr std::array<Measured, {len(table)}> {shape}_{name}{{{{{points(table)}}}}};\n"
                      for shape, of_models in shapes.items() for name, table in of_models.items())
-    entries = "".join(f"    {{Model::{name}, round_{name}, less_round_{name}}},\n" for name in auto["round"])
+    entries = "".join(f"    {{Model::{name}, round_{name}, less_round_{name}, flat_{name}}},\n"
+                      for name in auto["round"])
     forwards = auto["forwards"]["transport"]
     of_g = ", ".join(f"{{.g = {float(g)!r}, .error = {float(error)!r}}}" for g, error in forwards)
     return f"""// What the choice of a model goes by. Made from addon/mesograin/schema/auto.json, the place for changes.
@@ -35,16 +38,18 @@ struct Measured {{
   double radius;
   double error;
 }};
-/// Of a sphere, and of grains of least_measured_roundness.
+/// Of a sphere, of grains of roundness_of_less_round, and of flat ones of roundness_of_flat.
 struct OfModel {{
   Model model;
   std::span<const Measured> round;
   std::span<const Measured> less_round;
+  std::span<const Measured> flat;
 }};
 
 inline constexpr std::string_view name = {json.dumps(auto["name"])};
 inline constexpr double tolerance = {float(auto["tolerance"])!r};
-inline constexpr double least_measured_roundness = {float(auto["less_round"]["roundness"])!r};
+inline constexpr double roundness_of_less_round = {float(auto["less_round"]["roundness"])!r};
+inline constexpr double roundness_of_flat = {float(auto["flat"]["roundness"])!r};
 /// Mean free paths to the radius, of the channel in the middle and of the densest.
 inline constexpr double most_transported = {float(auto["most_transported"]["middle"])!r};
 inline constexpr double densest_transported = {float(auto["most_transported"]["densest"])!r};
@@ -57,6 +62,8 @@ struct Forwards {{
 }};
 inline constexpr std::array<Forwards, {len(forwards)}> forwards{{{{{of_g}}}}};
 inline constexpr double model_3_error = {float(auto["angular"]["model_3"])!r};
+/// Where it is too thick for transport.
+inline constexpr double thick_model_3_error = {float(auto["thick"]["model_3"])!r};
 {tables}/// The cheapest first.
 inline constexpr std::array<OfModel, {len(auto["round"])}> of_models{{{{
 {entries}}}}};

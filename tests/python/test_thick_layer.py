@@ -96,8 +96,10 @@ def test_the_measured_errors_are_those_of_the_docs():
     below_one = [error for radius, error in advice.ROUND["model_2"].items() if radius < 1.0]
     assert by_model["sphere, model_2 of the choice"] == below_one
     for model in ("model_1", "model_2"):
-        told = [error for _, error in advice.LESS_ROUND[model]]
-        assert by_model[f"less round, {model} of the choice"] == told
+        for shape, table in (("less round", advice.LESS_ROUND), ("flat", advice.FLAT)):
+            assert by_model[f"{shape}, {model} of the choice"] == [error for _, error in table[model]]
+    thick = by_model["thick, model_3 of the choice"]
+    assert len(thick) == 5 and sum(thick) / 5 == pytest.approx(advice.THICK["model_3"], abs=0.06)
 
 
 MEDIUM = native.Material(model="model_2", sigma_s=(0.9, 0.9, 0.9), sigma_a=(0.1, 0.1, 0.1))
@@ -162,7 +164,17 @@ def test_what_is_less_round_than_a_sphere_is_measured_as_such():
 
     assert of_roundness(1.0, 3.0).error < of_roundness(0.98, 3.0).error <= advice.TOLERANCE
     assert of_roundness(0.9, 3.0).model == of_roundness(0.98, 0.5).model == "transport"
-    assert of_roundness(0.7, 20.0).error == pytest.approx(dict(advice.LESS_ROUND["model_2"])[20.0])
+    assert of_roundness(0.9, 20.0).error == pytest.approx(dict(advice.LESS_ROUND["model_2"])[20.0])
+    # What is flat is told as a flake, and what is flatter as no better. A flake of radius 20 was told as sand: model 2
+    # is 22 % off there, and .94 of an even world.
+    flat = advice.FLAT["roundness"]
+    for roundness in (flat, 0.1):
+        for radius in (16.0, 20.0, 30.0):
+            advised = of_roundness(roundness, radius)
+            assert advised.model == "model_3" and advised.error == advice.THICK["model_3"]
+        assert of_roundness(roundness, 100.0).error == pytest.approx(dict(advice.FLAT["model_1"])[100.0])
+    half = of_roundness(0.5 * (0.9 + flat), 70.0)
+    assert half.model == "model_1" and of_roundness(0.9, 70.0).error <= half.error < of_roundness(flat, 70.0).error
 
 
 def test_an_error_lies_between_those_measured():

@@ -16,7 +16,7 @@ namespace {
 
 // So that the light hardly changes within a cell, and a picture's block still sees many of them.
 constexpr double widest = 0.15;  // mean free paths
-constexpr int fewest = 48, most = 112, most_with_directions = 64;
+constexpr int fewest = 48, most = 224, most_with_directions = 64;
 constexpr int rays_a_batch_across = 400;
 constexpr double least_power = 1e-4;
 
