@@ -208,12 +208,13 @@ def has_principled_default():
 
 
 def bumps():
-    """How bent normals shade, as native.Finish has it: as facets do, and nothing bends them back, where a material may
-    do without such a correction. Blender 4.3 leaves them bent too, but shades by the cubic: 0.4 to 0.8 % apart."""
+    """How bent normals shade, as native.Finish has it. Nothing bends those of diffuse shares back where a material may
+    do without such a correction; they shade themselves as facets do from Blender 5 on, and by the cubic before."""
     import bpy
 
     settings = getattr(bpy.types.Material.bl_rna.properties.get("cycles"), "fixed_type", None)
-    return {"facets_shade_bumps": True} if settings and "use_bump_map_correction" in settings.properties else {}
+    found = {"bent_normals_stay": True} if settings and "use_bump_map_correction" in settings.properties else {}
+    return {**found, "facets_shade_bumps": True} if has_principled_default() else found
 
 
 def cells_by_lookup3():

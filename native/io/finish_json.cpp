@@ -26,10 +26,12 @@ constexpr std::array number_names{
     std::pair{"metallicity", &Finish::metallicity}, std::pair{"normal_strength", &Finish::normal_strength},
     std::pair{"coat", &Finish::coat}, std::pair{"coat_roughness", &Finish::coat_roughness},
     std::pair{"diffuse_roughness", &Finish::diffuse_roughness}};
-constexpr std::array switch_names{
-    std::pair{"retro_reflective", &Finish::retro_reflective}, std::pair{"coat_shades_base", &Finish::coat_shades_base},
-    std::pair{"metal_whitens", &Finish::metal_whitens}, std::pair{"facets_keep_energy", &Finish::facets_keep_energy},
-    std::pair{"facets_shade_bumps", &Finish::facets_shade_bumps}};
+constexpr std::array switch_names{std::pair{"retro_reflective", &Finish::retro_reflective},
+                                  std::pair{"coat_shades_base", &Finish::coat_shades_base},
+                                  std::pair{"metal_whitens", &Finish::metal_whitens},
+                                  std::pair{"facets_keep_energy", &Finish::facets_keep_energy},
+                                  std::pair{"facets_shade_bumps", &Finish::facets_shade_bumps},
+                                  std::pair{"bent_normals_stay", &Finish::bent_normals_stay}};
 
 std::shared_ptr<const Picture> read_picture(const std::filesystem::path& path, bool srgb) {
   const ExrFile file = read_exr(path);

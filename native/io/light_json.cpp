@@ -14,9 +14,9 @@ using namespace scene;
 namespace {
 
 DirectionalLight read_directional_light(const Node& node) {
-  node.require_object(
-      std::array<std::string_view, 5>{"type", "direction_to_light", "from_vector", "irradiance_linear_rgb", "angle"},
-      provenance_keys);
+  node.require_object(std::array<std::string_view, 6>{"type", "direction_to_light", "from_vector",
+                                                      "irradiance_linear_rgb", "angle", "flat"},
+                      provenance_keys);
   DirectionalLight light;
   if (!node.has("from_vector") && !node.has("direction_to_light"))
     throw Error("{}.direction_to_light is missing; a light needs it.", node.path());
@@ -27,6 +27,7 @@ DirectionalLight read_directional_light(const Node& node) {
     node["direction_to_light"].fail("must point the same way as from_vector");
   light.irradiance = node["irradiance_linear_rgb"].rgb();
   if (node.has("angle")) light.angle = node["angle"].number();
+  if (node.has("flat")) light.flat = node["flat"].boolean();
   return light;
 }
 
@@ -120,7 +121,8 @@ Json written(const DirectionalLight& light) {
   return {{"type", "distant"},
           {"direction_to_light", listed(light.direction_to_light)},
           {"irradiance_linear_rgb", listed(light.irradiance)},
-          {"angle", light.angle}};
+          {"angle", light.angle},
+          {"flat", light.flat}};
 }
 
 Json written(const PointLight& light) {

@@ -34,6 +34,7 @@ class Packer {
     DeviceLight light{};
     light.place = {glm::normalize(sun.direction_to_light), LIGHT_SUN};
     light.emission = {sun.irradiance, one_minus_cosine(0.5 * sun.angle)};
+    light.y.w = sun.flat ? 1.0 : 0.0;
     return light;
   }
 

@@ -63,6 +63,7 @@ void add_finish(const scene::Material& material, MaterialInputs& inputs) {
   if (finish.metal_whitens) inputs.defines.emplace_back("METAL_WHITENS");
   if (finish.facets_keep_energy) inputs.defines.emplace_back("FACETS_KEEP_ENERGY");
   if (finish.facets_shade_bumps) inputs.defines.emplace_back("FACETS_SHADE_BUMPS");
+  if (finish.bent_normals_stay) inputs.defines.emplace_back("BENT_NORMALS_STAY");
   if (finish.retro_reflective) inputs.defines.emplace_back("RETRO_REFLECTIVE");
   if (finish.diffuse_roughness > 0.0 && !finish.retro_reflective) inputs.defines.emplace_back("ROUGH_DIFFUSE");
   const bool metallic = metallicity > 0.0 || finish.metallic.picture;

@@ -76,50 +76,53 @@ void bind_pictures(py::module_& module) {
 void bind_finish(py::module_& module) {
   bind_pictures(module);
   py::class_<Finish>(module, "Finish", "What an opaque surface has beside its model's parameters.")
-      .def(py::init([](const py::kwargs& given) {
-             Finish finish;
-             const auto take = [&](const char* name, auto& value) {
-               if (!given.contains(name)) return false;
-               value = given[name].cast<std::remove_reference_t<decltype(value)>>();
-               return true;
-             };
-             std::size_t taken = 0;
-             for (const auto& [name, map] :
-                  {std::pair{"reflectance", &finish.reflectance}, std::pair{"roughness", &finish.roughness},
-                   std::pair{"metallic", &finish.metallic}, std::pair{"normal", &finish.normal},
-                   std::pair{"emission", &finish.emission}})
-               taken += take(name, *map);
-             for (const auto& [name, number] :
-                  {std::pair{"metallicity", &finish.metallicity}, std::pair{"normal_strength", &finish.normal_strength},
-                   std::pair{"coat", &finish.coat}, std::pair{"coat_roughness", &finish.coat_roughness},
-                   std::pair{"diffuse_roughness", &finish.diffuse_roughness}})
-               taken += take(name, *number);
-             for (const auto& [name, chosen] : {std::pair{"retro_reflective", &finish.retro_reflective},
-                                                std::pair{"coat_shades_base", &finish.coat_shades_base},
-                                                std::pair{"metal_whitens", &finish.metal_whitens},
-                                                std::pair{"facets_keep_energy", &finish.facets_keep_energy},
-                                                std::pair{"facets_shade_bumps", &finish.facets_shade_bumps}})
-               taken += take(name, *chosen);
-             Triple radiance{};
-             if (take("radiance", radiance)) {
-               finish.radiance = to_vector(radiance);
-               ++taken;
-             }
-             if (taken < given.size())
-               throw Error("A finish takes no such value among {}.", py::str(given.attr("keys")()).cast<std::string>());
-             validate(finish);
-             return finish;
-           }),
-           "reflectance, roughness, metallic, normal, emission: TextureMaps; metallicity=0: the share that is a "
-           "conductor; normal_strength=1; coat=0: reflectance of the dielectric over the rest, seen straight on, with "
-           "coat_roughness=0.5, the square root of the GGX alpha; coat_shades_base=False: what the coat reflects is "
-           "lost to what lies under it; retro_reflective=False: diffuse as Burley has it; diffuse_roughness=0: else as "
-           "Oren "
-           "and Nayar have it; metal_whitens=False: the "
-           "conductor's reflectance rises to 1 at grazing (Schlick); facets_keep_energy=False: what one bounce off "
-           "facets loses is sent on in their lobe (Turquin); facets_shade_bumps=False: what a bent normal shades of "
-           "itself is masked as facets are (Estevez et al.), and nothing bends it back, else by Cycles' former cubic; "
-           "radiance=(0, 0, 0) that it sends out.");
+      .def(
+          py::init([](const py::kwargs& given) {
+            Finish finish;
+            const auto take = [&](const char* name, auto& value) {
+              if (!given.contains(name)) return false;
+              value = given[name].cast<std::remove_reference_t<decltype(value)>>();
+              return true;
+            };
+            std::size_t taken = 0;
+            for (const auto& [name, map] :
+                 {std::pair{"reflectance", &finish.reflectance}, std::pair{"roughness", &finish.roughness},
+                  std::pair{"metallic", &finish.metallic}, std::pair{"normal", &finish.normal},
+                  std::pair{"emission", &finish.emission}})
+              taken += take(name, *map);
+            for (const auto& [name, number] :
+                 {std::pair{"metallicity", &finish.metallicity}, std::pair{"normal_strength", &finish.normal_strength},
+                  std::pair{"coat", &finish.coat}, std::pair{"coat_roughness", &finish.coat_roughness},
+                  std::pair{"diffuse_roughness", &finish.diffuse_roughness}})
+              taken += take(name, *number);
+            for (const auto& [name, chosen] : {std::pair{"retro_reflective", &finish.retro_reflective},
+                                               std::pair{"coat_shades_base", &finish.coat_shades_base},
+                                               std::pair{"metal_whitens", &finish.metal_whitens},
+                                               std::pair{"facets_keep_energy", &finish.facets_keep_energy},
+                                               std::pair{"facets_shade_bumps", &finish.facets_shade_bumps},
+                                               std::pair{"bent_normals_stay", &finish.bent_normals_stay}})
+              taken += take(name, *chosen);
+            Triple radiance{};
+            if (take("radiance", radiance)) {
+              finish.radiance = to_vector(radiance);
+              ++taken;
+            }
+            if (taken < given.size())
+              throw Error("A finish takes no such value among {}.", py::str(given.attr("keys")()).cast<std::string>());
+            validate(finish);
+            return finish;
+          }),
+          "reflectance, roughness, metallic, normal, emission: TextureMaps; metallicity=0: the share that is a "
+          "conductor; normal_strength=1; coat=0: reflectance of the dielectric over the rest, seen straight on, with "
+          "coat_roughness=0.5, the square root of the GGX alpha; coat_shades_base=False: what the coat reflects is "
+          "lost to what lies under it; retro_reflective=False: diffuse as Burley has it; diffuse_roughness=0: else as "
+          "Oren "
+          "and Nayar have it; metal_whitens=False: the "
+          "conductor's reflectance rises to 1 at grazing (Schlick); facets_keep_energy=False: what one bounce off "
+          "facets loses is sent on in their lobe (Turquin); facets_shade_bumps=False: what a bent normal shades of "
+          "itself is masked as facets are (Estevez et al.), else by Cycles' former cubic; bent_normals_stay=False: for "
+          "the diffuse share, else they are bent back until a mirror would reflect what is above the surface; "
+          "radiance=(0, 0, 0) that it sends out.");
 }
 
 }  // namespace mesograin::python

@@ -39,16 +39,18 @@ void bind_directional(py::module_& module) {
   using scene::DirectionalLight;
   py::class_<DirectionalLight>(module, "DirectionalLight", "A sun.")
       .def(
-          py::init([](const Triple& direction_to_light, const Triple& irradiance, double angle) {
-            return validated(DirectionalLight{to_vector(direction_to_light), to_vector(irradiance), angle});
+          py::init([](const Triple& direction_to_light, const Triple& irradiance, double angle, bool flat) {
+            return validated(DirectionalLight{to_vector(direction_to_light), to_vector(irradiance), angle, flat});
           }),
-          py::arg("direction_to_light"), py::arg("irradiance"), py::arg("angle") = 0.0,
+          py::arg("direction_to_light"), py::arg("irradiance"), py::arg("angle") = 0.0, py::arg("flat") = false,
           "direction_to_light: world space, any length; irradiance: linear RGB on a plane that faces the light; angle: "
-          "of the sun's disc, edge to edge, radians.")
+          "of the sun's disc, edge to edge, radians; flat: a disc that stands across, brighter towards its rim, as "
+          "Cycles has it before Blender 4, else as bright all over.")
       .def_property_readonly("direction_to_light",
                              [](const DirectionalLight& l) { return to_triple(l.direction_to_light); })
       .def_property_readonly("irradiance", [](const DirectionalLight& l) { return to_triple(l.irradiance); })
-      .def_readonly("angle", &DirectionalLight::angle);
+      .def_readonly("angle", &DirectionalLight::angle)
+      .def_readonly("flat", &DirectionalLight::flat);
 }
 
 void bind_point(py::module_& module) {

@@ -68,7 +68,8 @@ struct Finish {
   bool metal_whitens = false;       ///< the conductor's reflectance rises to 1 at grazing (Schlick 1994)
   bool facets_keep_energy = false;  ///< what one bounce off facets loses is sent on in their lobe (Turquin 2019)
   bool facets_shade_bumps = false;  ///< what a bent normal shades of itself is masked as facets are (Estevez et al.
-                                    ///< 2019), and nothing bends it back; else by Cycles' former cubic
+                                    ///< 2019); else by Cycles' former cubic
+  bool bent_normals_stay = false;   ///< for the diffuse share; else they are bent back until a mirror would reflect
   glm::dvec3 radiance{0.0};         ///< that it sends out, linear RGB
 
   bool operator==(const Finish&) const = default;

@@ -19,7 +19,8 @@ struct DeviceLight {
   real4 emission;
   real4 axis;  // xyz: the direction in which it shines, unit length; w: spot cosine of the cone's edge, area normalisation of the spread
   real4 x;     // xyz: half axis of an area, or as cone_share's narrow_x; w: area the surface, spot sharpness
-  real4 y;     // xyz: the other one; w: 1 for an ellipse, a disc, 0 for a rectangle, a sphere; 2 more for a spot that weakens with the cosine
+  real4 y;     // xyz: the other one; w: 1 for an ellipse, a disc, a flat sun, 0 for a rectangle, a sphere; 2 more for a spot that
+  // weakens with the cosine
 };
 
 pure real3 first_three(real4 v) { return real3(v.x, v.y, v.z); }
@@ -28,7 +29,7 @@ pure LightDraw draw_light(DeviceLight light, real3 place, real2 random) {
   int kind = int(light.place.w);
   real3 middle = first_three(light.place);
   real3 emission = first_three(light.emission);
-  if (kind == LIGHT_SUN) return draw_sun(middle, light.emission.w, emission, random);
+  if (kind == LIGHT_SUN) return draw_sun(middle, light.emission.w, light.y.w == 1.0, emission, random);
   real3 axis = first_three(light.axis);
   bool weakens = light.y.w >= 2.0;
   bool disc = light.y.w == 1.0 || light.y.w == 3.0;

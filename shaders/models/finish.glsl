@@ -146,7 +146,7 @@ void put_on(inout SurfacePoint point) {
   if (dot(bent, bent) == 0.0) return;
   bent_normal = normalize(bent);
   point.normal = with_valid_reflection(unbent_normal, point.to_viewer, bent_normal);
-#ifndef FACETS_SHADE_BUMPS
+#ifndef BENT_NORMALS_STAY
   bent_normal = point.normal;
 #endif
 #endif

@@ -62,7 +62,7 @@ def assert_as_in_cycles(scene, render, tolerance=0.01, samples=1024):
 
 
 @pytest.mark.parametrize("degrees, tolerance", [
-    (5.0, 0.002), (30.0, 0.005), (90.0, 0.01 if compat.has_even_lights() else 0.035)])  # see compat.has_even_lights
+    (5.0, 0.002), (30.0, 0.005), (90.0, 0.01), (150.0, 0.01), (175.0, 0.01)])
 def test_a_wide_sun(ground, render, degrees, tolerance):
     add_light("SUN", (0.0, 0.0, 3.0), (0.6, 0.2, 0.0), angle=math.radians(degrees))
     assert_as_in_cycles(ground, render, tolerance)

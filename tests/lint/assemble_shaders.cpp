@@ -190,7 +190,7 @@ void write_finishes(Writer& writer) {
   finishes[9].metal_whitens = true;
   finishes[10] = all;
   finishes[10].coat_shades_base = finishes[10].metal_whitens = finishes[10].facets_keep_energy = true;
-  finishes[10].facets_shade_bumps = true;
+  finishes[10].facets_shade_bumps = finishes[10].bent_normals_stay = true;
   finishes[11].diffuse_roughness = 0.5;
   for (std::size_t i = 0; i < finishes.size(); ++i)
     for (const scene::Masking masking : {scene::Masking::correlated, scene::Masking::separable}) {

@@ -63,7 +63,8 @@ def test_a_scene_that_is_written_is_the_one_that_is_read(tmp_path):
     sand = native.Material(model="model_2", sigma_s=(1, 2, 3), sigma_a=(0.1, 0.2, 0.3), eta=1.5, roughness=0.2)
     ground = native.Material(model="lambert", reflectance=(0.5, 0.4, 0.3))
     transforms = np.eye(4) + 0.1 * random.random((20, 4, 4)) * [[1], [1], [1], [0]]
-    lights = [native.DirectionalLight((1, 1, 1), (3, 2, 1), 0.01), native.PointLight((1, 2, 3), (4, 5, 6), 0.1),
+    lights = [native.DirectionalLight((1, 1, 1), (3, 2, 1), 0.01, flat=True),
+              native.PointLight((1, 2, 3), (4, 5, 6), 0.1),
               native.SpotLight((1, 2, 3), (0, 0, -1), (4, 5, 6), angle=0.5, blend=0.25),
               native.AreaLight((0, 0, 5), (1, 0, 0), (0, 2, 0), (7, 8, 9), ellipse=True)]
     backdrop = native.Backdrop((1, 0.5, 0.2), native.Surroundings(np.float32(random.random((2, 4, 3)))),
@@ -81,6 +82,7 @@ def test_a_scene_that_is_written_is_the_one_that_is_read(tmp_path):
     assert read.exchange == "order_1" and native.Scene().exchange == "heaps"
     assert read.arrays[0].material == sand and read.instances[0].material == ground
     assert [type(light) for light in read.lights] == [type(light) for light in lights]
+    assert read.lights[0].flat and not native.DirectionalLight((1, 1, 1), (3, 2, 1)).flat
 
     pictures = []
     for each in (scene, read):
@@ -121,7 +123,7 @@ def test_a_finish_is_written_and_read(tmp_path, diffuse):
                                     to_picture=[[0.4, 0.1, 0, 0.2], [0, 0.7, 0, 0]]),
         emission=native.TextureMap(coloured, smooth=False), normal=native.TextureMap(coloured), normal_strength=0.5,
         coat=0.05, coat_roughness=0.4, **diffuse, metal_whitens=True, facets_keep_energy=True,
-        facets_shade_bumps=True, radiance=(0.5, 0.4, 0.3))
+        facets_shade_bumps=True, bent_normals_stay=True, radiance=(0.5, 0.4, 0.3))
     material = native.Material(model="lambert", reflectance=(0.5, 0.4, 0.3), finish=finish)
     scene = native.Scene(instances=[native.Instance(mesh, material)],
                          lights=[native.DirectionalLight((0.3, 0.2, 1), (3, 2, 1))])

@@ -14,10 +14,11 @@ class SunValues:
     direction_to_light: tuple
     irradiance: tuple
     angle: float
+    flat: bool
 
     def to_native(self, native):
         return _made(self.name, native, native.DirectionalLight, direction_to_light=self.direction_to_light,
-                     irradiance=self.irradiance, angle=self.angle)
+                     irradiance=self.irradiance, angle=self.angle, flat=self.flat)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -124,7 +125,8 @@ def _sun(light, name, power, matrix_world):
     angle = min(light.angle, math.pi)
     if not getattr(light, "normalize", True) and angle > 0.0:
         power = _times(power, math.pi * math.sin(0.5 * angle) ** 2)
-    return SunValues(name, tuple(direction), _times(power, sun_irradiance(angle)), angle)
+    return SunValues(name, tuple(direction), _times(power, sun_irradiance(angle)), angle,
+                     not compat.has_even_lights())
 
 
 def sun_irradiance(angle):

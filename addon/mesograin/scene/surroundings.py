@@ -152,7 +152,8 @@ def _painted(world, socket, side, from_camera):
             f"World '{world.name}' is drawn in its viewport colour, for {unknown.reason}{advice}.",)
     surroundings = _made(pixels)
     _paintings[surroundings] = pixels
-    suns = tuple(lights.SunValues(world.name, tuple(towards.tolist()), tuple(irradiance.tolist()), angle)
+    suns = tuple(lights.SunValues(world.name, tuple(towards.tolist()), tuple(irradiance.tolist()), angle,
+                                  flat=False)
                  for towards, angle, irradiance in suns)
     return WorldValues((1.0,) * 3, surroundings, "", _digests[surroundings], suns=suns), ()
 

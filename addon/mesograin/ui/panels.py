@@ -252,7 +252,7 @@ class MESOGRAIN_PT_motion_blur(MesograinPanel, bpy.types.Panel):
         layout.active = render.use_motion_blur
         owner = compat.owner_of_motion_blur_position(context.scene)
         if owner is not None:
-            layout.prop(owner, "motion_blur_position", text="Position")
+            choose(layout, owner, "motion_blur_position", "Position")
         layout.prop(render, "motion_blur_shutter", text="Shutter")
         layout.template_curve_mapping(render, "motion_blur_shutter_curve")
 
