@@ -23,6 +23,8 @@ struct Heap {
   std::vector<scene::Light> lights;
   scene::World world;
   bool exchanges = true;  ///< else no grain answers what another sends
+  /// What comes from outside the heap straight through one grain is told elsewhere, and so is what is seen through it.
+  bool straight_elsewhere = false;
 
   bool operator==(const Heap&) const = default;
 };

@@ -355,7 +355,8 @@ HeapLight Solver::solve(const Heap& heap, const Quality& given, const transport:
   light.seats = traced_->ways.links.seats;
   light.patches = traced_->matter->space->patches();
   light.answer.resize(first.size());
-  for (std::size_t i = 0; i < first.size(); ++i) light.answer[i] = solved.sent[i] - lit.direct[i];
+  for (std::size_t i = 0; i < first.size(); ++i)
+    light.answer[i] = solved.sent[i] - (heap.straight_elsewhere ? lit.direct[i] + lit.crossed[i] : lit.direct[i]);
   if (change)
     change->answered.clear();  // no grain answers what is seen behind it, nor is a share of light more or less
   if (!lit.scattered.empty()) {
@@ -371,7 +372,10 @@ HeapLight Solver::solve(const Heap& heap, const Quality& given, const transport:
   for (std::size_t i = 0; i < light.open.size(); ++i)
     if (matter_->kinds[heap.grains.grains[light.seats->number(i)].kind].from_viewer->crossing(0.0F) != glm::vec3(0.0F))
       light.open[i] = traced_->ways.behind.open[i];
-  traced_->ways.behind.gather(solved.sent, light.behind, effort, change ? &*change : nullptr);
+  if (heap.straight_elsewhere)
+    light.behind.assign(traced_->ways.behind.of.size(), {});
+  else
+    traced_->ways.behind.gather(solved.sent, light.behind, effort, change ? &*change : nullptr);
   sent_ = solved.sent;
   sent_seats_ = light.seats;
   light.sent = std::move(solved.sent);

@@ -13,7 +13,7 @@ constexpr double quick_share = 0.1;
 
 /// Whether one may be shown in the light of the other: grains are told by their numbers.
 bool alike(const Heap& a, const Heap& b) {
-  if (a.exchanges != b.exchanges) return false;
+  if (a.exchanges != b.exchanges || a.straight_elsewhere != b.straight_elsewhere) return false;
   return std::max(a.grains.grains.size(), b.grains.grains.size()) <=
          2 * std::min(a.grains.grains.size(), b.grains.grains.size());
 }

@@ -118,11 +118,11 @@ bool CastMirrors::cast(const CastContent& cast, const Content& content, const Ex
           static_cast<std::size_t>(pixel.y) * static_cast<std::size_t>(size.x) + static_cast<std::size_t>(pixel.x);
       inside[ray] = true;
       const glm::vec4& facing = seen.normals[place];
-      if (looks[place].w == 0.0F || facing.w == 0.0F || (!world && told.all(number_of(facing)))) continue;
+      if (looks[place].w == 0.0F || facing.w == 0.0F) continue;
       const LitPlace from = lit_place(content, seen.positions[place], facing, seen.viewer_of(place));
       const glm::vec3 look(looks[place]);
       if (glm::dot(look, from.normal) >= 0.0F) {
-        any = set_off(packet, ray, from, look) || any;
+        if (world || !told.all(number_of(facing))) any = set_off(packet, ray, from, look) || any;
       } else {
         const std::size_t number = number_of(facing);
         crossed_[layer][place] = static_cast<std::uint32_t>(number);

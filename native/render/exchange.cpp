@@ -202,15 +202,6 @@ void append_second_order(std::vector<glm::vec4>& numbers, const std::array<heap:
   for (std::size_t i = 0; i < open.size(); ++i) numbers.emplace_back(second[0][i], second[1][i], second[2][i], open[i]);
 }
 
-/// Whether any object may be a clear grain, and its model knows of an other side.
-bool any_refracts(const Content& content) {
-  return std::any_of(content.draws().begin(), content.draws().end(), [](const Draw& draw) {
-    const scene::ModelTraits& traits = scene::traits_of(draw.look.model);
-    return (traits.light_maps || traits.mesh) &&
-           heap::optics_of(draw.look, draw.reach).surface == heap::Surface::dielectric;
-  });
-}
-
 /// Whether light is followed into any grains of arrays.
 bool any_followed(const Content& content) {
   const Instances* instances = content.instances();
@@ -218,6 +209,19 @@ bool any_followed(const Content& content) {
   const std::vector<InstanceGroup>& groups = instances->groups();
   return std::any_of(groups.begin(), groups.end(),
                      [](const InstanceGroup& group) { return heap::optics_of(group.source, 1.0).transparent(); });
+}
+
+/// Whether any grain that light goes into stands beside something.
+bool beside_others(const heap::Grains& grains) {
+  return grains.grains.size() + grains.walls.size() > 1 &&
+         std::any_of(grains.grains.begin(), grains.grains.end(),
+                     [&](const heap::Grain& grain) { return !grains.kinds[grain.kind].opaque(); });
+}
+
+/// Whether any single draw may be such a grain.
+bool any_translucent(const Content& content) {
+  return std::any_of(content.draws().begin(), content.draws().end(),
+                     [](const Draw& draw) { return !is_plain(draw.look); });
 }
 
 /// Whether there is anything that could be seen through a clear grain.
@@ -236,11 +240,12 @@ void Exchange::set(DeviceCache& cache, const Content& content, const scene::Scen
   const bool arrays = content.instances() != nullptr;
   const bool heaps = scene.exchange == scene::Exchange::heaps;
   const bool exchanges = scene.exchange != scene::Exchange::off;
-  if (exchanges ? !heaps || arrays || any_refracts(content) : any_followed(content)) gathered.add(content);
+  if (exchanges ? !heaps || arrays || any_translucent(content) : any_followed(content)) gathered.add(content);
   const bool clear = exchanges && std::any_of(gathered.grains.kinds.begin(), gathered.grains.kinds.end(),
                                               std::mem_fn(&heap::Optics::clear));
+  const bool beside = !arrays && beside_others(gathered.grains);
   // A grain alone is its model's, but for what is seen through it.
-  if (heaps && !arrays && !(clear && shows_through(gathered.grains, scene))) gathered = Gatherer(cache);
+  if (heaps && !arrays && !beside && !(clear && shows_through(gathered.grains, scene))) gathered = Gatherer(cache);
   alike_.clear();
   if (const Instances* instances = content.instances())
     for (const InstanceGroup& group : instances->groups()) alike_.emplace_back(group.first, group.first + group.count);
@@ -248,7 +253,7 @@ void Exchange::set(DeviceCache& cache, const Content& content, const scene::Scen
   const bool heaped = arrays && grains.grains.size() > 1;
   follows_ = (heaps || !exchanges) && arrays;
   const bool follows = follows_ && std::any_of(grains.kinds.begin(), grains.kinds.end(), is_followed);
-  const bool lit = exchanges ? heaped || clear || !grains.walls.empty() : heaped && follows;
+  const bool lit = exchanges ? heaped || beside || clear || !grains.walls.empty() : heaped && follows;
   if (grains.grains.empty() || !lit) {
     solving_.reset();
     known_.reset();
@@ -259,7 +264,9 @@ void Exchange::set(DeviceCache& cache, const Content& content, const scene::Scen
   }
   gathers_ = scene.exchange == scene::Exchange::gathered;
   shows_more_ = clear || follows;
-  heap::Heap heap{std::move(gathered.grains), content.anchor(), scene.lights, scene.world, exchanges};
+  const bool straight_elsewhere = !arrays && !clear && !gathers_;
+  heap::Heap heap{std::move(gathered.grains), content.anchor(), scene.lights, scene.world, exchanges,
+                  straight_elsewhere};
   const bool switched = solving_ && solving_->heap().exchanges != exchanges;
   if (switched) known_.reset();
   const bool regrouped = !solving_ || switched || roles_ != gathered.roles;

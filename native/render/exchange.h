@@ -61,6 +61,10 @@ class Exchange {
   /// Whether any light goes from grain to grain.
   bool any() const { return solving_ != nullptr && solving_->heap().exchanges; }
 
+  /// Whether that tells what goes straight through grains: of those that are in no array rays do, each to where it
+  /// ends.
+  bool tells_straight() const { return any() && !solving_->heap().straight_elsewhere; }
+
   /// Takes in what has become known since. Returns whether anything has.
   bool take_news();
 

@@ -155,7 +155,7 @@ Sample Frame::begin_sample(const GoOn& go_on, bool hurried) {
                 .go_on = go_on};
   if (unwrapping_) return sample;
   // Of what light goes between it is known otherwise what is seen behind.
-  const bool behind = !exchange_.any() && content_->any_shows_behind();
+  const bool behind = !exchange_.tells_straight() && content_->any_shows_behind();
   sample.straight_through = behind && traced;
   sample.mirrors = arrays_.mirrors(*content_, traced, lighting_.world().shines(), behind,
                                    [&](std::size_t unit) { return sample.asks_model(unit); });

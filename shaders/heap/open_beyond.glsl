@@ -1,7 +1,7 @@
 // How much of the world is in what is seen unscattered through the grain that a pixel shows: others may stand before it.
 //
 // What is chosen at compile time:
-//   EXCHANGE             that is known (native/heap/links.h); else none does
+//   EXCHANGE             that is known (native/heap/links.h), if no later pass looks (SEES_BEHIND); else none does
 //   GATHERED             what is seen through some grains was gathered for each pixel, the world with it
 //   BACKDROP             the camera, which looks straight through the grain, sees the world otherwise than it lights
 //   FILM_TRANSPARENT     or not at all: what it sees of it makes the picture transparent
@@ -59,7 +59,7 @@ vec3 seen_straight_on(vec3 left, vec3 direction) {
 }
 
 float open_beyond(vec3 normal, vec3 to_viewer) {
-#ifdef EXCHANGE
+#if defined(EXCHANGE) && !defined(SEES_BEHIND)
 #ifdef GATHERED
   if (looked_through()) return 1.0;
   if (texelFetch(gathered, ivec2(gl_FragCoord.xy), 0).w > 0.0) return 0.0;

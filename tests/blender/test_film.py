@@ -1,4 +1,5 @@
-# A transparent film, grounds and backdrops seen straight through thin grains, against Cycles.
+# A transparent film, grounds and backdrops seen straight through thin grains, and what lone ones send to their
+# grounds, against Cycles.
 import bpy
 import numpy as np
 import pytest
@@ -116,3 +117,16 @@ def test_what_stands_behind_a_thin_grain_is_seen_through_it(stage, render):
     ball(grain("model_3"))
     error, _, _ = beside_cycles(stage, render)
     assert error < 0.03
+
+
+# Each brightens and colours the other, and what goes straight through the grain, which is lit by a sun, keeps its
+# edges. Measured: .7 %; 8.4 without what they send each other.
+def test_a_lone_grain_and_its_ground_send_each_other_light(stage, render):
+    next(node for node in stage.world.node_tree.nodes if node.type == "BACKGROUND").inputs["Strength"].default_value = 0
+    turn = Matrix.Rotation(0.9, 4, "X")
+    stage.camera.matrix_world = Matrix.Translation((0.0, 0.0, 0.5)) @ turn @ Matrix.Translation((0.0, 0.0, 8.0))
+    stage.camera.data.ortho_scale = 4.0
+    put("plane", matt("White", (0.8, 0.7, 0.6)), (0.0, 0.0, -1.02), smooth=False, size=30.0)
+    ball(grain("transport", sigma_a=(0.05, 0.3, 0.8), sigma_s=(2.0,) * 3))
+    error, _, _ = beside_cycles(stage, render)
+    assert error < 0.02

@@ -49,7 +49,7 @@ bool MirrorPass::run(const Sample& sample, const ArrayVisibility& arrays, Surfac
 }
 
 bool MirrorPass::any_goes_on(const Sample& sample, const std::vector<PixelBox>& boxes) {
-  if (sample.exchange.any()) return false;
+  if (sample.exchange.tells_straight()) return false;
   for (std::size_t unit = 0; unit < boxes.size(); ++unit)
     if (boxes[unit].first != boxes[unit].end && sample.content.shows_behind(unit)) return true;
   return false;

@@ -131,7 +131,7 @@ void ShadePass::shade_seen(const Sample& sample, const ShadowPass& shadows, cons
     }
     const DeviceMaterial& material = sample.content.material(unit);
     const bool looks_on = sample.mirrors == Mirrors::hindered && sample.portion != Portion::normal;
-    const bool sees_behind = looks_on && !sample.exchange.any() && sample.content.shows_behind(unit);
+    const bool sees_behind = looks_on && !sample.exchange.tells_straight() && sample.content.shows_behind(unit);
     const gl::Program& program =
         prepare(sample, unit,
                 {.instanced = sample.content.draw(unit) == nullptr,
