@@ -34,6 +34,7 @@ BENCHMARKS = {
     "drag": "how long a change takes to be seen in a real window, relative to Blender's own redraw in Solid shading",
     "exchange": "what light between grains costs while a scene changes: milliseconds to the first and the final answer",
     "heap_light": "how far light between grains is from path tracing, for kinds and lights; about half an hour",
+    "chance_heaps": "how far light between grains is from path tracing, for heaps by chance; minutes each",
     "dual_scattering": "what dual scattering makes of light between grains, beside what is solved and path tracing",
     "accuracy": "how far each model's sphere is from photon Monte Carlo; about twelve minutes",
     "relightable": "how far a relightable bake is from bakes for each light, by its number of components",
@@ -44,7 +45,7 @@ BENCHMARKS = {
     "false_alarms": "how often the significance test calls renders different that differ in their seed alone",
 }
 
-TRACED = ("heap_light", "dual_scattering")  # beside their truth
+TRACED = ("heap_light", "chance_heaps", "dual_scattering")  # beside their truth
 
 
 class Place:

@@ -41,8 +41,8 @@ std::vector<Asking> Gather::asking(std::uint32_t grain, transport::Random& rando
   return asking;
 }
 
-Gather::All Gather::look_at_all(std::uint32_t grain, const glm::vec3& place, const glm::vec3& normal,
-                                const glm::vec3& towards, int rays, transport::Random& random) const {
+Gather::All Gather::walked_in(std::uint32_t grain, const glm::vec3& place, const glm::vec3& normal,
+                              const glm::vec3& towards, int walks, transport::Random& random) const {
   // What leaves a facet goes on from where it is, not from the one point of the sphere that faces as it does.
   const glm::vec3 aside = place - space_.grains()[grain].radius * normal;
   const Grain& seen = space_.grains()[grain];
@@ -50,7 +50,7 @@ Gather::All Gather::look_at_all(std::uint32_t grain, const glm::vec3& place, con
   const float mu = std::clamp(glm::dot(normal, towards), 0.0F, 1.0F);
   const TurnedFrame frame(normal, -towards);
   All all;
-  for (int i = 0; i < rays; ++i) {
+  for (int i = 0; i < walks; ++i) {
     std::vector<Asking> asking = this->asking(grain, random);
     const auto ask = [&](const glm::vec3& at, const glm::vec3& direction, const glm::vec3& weight) {
       const glm::vec3 in_frame = frame * at;
@@ -82,12 +82,59 @@ Gather::All Gather::look_at_all(std::uint32_t grain, const glm::vec3& place, con
     else
       all.scattered += even_world(ray);
   }
-  all.others /= static_cast<float>(rays);
-  all.scattered /= static_cast<float>(rays);
+  all.others /= static_cast<float>(walks);
+  all.scattered /= static_cast<float>(walks);
+  return all;
+}
+
+Gather::All Gather::look_at_all(std::uint32_t grain, const glm::vec3& place, const glm::vec3& normal,
+                                const glm::vec3& towards, int rays, transport::Random& random) const {
+  All all = walked_in(grain, place, normal, towards, rays, random);
   Ray through = ray_through(grain, normal, towards);
-  all.others = glm::max(all.others + space_.seen_along(through, light_->sent, random), 0.0F);
+  Behind behind;
+  const auto crossed = [&](const Meeting& meeting, const Ray& ray) -> std::optional<glm::vec3> {
+    if (!is_walked_behind(meeting.number)) return std::nullopt;
+    const float mu = std::clamp(-glm::dot(meeting.normal, ray.direction), 0.0F, 1.0F);
+    const Optics& optics = heap_.grains.kinds[space_.grains()[meeting.number].kind];
+    const glm::vec3 crossing = glm::exp(-2.0F * mu * glm::vec3(optics.sigma_t));
+    behind.add({meeting.number, meeting.place, meeting.normal, -ray.direction}, std::nullopt, ray.weight, crossing,
+               random);
+    return crossing;
+  };
+  all.others += space_.seen_along(through, light_->sent, random, crossed);
+  if (const int walks = behind.walks(rays, random)) {
+    const SeenFacet& there = behind.seen;
+    const glm::vec3 from_middle = space_.grains()[there.grain].radius * there.normal;
+    behind.show(walked_in(there.grain, from_middle, there.normal, there.towards, walks, random), all);
+  }
+  all.others = glm::max(all.others, 0.0F);
   show_what_is_behind(through, all);
   return all;
+}
+
+void Gather::Behind::add(const SeenFacet& facet, const std::optional<End>& its_end, const glm::vec3& comes,
+                         const glm::vec3& crosses, transport::Random& random) {
+  const float share = mean(comes * (1.0F - crosses));
+  if (!(share > 0.0F)) return;
+  met += share;
+  if (random.uniform() * met >= share) return;
+  seen = facet;
+  across = its_end;
+  weight = comes / share;
+}
+
+int Gather::Behind::walks(int before, transport::Random& random) {
+  if (!(met > 0.0F)) return 0;
+  const float wanted = met * static_cast<float>(before);
+  if (wanted >= 1.0F) return static_cast<int>(std::lround(wanted));
+  if (random.uniform() >= wanted) return 0;
+  weight /= wanted;
+  return 1;
+}
+
+void Gather::Behind::show(const All& found, All& all) const {
+  all.others += met * weight * found.others;
+  all.scattered += met * weight * found.scattered;
 }
 
 glm::vec3 Gather::left_across(const Optics& optics, std::uint32_t grain, const std::optional<End>& end) const {
@@ -136,8 +183,13 @@ glm::vec3 Gather::sent_by(const Meeting& meeting, Ray& ray, transport::Random& r
   return ray.weight / source->met * light_->seats->light_at(light_->sent, source->number, source->normal, true);
 }
 
+bool Gather::is_walked_behind(std::uint32_t grain) const {
+  const std::uint32_t kind = space_.grains()[grain].kind;
+  return is_transparent(grain) && of_others_[kind].g != heap_.grains.kinds[kind].g;
+}
+
 glm::vec3 Gather::seen_between(std::uint32_t grain, std::optional<Meeting> wall, Crossings crossings, Ray& ray,
-                               const Facets& facets, transport::Random& random) const {
+                               const Facets& facets, transport::Random& random, Behind* behind) const {
   glm::vec3 seen(0.0F);
   for (int crossed = 0; crossed < most_crossed && largest(ray.weight) >= nothing; ++crossed) {
     const std::optional<Meeting> meeting = wall ? wall : facets.beyond(grain, ray.origin, ray.direction);
@@ -150,9 +202,12 @@ glm::vec3 Gather::seen_between(std::uint32_t grain, std::optional<Meeting> wall,
     }
     grain = meeting->number;
     const std::optional<End> end = end_across(grain, meeting->place, ray.direction, facets);
-    const glm::vec3 crossing = left_across_other(grain, end);
+    const bool walked = behind && is_walked_behind(grain);
+    const glm::vec3 crossing = walked ? left_across_seen(grain, end) : left_across_other(grain, end);
     float share = 1.0F;  // of the rays that cross it
-    if (crossings == Crossings::drawn) {
+    if (walked) {
+      behind->add({grain, meeting->place, meeting->normal, -ray.direction}, end, ray.weight, crossing, random);
+    } else if (crossings == Crossings::drawn) {
       share = mean(ray.weight * crossing) / mean(ray.weight);
       if (random.uniform() >= share) {
         here.weight = ray.weight * (1.0F - crossing) / (1.0F - share);
@@ -171,15 +226,13 @@ glm::vec3 Gather::seen_between(std::uint32_t grain, std::optional<Meeting> wall,
   return seen;
 }
 
-std::optional<Gather::All> Gather::look_at_all(const SeenFacet& seen, const Facets& facets, int rays,
-                                               transport::Random& random) const {
+Gather::All Gather::walked_in(const SeenFacet& seen, const std::optional<End>& across, const Facets& facets, int walks,
+                              transport::Random& random) const {
   const Grain& grain = space_.grains()[seen.grain];
   const Optics& optics = heap_.grains.kinds[grain.kind];
   const bool transparent = optics.transparent();
-  const std::optional<End> across = end_across(seen.grain, seen.place, -seen.towards, facets);
-  if (transparent && !across) return std::nullopt;
   All all;
-  for (int i = 0; i < rays; ++i) {
+  for (int i = 0; i < walks; ++i) {
     std::vector<Asking> asking = this->asking(seen.grain, random);
     const auto ask = [&](const glm::vec3& at, const glm::vec3& direction, const glm::vec3& weight) {
       for (Asking& of : asking) of.ask(of.scattered(static_cast<float>(optics.g), direction, weight), at, random);
@@ -204,13 +257,24 @@ std::optional<Gather::All> Gather::look_at_all(const SeenFacet& seen, const Face
     all.others += seen_between(seen.grain, passage->wall, Crossings::drawn, ray, facets, random);
     all.scattered += even_world(ray);
   }
-  all.others /= static_cast<float>(rays);
-  all.scattered /= static_cast<float>(rays);
+  all.others /= static_cast<float>(walks);
+  all.scattered /= static_cast<float>(walks);
+  return all;
+}
+
+std::optional<Gather::All> Gather::look_at_all(const SeenFacet& seen, const Facets& facets, int rays,
+                                               transport::Random& random) const {
+  const std::optional<End> across = end_across(seen.grain, seen.place, -seen.towards, facets);
+  if (is_transparent(seen.grain) && !across) return std::nullopt;
+  All all = walked_in(seen, across, facets, rays, random);
   Ray through{seen.place - (across ? across->distance : 0.0F) * seen.towards, -seen.towards,
               left_across_seen(seen.grain, across)};
   const std::optional<Meeting> wall =
       across && across->wall ? facets.inside(seen.grain, seen.place, -seen.towards) : std::nullopt;
-  all.others += seen_between(seen.grain, wall, Crossings::all, through, facets, random);
+  Behind behind;
+  all.others += seen_between(seen.grain, wall, Crossings::all, through, facets, random, &behind);
+  if (const int walks = behind.walks(rays, random))
+    behind.show(walked_in(behind.seen, behind.across, facets, walks, random), all);
   all.others = glm::max(all.others, 0.0F);
   show_what_is_behind(through, all);
   return all;

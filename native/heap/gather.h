@@ -168,10 +168,36 @@ class Gather {
   glm::vec3 sent_by(const Meeting& meeting, Ray& ray, transport::Random& random) const;
   /// Of a transparent grain on the way: what it sends and what crosses it, or one of the two, drawn.
   enum class Crossings { all, drawn };
+  /// What lights, the world and others do in a grain, from a place of its surface that a view ray meets, but for what
+  /// crosses it straight: the mean of so many walks.
+  All walked_in(const SeenFacet& seen, const std::optional<End>& across, const Facets& facets, int walks,
+                transport::Random& random) const;
+  /// The same in its ball; `place`: from its middle.
+  All walked_in(std::uint32_t grain, const glm::vec3& place, const glm::vec3& normal, const glm::vec3& towards,
+                int walks, transport::Random& random) const;
+  /// Grains that a view ray meets behind others, of which one is walked in for all.
+  struct Behind {
+    float met = 0.0F;  ///< the share of light that all of them scatter or absorb
+    SeenFacet seen{};
+    std::optional<End> across;
+    glm::vec3 weight{0.0F};  ///< what is left of light there, over the share that this one does
+
+    /// One more, which so much of light comes to and crosses.
+    void add(const SeenFacet& facet, const std::optional<End>& its_end, const glm::vec3& comes,
+             const glm::vec3& crosses, transport::Random& random);
+    /// How many walks show it where so many show what stands before: the fewer the less it is, and at random none.
+    int walks(int before, transport::Random& random);
+    /// What they found, for all of them.
+    void show(const All& found, All& all) const;
+  };
+  /// Whether light that is scattered in it is walked with where it stands behind others: what is scattered forwards
+  /// counts as crossing to those, but is not seen where light goes straight through.
+  bool is_walked_behind(std::uint32_t grain) const;
   /// What others send along a ray from a grain's surface, straight through those that let it; `wall`: what it meets
   /// first, if that is known. Leaves it what weight leaves the heap.
+  /// What those send that are walked behind is left out where there is a `behind` for them.
   glm::vec3 seen_between(std::uint32_t grain, std::optional<Meeting> wall, Crossings crossings, Ray& ray,
-                         const Facets& facets, transport::Random& random) const;
+                         const Facets& facets, transport::Random& random, Behind* behind = nullptr) const;
 
   struct Found;
   Gather(Heap heap, std::shared_ptr<const Found> found);

@@ -134,16 +134,21 @@ std::optional<Source> Space::follow(Ray& ray, transport::Random& random) const {
   return std::nullopt;
 }
 
-glm::vec3 Space::seen_along(Ray& ray, const Field& sent, transport::Random& random) const {
+glm::vec3 Space::seen_along(Ray& ray, const Field& sent, transport::Random& random, const Crossed& crossed) const {
   constexpr float nothing = 1e-3F;
   glm::vec3 seen(0.0F);
-  for (int crossed = 0; crossed < most_crossed; ++crossed) {
+  for (int along = 0; along < most_crossed; ++along) {
     if (std::max({ray.weight.r, ray.weight.g, ray.weight.b}) < nothing) break;
     const std::optional<Meeting> meeting = neighbourhood_.first(ray.origin, ray.direction);
     if (!meeting) return seen;
+    const float cosine = std::clamp(-glm::dot(meeting->normal, ray.direction), 0.0F, 1.0F);
+    if (const std::optional<glm::vec3> known = crossed && !meeting->wall ? crossed(*meeting, ray) : std::nullopt) {
+      ray.weight *= *known;
+      cross(ray, *meeting, cosine);
+      continue;
+    }
     const std::optional<Source> from = source(*meeting, ray, random);
     if (!from) break;
-    const float cosine = std::clamp(-glm::dot(meeting->normal, ray.direction), 0.0F, 1.0F);
     const glm::vec3 crossing = meeting->wall ? glm::vec3(0.0F) : kind(meeting->number).from_light->crossing(cosine);
     seen += ray.weight * (1.0F - crossing) / from->met * seats_->light_at(sent, from->number, from->normal, true);
     if (meeting->wall) seen += ray.weight * walls_[meeting->number].radiance;

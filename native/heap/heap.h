@@ -1,6 +1,7 @@
 // A heap and the light on it: what the exchange is solved for.
 #pragma once
 
+#include <functional>
 #include <glm/vec3.hpp>
 #include <memory>
 #include <optional>
@@ -106,9 +107,12 @@ class Space {
   /// come there.
   std::optional<Source> source(const Meeting& meeting, Ray& ray, transport::Random& random) const;
 
+  /// What of light on its way straight through a grain crosses it, if the caller knows what else it does there.
+  using Crossed = std::function<std::optional<glm::vec3>(const Meeting& meeting, const Ray& ray)>;
+
   /// Radiance that comes against `ray`'s direction because of what grains and walls send out, straight through those
-  /// that let it. Leaves it what weight leaves the heap.
-  glm::vec3 seen_along(Ray& ray, const Field& sent, transport::Random& random) const;
+  /// that let it; but for what grains send of which `crossed` knows. Leaves it what weight leaves the heap.
+  glm::vec3 seen_along(Ray& ray, const Field& sent, transport::Random& random, const Crossed& crossed = {}) const;
 
   /// What is left of light that comes from `reach` away, against `ray`'s direction, straight through all in between.
   /// Does not change its weight.

@@ -57,14 +57,14 @@ def light_of(name, material, grains="balls"):
             "angle": WIDE if "eta" in material or grains != "balls" else 0.0}
 
 
-def truth_of_scene(native, referee, traced, paths, folder):
-    """(picture, its noise in blocks over the mean, None) of a native.Scene."""
+def truth_of_scene(native, referee, traced, paths, folder, seen, size):
+    """(picture, its noise in blocks over the mean) of a native.Scene, seen by a native.Camera."""
     case, picture = folder / "scene.json", folder / "truth.exr"
-    native.write_scene(str(case), traced, camera(native), SIZE)
+    native.write_scene(str(case), traced, seen, size)
     subprocess.run([referee, "render", case, "-o", picture, "-n", str(paths)], check=True, stderr=subprocess.DEVNULL)
     channel = channels(native, picture)
     noise = numpy.sqrt(blocks((channel["noise.G"] ** 2)[..., None])) / 8.0
-    return (numpy.stack([channel[name] for name in "RGB"], -1), float(noise.mean() / channel["G"].mean()), None)
+    return numpy.stack([channel[name] for name in "RGB"], -1), float(noise.mean() / channel["G"].mean())
 
 
 def channels(native, picture):
@@ -86,7 +86,8 @@ def truth(native, referee, material, light, paths, folder):
 
 
 def blocks(picture):
-    return picture.reshape(SIZE[1] // 8, 8, SIZE[0] // 8, 8, -1).mean(axis=(1, 3))
+    height, width = picture.shape[:2]
+    return picture.reshape(height // 8, 8, width // 8, 8, -1).mean(axis=(1, 3))
 
 
 def how_far(found, right):
@@ -102,12 +103,6 @@ def scene(native, material, model, light, exchange, grains="balls"):
         sigmas = {name: tuple(numpy.broadcast_to(material[name], 3)) for name in ("sigma_a", "sigma_s")}
         look = native.Material(model=model, boundary=material["boundary"], eta=material.get("eta", 1.3),
                                g=material["g"], **sigmas)
-    places = numpy.loadtxt(DATA / "spheres.csv", delimiter=",", skiprows=1)
-    transforms = numpy.zeros((len(places), 4, 4))
-    transforms[:, :3, :3] = places[:, 3, None, None] * (numpy.eye(3) if grains == "balls" else turns(len(places)))
-    transforms[:, :3, 3] = places[:, :3]
-    transforms[:, 3, 3] = 1.0
-    heap = native.InstanceArray(mesh(native, grains), look, transforms)
     if light["type"] == "distant":
         sun = native.DirectionalLight(light["direction_to_light"], (math.pi,) * 3, angle=light["angle"])
         shines = {"lights": [sun]}
@@ -115,16 +110,27 @@ def scene(native, material, model, light, exchange, grains="balls"):
         sky = numpy.zeros((64, 128, 3), numpy.float32)
         sky[:32] = 1.0
         shines = {"world": native.World(image=native.Surroundings(sky))}
-    return native.Scene(arrays=[heap], exchange=exchange, **shines)
+    return native.Scene(arrays=[heap(native, look, grains)], exchange=exchange, **shines)
 
 
-def camera(native):
+def heap(native, look, grains):
+    """Such grains, one of GRAINS, in the places of the balls, as a native.InstanceArray of a native.Material."""
+    places = numpy.loadtxt(DATA / "spheres.csv", delimiter=",", skiprows=1)
+    transforms = numpy.zeros((len(places), 4, 4))
+    transforms[:, :3, :3] = places[:, 3, None, None] * (numpy.eye(3) if grains == "balls" else turns(len(places)))
+    transforms[:, :3, 3] = places[:, :3]
+    transforms[:, 3, 3] = 1.0
+    return native.InstanceArray(mesh(native, grains), look, transforms)
+
+
+def camera(native, part=1.0):
+    """That of the stored truth; of its picture's middle, such a part of its width and height."""
     seen = MANIFEST["camera"]
     axes = numpy.array([seen["right"], seen["up"], [-x for x in seen["direction"]]])
     world_to_camera = numpy.eye(4)
     world_to_camera[:3, :3] = axes
     world_to_camera[:3, 3] = -axes @ (numpy.array(seen["centre"]) - 60.0 * numpy.array(seen["direction"]))
-    clip = numpy.diag([1.0 / seen["half_width"], 1.0 / seen["half_height"], -2.0 / 199.0, 1.0])
+    clip = numpy.diag([1.0 / (part * seen["half_width"]), 1.0 / (part * seen["half_height"]), -2.0 / 199.0, 1.0])
     clip[2, 3] = -201.0 / 199.0
     return native.Camera(world_to_camera, clip)
 
@@ -186,7 +192,9 @@ def main():
                 else:
                     traced = scene(native, material, "lambert" if material["kind"] == "diffuse" else "model_2", light,
                                    "off", options.grains)
-                    right = truth_of_scene(native, referee, traced, paths, pathlib.Path(folder))
+                    traced_picture = truth_of_scene(native, referee, traced, paths, pathlib.Path(folder),
+                                                    camera(native), SIZE)
+                    right = (*traced_picture, None)
                 of = (material, light, right)
                 drawn = []
                 for model in ["lambert"] if material["kind"] == "diffuse" else options.models:

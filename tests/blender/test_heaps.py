@@ -124,7 +124,7 @@ def test_a_comparison_with_direct_light_alone_has_no_other(render):
         assert (ours.exchanged is None) == direct
     ours.begin({"model": "model_2"})
     ours.refine(1)
-    assert ours.exchanged["grains"] >= SIDE ** 2 and "not measured" in ours.exchanged["stated_error"]
+    assert ours.exchanged["grains"] >= SIDE ** 2 and "nine in ten" in ours.exchanged["stated_error"]
     without = Ours(depsgraph, (32, 32), {}, parts=1, exchange="off")
     without.begin({"model": "model_2"})
     without.refine(1)

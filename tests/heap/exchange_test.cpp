@@ -71,7 +71,9 @@ TEST(Exchange, LetsAsMuchLightOutAsCameIn) {
 TEST(Exchange, LetsAsMuchLightOutAsCameInWhereDeepGrainsShareTheirNumbers) {
   Quality quality;
   quality.shared_from = 0;
-  quality.rays = 512;  // with 128 of each, and none that share, white opaque grains send out 1 % too much
+  // With 128 of each, and none that share, white opaque grains send out 1 % too much. With these it is 1.001 to 1.021
+  // by the random numbers of their table (eight of them; 1.068 by a ninth), and 1.001 by those that it has.
+  quality.rays = 512;
   for (const Optics& optics : {medium(3.0, 1.0), lambert(1.0)})
     EXPECT_NEAR(let_out(18, optics, quality), 1.0, 0.01) << optics.sigma_t.r;
 }

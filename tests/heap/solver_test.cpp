@@ -60,7 +60,7 @@ Redone redone(const Parts& before, const Parts& after) {
 
 /// Solves `after` in both ways where `before` was solved, and holds the answers against one from nothing.
 void expect_redone(const Heap& before, const Heap& after, const Redone& quickly, const Redone& finally,
-                   const std::string& what, double answer_off = 0.06) {
+                   const std::string& what, double answer_off = 0.075) {
   Solver solver;
   const Parts first = solver.solve(before, {}, {}).parts;
   const HeapLight quick = solver.solve(after, coarse, {});
@@ -75,7 +75,8 @@ void expect_redone(const Heap& before, const Heap& after, const Redone& quickly,
   EXPECT_EQ(parts.sources, finally.sources) << what;
   const HeapLight right = solve_exchange(after, {}, {}, {});
   EXPECT_LT(mean_difference(quick.sent, right.sent), std::max(0.1, answer_off)) << what;
-  // Where grains were thinner, light went further through them than it does now: 5.6 % too much.
+  // Where grains were thinner, light went further through them than it does now: 5.6 to 6.8 % too much, by the random
+  // numbers of their table.
   EXPECT_NEAR(mean(quick.answer), mean(right.answer), answer_off * mean(right.answer)) << what;
   EXPECT_LT(difference(light.sent, right.sent), 2e-3) << what;
   EXPECT_LT(difference(light.answer, right.answer), 4e-3) << what;

@@ -12,6 +12,7 @@ import pytest
 
 TESTS = pathlib.Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(TESTS / "bench"))
+import heap_light  # noqa: E402
 import sphere_mesh  # noqa: E402
 
 DATA = TESTS / "data/heaps"
@@ -145,6 +146,27 @@ def test_light_goes_on_forwards_from_grain_to_grain(file, radius, g, total, erro
     print(f"{found.sum() / truth.sum():.3f} {numpy.abs(found - truth).sum() / truth.sum():.4f}")
     assert found.sum() == pytest.approx(truth.sum(), rel=total)
     assert numpy.abs(found - truth).sum() < error * truth.sum()
+
+
+# So thin that light is scattered once, and one grain stands before others: a picture's light goes as the phase function
+# (Henyey and Greenstein 1941, eq. 2). Grains that are seen through others scattered evenly what they do not scatter
+# forwards: 2.4 times as much.
+@pytest.mark.parametrize("mesh", ["balls", "sand"])
+def test_thin_heaps_scatter_forwards_wherever_a_grain_stands(mesh):
+    to_sun = numpy.array([0.3, 0.1, 1.0]) / numpy.linalg.norm([0.3, 0.1, 1.0])
+    sun = native.DirectionalLight(tuple(to_sun), (1.0,) * 3, angle=0.02)
+    light = []
+    for g in (0.0, 0.83):
+        look = native.Material(model="model_2", sigma_a=(0.0,) * 3, sigma_s=(1e-3,) * 3, g=g, boundary="index_matched")
+        view = native.View(*MANIFEST["resolution"])
+        view.set_scene(native.Scene(arrays=[heap_light.heap(native, look, mesh)], lights=[sun],
+                                    world=native.World((0.0, 0.0, 0.0))))
+        view.set_camera(camera())
+        view.render(8)
+        light.append(view.read()[..., :3].sum())
+    cosine = to_sun @ numpy.array(MANIFEST["camera"]["direction"])
+    phase = (1.0 - 0.83**2) / (1.0 + 0.83**2 - 2.0 * 0.83 * cosine) ** 1.5
+    assert light[1] / light[0] == pytest.approx(phase, rel=0.03)
 
 
 @pytest.mark.parametrize("file, model", [("L8_s45.exr", "lambert"), ("M9_3_s45.exr", "model_2")])

@@ -37,7 +37,19 @@ def test_it_is_said_of_what_was_measured(stated_error):
     assert float(stated_error.sentence(both).split("and ")[1].split("%")[0]) > 3.3
 
 
-@pytest.mark.parametrize("other", [{"thickness": (0.2, 3.0)}, {"thickness": (3.0, 11.0)}, {"albedo": (0.5, 0.9)},
+def test_of_heaps_by_chance_nine_in_ten_are_told(stated_error):
+    for of in ({"thickness": (0.2, 3.0)}, {"albedo": (0.6, 0.9), "g": (0.5, 0.5)}, {**SALT, "albedo": (0.6, 0.9)}):
+        sentence = stated_error.sentence(exchange(balls=False, **of))
+        assert "nine in ten of 1" in sentence and "do not lie in each other" in sentence
+    # What was measured of chosen kinds is said before that.
+    assert "chance" not in stated_error.sentence(exchange())
+    both = exchange(balls=False, thickness=(0.2, 3.0))
+    both["stuff"] += exchange(**SALT)["stuff"]
+    assert "blocks of 8 x 8 pixels for nine in ten of 16 heaps" in stated_error.sentence(both)
+    assert stated_error.in_blocks(both) >= stated_error.in_blocks(exchange(balls=False, **SALT))
+
+
+@pytest.mark.parametrize("other", [{"thickness": (0.01, 3.0)}, {"thickness": (3.0, 11.0)}, {"albedo": (0.5, 0.9)},
                                    {"g": (0.85, 0.85)}, {"g": (-0.3, 0.0)}, {"surface": "mirror"},
                                    {**SALT, "eta": (1.1, 1.544)}, {**SALT, "eta": (1.8, 1.8)}])
 def test_nothing_is_said_of_what_was_not(stated_error, other):

@@ -13,7 +13,7 @@ from .shot import PROVENANCE, ReferenceError
 
 __all__ = ["PROVENANCE", "SEEDS", "Reference", "ReferenceError", "Sampling", "render"]
 
-WIDEST_SUN = math.radians(90.5)
+WIDEST_SUN = math.radians(175.4)
 """Where a flat disc is the sun: a Lambertian sphere differs by 3 % under one of 90 degrees, by 8 % under 120."""
 
 SEEDS = (1, 2)
@@ -146,7 +146,7 @@ def _check(depsgraph, kind, overrides):
         notes.append(f"Suns are taken {degrees:.0f} degrees wide on both sides, since Cycles cannot find smaller ones.")
     widest = max(suns, default=0.0)
     if not (kind.referee or nodes.features().even_suns or widest <= WIDEST_SUN):
-        raise ReferenceError("This Blender's Cycles renders a sun as a flat disc, unlike ours beyond "
+        raise ReferenceError("This Blender's Cycles renders a sun as a flat disc, which was compared up to "
                              f"{math.degrees(WIDEST_SUN):.0f} degrees; got {math.degrees(widest):.0f}: narrow it.")
     if kind.smooth_interface and not suns:
         raise ReferenceError(f"The reference {kind.name} is measured by the strongest sun, and there is no visible "

@@ -115,6 +115,9 @@ def _emission_of_nodes(light, name):
     return tuple((told[1] * told[0] * np.ones(3)).tolist()), sentences
 
 
+widest_flat_sun = math.radians(179.0)
+
+
 def _times(power, factor):
     return tuple(channel * factor for channel in power)
 
@@ -125,8 +128,9 @@ def _sun(light, name, power, matrix_world):
     angle = min(light.angle, math.pi)
     if not getattr(light, "normalize", True) and angle > 0.0:
         power = _times(power, math.pi * math.sin(0.5 * angle) ** 2)
-    return SunValues(name, tuple(direction), _times(power, sun_irradiance(angle)), angle,
-                     not compat.has_even_lights())
+    # As wide as half the sky a flat disc's light comes from its rim alone, and Cycles draws none.
+    flat = not compat.has_even_lights() and angle < widest_flat_sun
+    return SunValues(name, tuple(direction), _times(power, sun_irradiance(angle)), angle, flat)
 
 
 def sun_irradiance(angle):
