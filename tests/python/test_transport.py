@@ -252,7 +252,7 @@ def test_an_array_costs_one_set_of_coefficients(cube, spread):
         return
     alone = [native.Instance(cube, grain, transform) for transform in transforms[:6]]
     array = native.InstanceArray(cube, grain, transforms[:6])
-    _, one_by_one = picture_of(native.Scene(instances=alone, lights=[light]))
+    _, one_by_one = picture_of(native.Scene(instances=alone, lights=[light], exchange="off"))
     _, of_array = picture_of(native.Scene(arrays=[array], lights=[light], exchange="off"))
     assert numpy.abs(of_array - one_by_one).sum() / one_by_one.sum() < 0.02
     assert together.sum() > of_array.sum()
