@@ -7,6 +7,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <utility>
 
 #include "io/exr.h"
 #include "io/scene_json.h"
@@ -35,15 +36,20 @@ PictureCase sphere_case(double eta, double g) {
   return picture_case(io::parse_scene(scene.dump(), ""));
 }
 
+// Of sphere_case's sphere and of its mesh, by random numbers of their own.
+std::pair<Picture, Picture> sphere_and_mesh(PictureCase setup) {
+  Picture sphere = trace_picture(setup);
+  setup.mesh = std::make_shared<const scene::Mesh>(scene::unit_sphere(128, 64));
+  setup.mesh_to_world = glm::dmat4(glm::dmat3(2.4));
+  setup.seed = 2;
+  return {std::move(sphere), trace_picture(setup)};
+}
+
 TEST(MeshPicture, OfASphereIsTheSpheres) {
   for (const auto& [eta, g] : {std::pair{1.3, 0.0}, {1.0, 0.8}}) {
     PictureCase setup = sphere_case(eta, g);
     setup.samples = 300;
-    const Picture sphere = trace_picture(setup);
-    setup.mesh = std::make_shared<const scene::Mesh>(scene::unit_sphere(128, 64));
-    setup.mesh_to_world = glm::dmat4(glm::dmat3(2.4));
-    setup.seed = 2;
-    const Picture mesh = trace_picture(setup);
+    const auto [sphere, mesh] = sphere_and_mesh(setup);
     for (int channel = 0; channel < 3; ++channel) {
       double total = 0, other = 0, difference = 0, noise = 0, variance = 0;
       for (std::size_t block = 0; block < sphere.radiance.size(); ++block) {
@@ -67,11 +73,7 @@ TEST(MeshPicture, OfAThickSphereIsTheSpheres) {
   PictureCase setup = sphere_case(1.3, 0);
   setup.material.sigma_s = setup.material.sigma_a = glm::dvec3(0.5 * 40 / 2.4);
   setup.samples = 400;
-  const Picture sphere = trace_picture(setup);
-  setup.mesh = std::make_shared<const scene::Mesh>(scene::unit_sphere(128, 64));
-  setup.mesh_to_world = glm::dmat4(glm::dmat3(2.4));
-  setup.seed = 2;
-  const Picture mesh = trace_picture(setup);
+  const auto [sphere, mesh] = sphere_and_mesh(setup);
   double total = 0, other = 0, variance = 0;
   for (std::size_t block = 0; block < sphere.radiance.size(); ++block) {
     total += mesh.radiance[block].x;
