@@ -189,6 +189,32 @@ def test_a_normal_map_bends(paint, render, shape):
     assert_as_in_cycles(render, 0.01 if shape == "plane" else 0.02)
 
 
+@pytest.mark.parametrize("shape", ["plane", "sphere"])
+@pytest.mark.parametrize("linked", [False, True])
+def test_a_normal_that_is_the_same_everywhere_bends(paint, render, shape, linked):
+    tree = paint.node_tree
+    node, bending = surface(paint), tree.nodes.new("ShaderNodeNormalMap")
+    constant = (0.8, 0.3, 0.85, 1.0)
+    if linked:
+        source = tree.nodes.new("ShaderNodeRGB").outputs[0]
+        source.default_value = constant
+        tree.links.new(source, bending.inputs["Color"])
+    else:
+        bending.inputs["Color"].default_value = constant
+    tree.links.new(bending.outputs["Normal"], node.inputs["Normal"])
+    texture(paint, node.inputs["Color"], image=lines("Lines"))
+    stage(paint, shape, tilted=(0.9, 0.5, 0.2))
+    assert_as_in_cycles(render, 0.01 if shape == "plane" else 0.02)
+
+
+def test_a_normal_map_that_points_straight_up_has_no_picture(paint):
+    tree = paint.node_tree
+    node, bending = surface(paint), tree.nodes.new("ShaderNodeNormalMap")
+    tree.links.new(bending.outputs["Normal"], node.inputs["Normal"])
+    stage(paint, "plane")
+    assert read_scene().instances[0].material.finish is None
+
+
 @pytest.mark.parametrize("kind, inputs", [("Glossy", {}), ("Principled", {"Metallic": 1.0})])
 def test_facets_that_scatter_again_lose_no_light(paint, render, kind, inputs):
     """Of rough metal a third of the light left its facets at the second bounce or later."""

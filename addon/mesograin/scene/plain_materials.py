@@ -123,9 +123,11 @@ class Reading:
         if bending.type != "NORMAL_MAP" or bending.space != "TANGENT":
             self.leave_out(f"the node '{bending.name}' at its normal")
             return
-        self.set(normal_strength=self.number(bending.inputs["Strength"]), **compat.bumps())
-        if bending.inputs["Color"].is_linked:
-            self._map(bending.inputs["Color"], "normal", numbers=False)
+        told = self._map(bending.inputs["Color"], "normal", numbers=False)
+        if "normal" not in self._maps and told is not None and not _is_straight(told):
+            self._maps["normal"] = textures.constant(told)
+        if "normal" in self._maps:
+            self.set(normal_strength=self.number(bending.inputs["Strength"]), **compat.bumps())
 
 
 def of_no_material():
@@ -195,6 +197,11 @@ def attributes(material):
 
 def _reflectance(colour):
     return tuple(min(max(channel, 0.0), 1.0) for channel in colour[:3])
+
+
+def _is_straight(told):
+    """Whether a normal map's colour leaves the normal as it is, to within eight bits of it."""
+    return all(abs(channel - 0.5) < 0.5 / 255.0 for channel in told[:2]) and told[2] > 0.5
 
 
 def _read_node(found, material, node):

@@ -77,6 +77,11 @@ def read(socket, box, numbers, side=SIDE, mesh=None):
     return _painted(socket, box, numbers, side, mesh)
 
 
+def constant(colour):
+    """MapValues that are one linear RGB everywhere."""
+    return MapValues(images.made(np.array([[(*colour[:3], 1.0)]], dtype=np.float32)))
+
+
 def _image(node, box):
     """MapValues of an image, or None if its places are no affine map of UVs or of the mesh's own."""
     if node.image is None or node.projection != "FLAT" or node.image.source in ("TILED", "MOVIE", "SEQUENCE"):
