@@ -145,7 +145,7 @@ bool Content::any_shows_behind() const {
 }
 
 void Content::find_shadows() {
-  shadows_ = (instances_ ? instances_->count() : 0) + draws_.size() > 1 ||
+  shadows_ = count() > 1 ||
              std::any_of(draws_.begin(), draws_.end(), [this](const Draw& draw) { return shades_itself(draw); });
 }
 

@@ -96,6 +96,9 @@ class Content {
   /// does not know of.
   bool shadows() const { return shadows_; }
 
+  /// Whether there is one object, and nothing else for it to see.
+  bool alone() const { return count() == 1; }
+
   /// Whether any material wears pictures.
   bool textured() const { return textured_; }
 
@@ -109,6 +112,7 @@ class Content {
   bool facets(const std::function<bool(std::size_t unit)>& of) const;
 
  private:
+  std::size_t count() const { return (instances_ ? instances_->count() : 0) + draws_.size(); }
   void tell_objects(const scene::Scene& scene);
   void find_bounds();
   void find_shadows();

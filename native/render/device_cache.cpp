@@ -340,6 +340,7 @@ const gl::Program& DeviceCache::shading(const DeviceMaterial& material, const Sh
   const bool backdrop = straight && shading.backdrop;
   const bool any_behind = shading.world || film || backdrop || shading.sees_behind;
   if (any_behind && material.has("CLEAR")) defines.emplace_back("WORLD");
+  if (shading.world && shading.alone && material.has("WALKED")) defines.emplace_back("WALKS_END_IN_WORLD");
   if (film) defines.emplace_back("FILM_TRANSPARENT");
   if (backdrop) defines.emplace_back("BACKDROP");
   if (shading.sees_behind) defines.emplace_back("SEES_BEHIND");

@@ -40,6 +40,7 @@ struct Shading {
   bool exchange = false;          ///< light goes from grain to grain
   bool gathered = false;          ///< and was gathered for each pixel
   bool world = false;             ///< there is a world to be seen through it
+  bool alone = false;             ///< and nothing that may stand before it, but the object itself
   bool backdrop = false;          ///< and the camera sees it otherwise, through what does not refract, too
   bool film_transparent = false;  ///< or as a transparent film
   bool sees_behind = false;       ///< what stands there before that is found by rays

@@ -3,6 +3,10 @@
 // them. The phase function's narrow peak is told apart: light that met nothing else is followed exactly; on the way of light that has also been
 // scattered widely the peak counts as unscattered (Iwabuchi and Suzuki, "Fast and accurate radiance calculations using truncation
 // approximation for anisotropic scattering phase functions", 2009), so that no rare walk finds as much light as thousands of others.
+// The world's light is found both ways, by directions of it that are drawn for all pixels together and by where walks leave the grain, weighted by
+// how likely each was to be drawn (Veach and Guibas, "Optimally Combining Sampling Techniques for Monte Carlo Rendering", 1995, the balance
+// heuristic): the former find what is bright, the latter what a narrow phase function shows of an even sky, of which few directions tell next to
+// nothing.
 // Not physical: light that has left lights nothing that it enters again; where light was not followed into the grain beforehand, what the surface
 // reflected inside before its first scattering comes from a sun that is some degrees wide.
 //
@@ -56,6 +60,7 @@ uniform usampler3D drawn_rays;
 uniform sampler3D pieces;
 #ifdef TOGETHER
 vec3 colour_found;
+float density_found;
 #endif
 
 // Of all the light in the place's cell, some at random.
@@ -68,14 +73,38 @@ Unscattered unscattered_found(vec3 place, int light) {
   vec4 begin = texelFetch(pieces, piece, 0);
   vec3 direction = texelFetch(pieces, piece + ivec3(0, 0, 1), 0).xyz;
 #ifdef TOGETHER
-  colour_found = texelFetch(pieces, piece + ivec3(0, 0, 2), 0).rgb;
+  vec4 found = texelFetch(pieces, piece + ivec3(0, 0, 2), 0);
+  colour_found = found.rgb;
+  density_found = found.w;
 #endif
   float way = begin.w + max(dot(place - begin.xyz, direction), 0.0);
   return Unscattered(-direction, way, float(count) / (TRACK_UNIT * share_inside(cell)) * exp(tracked_sigma_t() * way));
 }
 #endif
 
-Radiance walked_radiance(vec3 place, vec3 direction, vec3 to_light, int light) {
+// Of the directions that a scattering sends walks in, per steradian.
+float density_of_turn(float versine, float g, float one_minus_g, bool without_peak) {
+  if (without_peak && versine < forward.peak_versine) return forward.edge / (1.0 - forward.peak);
+  return henyey_greenstein(versine, g, one_minus_g) / (without_peak ? 1.0 - forward.peak : 1.0);
+}
+
+#ifdef WALKS_END_IN_WORLD
+vec3 walked_out;  // what the last walk found of the world where it left the grain, radiance inside
+
+// How much of what a scattering sends of the world is told by the directions drawn for all pixels, where `drawn` is their density outside and
+// `turned` the walks' inside; of a sun, which no walk looks for, all.
+float share_of_drawn(float drawn, float turned) { return drawn > 0.0 ? drawn / (drawn + turned / (stored.eta * stored.eta)) : 1.0; }
+
+void leave_for_world(Spectrum left, vec3 outside, float turned, bool unmet) {
+  vec3 to_world = transpose(grain_to_body()) * outside;
+  float drawn = unmet ? 0.0 : drawn_density_of_world(to_world);
+  float share = drawn > 0.0 ? share_of_drawn(drawn, turned) : 0.0;
+  walked_out += left * ((1.0 - share) * stored.eta * stored.eta) * seen_of_world(to_world);
+}
+#endif
+
+// `drawn`: the density of the directions that the light was drawn among, if it is the world's.
+Radiance walked_radiance(vec3 place, vec3 direction, vec3 to_light, int light, float drawn) {
   uvec4 seed = uvec4(uvec2(gl_FragCoord.xy), uint(sample_index), uint(light));
   Radiance sum = Radiance(0.0);
   Spectrum left = Spectrum(1.0);
@@ -89,6 +118,11 @@ Radiance walked_radiance(vec3 place, vec3 direction, vec3 to_light, int light) {
   bool first_place = true;
   float kept = 1.0;
   bool mirrored = false;
+#ifdef WALKS_END_IN_WORLD
+  walked_out = vec3(0.0);
+  float turned_density = 0.0;  // of the last scattering's turn
+  bool unmet = false;          // where the walk is now no light was looked for from there
+#endif
   float sharpness = SUN_SHARPNESS * sqrt(1.0 + float(sample_index) / SHARPENED_BY);
   for (int i = 0; i < MOST_STEPS; ++i) {
     vec4 random = vec4(pcg4d(seed + uvec4(0u, 0u, 0u, uint(i + 1) << 8u)) >> 8u) * (1.0 / 16777216.0);
@@ -139,6 +173,13 @@ Radiance walked_radiance(vec3 place, vec3 direction, vec3 to_light, int light) {
       } else if (whole) {
         lit /= 1.0 - forward.peak;
       }
+      bool without_peak = whole && !narrow;
+#ifdef WALKS_END_IN_WORLD
+#ifdef TOGETHER
+      drawn = density_found;
+#endif
+      lit *= share_of_drawn(drawn, density_of_turn(versine, g, one_minus_g, without_peak));
+#endif
 #ifdef TOGETHER
       lit *= unscattered.irradiance;
       sum += left * lit * colour_found;
@@ -152,6 +193,10 @@ Radiance walked_radiance(vec3 place, vec3 direction, vec3 to_light, int light) {
       } else if (whole && random.y * (1.0 - forward.peak) > 1.0 - forward.within) {
         turn = random.w * forward.peak_versine;
       }
+#ifdef WALKS_END_IN_WORLD
+      turned_density = density_of_turn(turn, g, one_minus_g, without_peak);
+      unmet = false;
+#endif
       direction = turned(direction, turn, random.z);
       if (narrow) continue;
       sigma_s = wide_sigma_s;
@@ -164,10 +209,10 @@ Radiance walked_radiance(vec3 place, vec3 direction, vec3 to_light, int light) {
       }
       continue;
     }
-#ifdef REFRACTION
 #ifndef GREY
     left *= 3.0 * passed / (passed.r + passed.g + passed.b);
 #endif
+#ifdef REFRACTION
     vec3 normal = outwards_at(place);
     float cosine = dot(normal, direction);
     float again = fresnel_reflectance(min(cosine, 1.0), 1.0 / stored.eta);
@@ -176,32 +221,50 @@ Radiance walked_radiance(vec3 place, vec3 direction, vec3 to_light, int light) {
 #else
     if (mirrored && !first_place && again < 1.0) {
       vec3 outside = refract(direction, -normal, stored.eta);
-      sum += left * ((1.0 - again) * stored.eta * stored.eta * sharpness / (2.0 * PI) * exp(sharpness * (dot(outside, to_light) - 1.0)));
+      float lobe = (1.0 - again) * stored.eta * stored.eta * sharpness / (2.0 * PI) * exp(sharpness * (dot(outside, to_light) - 1.0));
+#ifdef WALKS_END_IN_WORLD
+      if (drawn > 0.0) lobe = 0.0;
+#endif
+      sum += left * lobe;
     }
     float followed = max(again, LEAST_FOLLOWED * largest(left));
 #endif
     if (cosine <= 0.0) break;
     if (random.w >= followed) {
-#ifdef CONVEX
-      break;
-#else
-      float beyond = comes_in_again(place, direction);
-      if (beyond == 0.0) break;
-      left *= beyond / (1.0 - followed);
-      mirrored = false;
-      continue;
+#ifdef WALKS_END_IN_WORLD
+      vec3 outside = refract(direction, -normal, stored.eta);
+      Spectrum leaving = left * ((1.0 - again) / (1.0 - followed));
 #endif
+#ifndef CONVEX
+      float beyond = comes_in_again(place, direction);
+      if (beyond > 0.0) {
+        left *= beyond / (1.0 - followed);
+        mirrored = false;
+#ifdef WALKS_END_IN_WORLD
+        unmet = true;
+#endif
+        continue;
+      }
+#endif
+#ifdef WALKS_END_IN_WORLD
+      if (!first_place) leave_for_world(leaving, outside, turned_density, unmet);
+#endif
+      break;
     }
     left *= again / followed;
     direction = direction - 2.0 * cosine * normal;
     mirrored = true;
-#elif defined(CONVEX)
-    break;
-#else
-    if (comes_in_again(place, direction) == 0.0) break;
-#ifndef GREY
-    left *= 3.0 * passed / (passed.r + passed.g + passed.b);
+#if defined(WALKS_END_IN_WORLD) && !defined(TRACED)
+    unmet = true;
 #endif
+#else
+#ifndef CONVEX
+    if (comes_in_again(place, direction) > 0.0) continue;
+#endif
+#ifdef WALKS_END_IN_WORLD
+    if (!first_place) leave_for_world(left, direction, turned_density, unmet);
+#endif
+    break;
 #endif
   }
   return sum;

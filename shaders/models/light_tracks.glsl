@@ -47,7 +47,7 @@ float share_inside(ivec3 cell) {
 float tracked_sigma_t() { return min(stored.sigma_t.r, min(stored.sigma_t.g, stored.sigma_t.b)); }
 
 // Each piece is three texels: where it begins and how far light has come till there; where it goes; TOGETHER: the light's irradiance over what it
-// counts in the cells.
+// counts in the cells, and its density (render/distant_light.glsl).
 const int TEXELS_A_PIECE = 3;
 
 ivec3 piece_texel(int ray, int piece, int light) { return ivec3(ray % RAYS_ACROSS, ray / RAYS_ACROSS, TEXELS_A_PIECE * (light * PIECES + piece)); }

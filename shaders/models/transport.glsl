@@ -14,6 +14,7 @@
 //   SUMMED               the products were summed for each light beforehand (passes/sum_products.comp), and where light is refracted and walked,
 //                        light was followed into the grain (passes/trace_light.comp)
 //   TOGETHER             and for all lights together, nothing standing in their way
+//   WALKS_END_IN_WORLD   light is walked, there is a world, and nothing but the grain may stand before it: walks that leave it find it
 #include "heap/open_beyond.glsl"
 #include "models/dielectric.glsl"
 #include "models/interface.glsl"
@@ -36,6 +37,10 @@
 #define Radiance vec3
 #else
 #define Radiance Spectrum
+#endif
+
+#ifdef WALKS_END_IN_WORLD
+uniform int world_directions;  // so many of a sample's lights are the world's
 #endif
 
 vec3 looked_up;  // the direction towards the light whose source function is told
@@ -389,7 +394,11 @@ vec3 comes_out(Outwards outwards, vec3 inside) { return portion(SUBSURFACE_PORTI
 #ifdef TOGETHER
 vec3 together_lit(SurfacePoint point, Outwards outwards) {
 #ifdef WALKED
-  return comes_out(outwards, walked_radiance(place_below, direction_below, vec3(0.0), 0));
+  Radiance inside = walked_radiance(place_below, direction_below, vec3(0.0), 0, 0.0);
+#ifdef WALKS_END_IN_WORLD
+  inside += walked_out;
+#endif
+  return comes_out(outwards, inside);
 #else
   return comes_out(outwards, radiance_inside());
 #endif
@@ -402,11 +411,14 @@ vec3 evaluate_model(SurfacePoint point, Outwards outwards, LightSample light) {
   vec3 to_light = grain_to_body() * light.entering_from;
   look_up(to_light, light.index);
 #ifdef WALKED
-  Spectrum inside = walked_radiance(place_below, direction_below, to_light, light.index);
+  Spectrum inside = walked_radiance(place_below, direction_below, to_light, light.index, light.density);
 #else
   Spectrum inside = radiance_inside();
 #endif
   radiance = comes_out(outwards, light.entering * inside);
+#ifdef WALKS_END_IN_WORLD
+  if (light.density > 0.0) radiance += comes_out(outwards, walked_out / float(world_directions));
+#endif
 #endif
 #ifdef SPECULAR
   radiance += portion(SPECULAR_PORTION, specular_reflection(point, outwards, light));

@@ -124,7 +124,7 @@ void main() {
     imageStore(pieces, texel, vec4(place, before));
     imageStore(pieces, texel + ivec3(0, 0, 1), vec4(direction, 0.0));
 #ifdef TOGETHER
-    imageStore(pieces, texel + ivec3(0, 0, 2), vec4(colour, 0.0));
+    imageStore(pieces, texel + ivec3(0, 0, 2), vec4(colour, lights[light].irradiance.w));
 #endif
     leave_track(ray, piece, light, place, direction, way, area * left * lasting);
     left *= again * passed;

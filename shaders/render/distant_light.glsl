@@ -3,5 +3,5 @@
 
 struct DistantLight {
   vec4 to_light;    // xyz; w: angle of the disc it is drawn from
-  vec4 irradiance;  // rgb; w: density of such directions, per steradian, if a surface may mirror what they are drawn from
+  vec4 irradiance;  // rgb; w: density of such directions, per steradian, if it is the world's, which pixels also look for themselves
 };

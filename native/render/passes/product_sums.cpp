@@ -63,7 +63,7 @@ void ProductSums::sum(DeviceCache& cache, const Draw& draw, const std::vector<Li
   for (const LightDirection& light : lights) {
     of.to_lights.emplace_back(light.to_light);
     if (together) of.irradiances.emplace_back(light.irradiance);
-    device.push_back({glm::vec4(light.to_light, 0.0), glm::vec4(light.irradiance, 0.0)});
+    device.push_back({glm::vec4(light.to_light, 0.0), glm::vec4(light.irradiance, light.density)});
   }
   const bool held = hold(of);
   tracked_ = asks_for_unscattered(material);

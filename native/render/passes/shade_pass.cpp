@@ -224,6 +224,7 @@ const gl::Program& ShadePass::prepare(const Sample& sample, std::size_t unit, Sh
   const bool world = sample.lighting.world().shines();
   shading.exchange = sample.exchange.any();
   shading.world = world;
+  shading.alone = sample.content.alone();
   shading.backdrop = shows_backdrop(sample.lighting);
   shading.film_transparent = sample.lighting.world().film_transparent;
   shading.lights_at_place = sample.lights_at_place(material, shading.instanced);
@@ -242,6 +243,9 @@ const gl::Program& ShadePass::prepare(const Sample& sample, std::size_t unit, Sh
   if (world || shading.mirrors_world) {
     set_world(program, sample.lighting);
     program.set("world_density", static_cast<float>(sample.lights.world_density));
+    program.offer("world_directions",
+                  static_cast<int>(std::ranges::count_if(
+                      sample.lights.distant, [](const LightDirection& light) { return light.density > 0.0; })));
   }
   offer_backdrop(program, sample.lighting);
   program.offer("sample_index", static_cast<int>(sample.index));
