@@ -73,7 +73,7 @@ LightDraw WorldLight::draw(const glm::dvec2& random) const {
   if (!world_.image) {
     double height = 0.0;
     const glm::dvec3 direction = draw_from_cone(glm::dvec3(0.0, 0.0, 1.0), 2.0, random, height);
-    return light_from(direction, 4.0 * PI * world_.radiance, LIGHT_INFINITELY_FAR);
+    return from(direction);
   }
   if (rows_.back() <= 0.0) return no_light();
   const scene::Surroundings& image = *world_.image;
@@ -90,6 +90,10 @@ LightDraw WorldLight::draw(const glm::dvec2& random) const {
   if (luminance(seen) <= 0.0) return no_light();
   return light_from(glm::normalize(glm::inverse(world_.world_to_image) * direction),
                     seen / (density() * luminance(seen)), LIGHT_INFINITELY_FAR);
+}
+
+LightDraw WorldLight::from(const glm::dvec3& direction) const {
+  return light_from(direction, world_.radiance / density(), LIGHT_INFINITELY_FAR);
 }
 
 double WorldLight::density() const {

@@ -23,6 +23,9 @@ class WorldLight {
   /// `random` is in [0, 1)^2. Its irradiance is radiance over density; reach is LIGHT_INFINITELY_FAR.
   LightDraw draw(const glm::dvec2& random) const;
 
+  /// The same from a direction (unit length) of a world without an image.
+  LightDraw from(const glm::dvec3& direction) const;
+
   /// Of the directions drawn, per steradian: the luminance of the image there times this; without an image, this.
   double density() const;
 

@@ -55,7 +55,7 @@ bool Lighting::is_light(const glm::dvec3& middle, double radius, const glm::dvec
   });
 }
 
-SampledLights Lighting::sample(std::uint32_t index, std::uint32_t seed, int world_directions) const {
+SampledLights Lighting::sample(std::uint32_t index, std::uint32_t seed, int world_directions) {
   SampledLights sampled;
   for (std::size_t i = 0; i < suns_.size(); ++i) {
     const glm::dvec2 random = r4_point(index, seeded_offset(seed + sun_seeds + static_cast<std::uint32_t>(i)));
@@ -65,8 +65,10 @@ SampledLights Lighting::sample(std::uint32_t index, std::uint32_t seed, int worl
   if (world_light_) sampled.world_density = world_directions * world_light_->density();
   for (int i = 0; world_light_ && i < world_directions; ++i) {
     // All pixels share them, so the picture as a whole is as far off as the mean of their irradiance is.
-    const lights::LightDraw drawn = world_light_->draw(scrambled_point(
-        index * static_cast<std::uint32_t>(world_directions) + static_cast<std::uint32_t>(i), seed + world_seed));
+    const std::uint32_t place = index * static_cast<std::uint32_t>(world_directions) + static_cast<std::uint32_t>(i);
+    const lights::LightDraw drawn = world_.image == nullptr
+                                        ? world_light_->from(spread_.at(place, seed + world_seed))
+                                        : world_light_->draw(scrambled_point(place, seed + world_seed));
     sampled.distant.push_back({drawn.to_light, drawn.irradiance / static_cast<double>(world_directions), world_angle,
                                world_directions * world_light_->density(drawn.to_light)});
   }

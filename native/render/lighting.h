@@ -12,6 +12,7 @@
 #include "gl/texture.h"
 #include "lights/world_light.h"
 #include "render/shadow_maps.h"
+#include "render/spread_directions.h"
 #include "scene/scene.h"
 
 namespace mesograin::render {
@@ -55,7 +56,7 @@ class Lighting {
   bool is_light(const glm::dvec3& middle, double radius, const glm::dvec3& radiance) const;
 
   /// `world_directions`: of how many directions the world's light is the mean.
-  SampledLights sample(std::uint32_t index, std::uint32_t seed, int world_directions) const;
+  SampledLights sample(std::uint32_t index, std::uint32_t seed, int world_directions);
 
   /// Everything that comes to one place, the distant ones first.
   std::vector<LightDirection> at(const SampledLights& sampled, const glm::dvec3& place) const;
@@ -71,6 +72,7 @@ class Lighting {
   std::vector<scene::Light> local_;
   scene::World world_;
   std::optional<lights::WorldLight> world_light_;  // if it shines
+  SpreadDirections spread_;
   std::optional<gl::Texture> world_image_;
   std::optional<gl::Texture> backdrop_image_;
 };
