@@ -150,14 +150,18 @@ class Window:
         with self.override(area):
             return getattr(bpy.ops.mesograin, operator)("INVOKE_DEFAULT")
 
-    def restore(self):
-        """Closes what `split` opened, once its panels are at rest."""
+    def panels_at_rest(self):
+        """Waits until an area may be closed."""
         # A panel that changed its height moves those below it. Blender 3.4 frees panels with their area but not the
         # handler that moves them, and dies of it at the next tick, whosever panel it is. One wait may be over within
         # one slow redraw: several let Blender begin to move them, get there, and be told that it did.
+        for _ in range(5):
+            yield from self.seconds(PANELS_MOVE)
+
+    def restore(self):
+        """Closes what `split` opened."""
         if self._opened:
-            for _ in range(5):
-                yield from self.seconds(PANELS_MOVE)
+            yield from self.panels_at_rest()
         while self._opened:
             with self.override(self._opened.pop()):
                 bpy.ops.screen.area_close()
