@@ -17,13 +17,15 @@ namespace mesograin::models {
 using physics::Table;
 using UniformValue = std::variant<int, float, glm::vec2, glm::vec3, glm::vec4>;
 
-/// Texels with 1 to 4 channels in half precision, x fastest, then y; sampled linearly, clamped.
+/// Texels with 1 to 4 channels, x fastest, then y; sampled linearly, clamped. Of half precision, or of a byte, which
+/// holds -1 to 1 in steps of 1/127.
 struct Volume {
   int width = 0;
   int height = 0;
   int depth = 0;
   int channels = 4;
   std::vector<float> texels;
+  bool bytes = false;
 };
 
 struct MaterialInputs {

@@ -1,5 +1,6 @@
 // Packs stored transport into texels.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/matrix.hpp>
@@ -117,15 +118,30 @@ struct Blocks {
   int count;
 };
 
+// The largest value of each of a block's terms, over which a byte is enough for them: the lobes are multiplied by it.
+std::array<float, terms_a_texel> scales(const StoredTransport& stored, const Blocks& blocks, int block) {
+  std::array<float, terms_a_texel> largest{};
+  for (int component = 0; component < terms_a_texel; ++component) {
+    float& scale = largest[static_cast<std::size_t>(component)];
+    for (std::size_t node = 0; node < stored.nodes(); ++node)
+      scale = std::max(scale, std::abs(stored.sources[blocks.index(block, component, stored.nodes(), node)]));
+    if (scale == 0.0F) scale = 1.0F;
+  }
+  return largest;
+}
+
 // Blocks of nodes, one behind the other along z.
 Volume sources_volume(const StoredTransport& stored) {
   const Blocks blocks(stored);
-  Volume volume{stored.size.x, stored.size.y, stored.size.z * blocks.count, terms_a_texel, {}};
+  Volume volume{stored.size.x, stored.size.y, stored.size.z * blocks.count, terms_a_texel, {}, true};
   volume.texels.reserve(stored.nodes() * static_cast<std::size_t>(blocks.count * terms_a_texel));
-  for (int block = 0; block < blocks.count; ++block)
+  for (int block = 0; block < blocks.count; ++block) {
+    const std::array<float, terms_a_texel> scale = scales(stored, blocks, block);
     for (std::size_t node = 0; node < stored.nodes(); ++node)
       for (int component = 0; component < terms_a_texel; ++component)
-        volume.texels.push_back(stored.sources[blocks.index(block, component, stored.nodes(), node)]);
+        volume.texels.push_back(stored.sources[blocks.index(block, component, stored.nodes(), node)] /
+                                scale[static_cast<std::size_t>(component)]);
+  }
   return volume;
 }
 
@@ -170,7 +186,8 @@ Volume lobes_volume(const StoredTransport& stored) {
   constexpr int framed = side + 2;
   const Blocks blocks(stored);
   Volume maps{framed, framed * blocks.count, 1, terms_a_texel, {}};
-  for (int block = 0; block < blocks.count; ++block)
+  for (int block = 0; block < blocks.count; ++block) {
+    const std::array<float, terms_a_texel> scale = scales(stored, blocks, block);
     for (int y = -1; y <= side; ++y)
       for (int x = -1; x <= side; ++x) {
         // Beyond an edge the map goes on mirrored about that edge's middle.
@@ -185,9 +202,11 @@ Volume lobes_volume(const StoredTransport& stored) {
         }
         const int texel = v * side + u;
         for (int component = 0; component < terms_a_texel; ++component)
-          maps.texels.push_back(stored.lobes[blocks.index(block, component, transport::octahedron_texels,
+          maps.texels.push_back(scale[static_cast<std::size_t>(component)] *
+                                stored.lobes[blocks.index(block, component, transport::octahedron_texels,
                                                           static_cast<std::size_t>(texel))]);
       }
+  }
   return maps;
 }
 

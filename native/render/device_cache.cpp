@@ -90,7 +90,9 @@ DeviceMaterial::DeviceMaterial(scene::Model model, models::MaterialInputs inputs
   for (const auto& [name, volume] : inputs.volumes) {
     constexpr GLenum formats[] = {GL_R16F, GL_RG16F, GL_RGB16F, GL_RGBA16F};
     constexpr GLenum components[] = {GL_RED, GL_RG, GL_RGB, GL_RGBA};
-    gl::Volume texture(formats[volume.channels - 1], volume.width, volume.height, volume.depth);
+    constexpr GLenum of_bytes[] = {GL_R8_SNORM, GL_RG8_SNORM, GL_RGB8_SNORM, GL_RGBA8_SNORM};
+    const GLenum format = (volume.bytes ? of_bytes : formats)[volume.channels - 1];
+    gl::Volume texture(format, volume.width, volume.height, volume.depth);
     texture.upload(components[volume.channels - 1], volume.texels.data());
     volumes_.emplace(name, std::move(texture));
   }
@@ -231,7 +233,7 @@ std::shared_ptr<const transport::Computation> DeviceCache::computation(const Dev
 
 void DeviceCache::count(const models::MaterialInputs& inputs) {
   for (const auto& [name, table] : inputs.tables) sent_.bytes += table.texels.size() * sizeof(glm::vec4);
-  for (const auto& [name, volume] : inputs.volumes) sent_.bytes += volume.texels.size() * 2;
+  for (const auto& [name, volume] : inputs.volumes) sent_.bytes += volume.texels.size() * (volume.bytes ? 1 : 2);
 }
 
 std::shared_ptr<DeviceMaterial> DeviceCache::send(scene::Model model, models::MaterialInputs inputs) {

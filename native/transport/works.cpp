@@ -17,8 +17,8 @@ namespace {
 // A fifth of a second on two cores, a few per cent from the final answer.
 constexpr Quality coarse{.nodes = 1500, .light_across = 10, .way_across = 8};
 
-// A third of a megabyte of the device's memory for each prototype, and as much for each channel where they differ: one
-// beside others is as near as alone (docs/shapes.md).
+// A quarter of a megabyte of the device's memory for each prototype, and as much for each channel where they differ:
+// one beside others is as near as alone (docs/shapes.md).
 constexpr Quality thin{};
 
 // The terminator of a thick grain is sharp, and what is dark beside it shows the noise of few rays and the lack of

@@ -44,7 +44,7 @@ float largest(Spectrum value) {
 }
 
 // Terms of the source function, four a texel, channel by channel: of the place, blocks of nodes behind one another; of the light's direction,
-// octahedral maps with frames below one another.
+// octahedral maps with frames below one another. Of the place each is over its largest value, by which its map is multiplied.
 uniform sampler3D sources;
 uniform sampler3D lobes;  // one texel deep
 
