@@ -93,6 +93,11 @@ void write_sums(Writer& writer, const std::string& name, const std::vector<std::
   };
   std::vector<std::vector<std::string>> summed = {{"SUMMED", "CONVEX"}};
   if (has("REFRACTION")) summed.push_back({"SUMMED", "TOGETHER"});
+  if (has("WALKED")) {
+    writer.write(fmt::format("{}+WALKS_END_IN_WORLD", name), ShaderSource({"passes/full_screen.vert"}, {}),
+                 ShaderSource({"passes/shade.frag", "models/transport.glsl"}, with({"WALKS_END_IN_WORLD"})));
+    summed.push_back({"SUMMED", has("REFRACTION") ? "TOGETHER" : "CONVEX", "WALKS_END_IN_WORLD"});
+  }
   for (const std::vector<std::string>& more : summed) {
     writer.write(fmt::format("{}+{}", name, fmt::join(more, "+")), ShaderSource({"passes/full_screen.vert"}, {}),
                  ShaderSource({"passes/shade.frag", "models/transport.glsl"}, with(more)));
