@@ -23,7 +23,10 @@ class WorldLight {
   /// `random` is in [0, 1)^2. Its irradiance is radiance over density; reach is LIGHT_INFINITELY_FAR.
   LightDraw draw(const glm::dvec2& random) const;
 
-  /// The same from a direction (unit length) of a world without an image.
+  /// Whether there is no image.
+  bool even() const { return world_.image == nullptr; }
+
+  /// The same from a direction (unit length), if even.
   LightDraw from(const glm::dvec3& direction) const;
 
   /// Of the directions drawn, per steradian: the luminance of the image there times this; without an image, this.

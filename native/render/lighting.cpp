@@ -40,7 +40,11 @@ void Lighting::set(const scene::Scene& scene) {
   if (scene.world == world_) return;
   world_ = scene.world;
   world_light_.reset();
-  if (world_.shines()) world_light_.emplace(world_);
+  world_directions_.reset();
+  if (world_.shines()) {
+    world_light_.emplace(world_);
+    world_directions_.emplace(*world_light_);
+  }
   world_image_ = sent(world_.image.get());
   backdrop_image_ = sent(world_.backdrop ? world_.backdrop->image.get() : nullptr);
 }
@@ -66,9 +70,7 @@ SampledLights Lighting::sample(std::uint32_t index, std::uint32_t seed, int worl
   for (int i = 0; world_light_ && i < world_directions; ++i) {
     // All pixels share them, so the picture as a whole is as far off as the mean of their irradiance is.
     const std::uint32_t place = index * static_cast<std::uint32_t>(world_directions) + static_cast<std::uint32_t>(i);
-    const lights::LightDraw drawn = world_.image == nullptr
-                                        ? world_light_->from(spread_.at(place, seed + world_seed))
-                                        : world_light_->draw(scrambled_point(place, seed + world_seed));
+    const lights::LightDraw drawn = world_directions_->at(*world_light_, place, seed + world_seed);
     sampled.distant.push_back({drawn.to_light, drawn.irradiance / static_cast<double>(world_directions), world_angle,
                                world_directions * world_light_->density(drawn.to_light)});
   }

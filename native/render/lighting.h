@@ -12,7 +12,7 @@
 #include "gl/texture.h"
 #include "lights/world_light.h"
 #include "render/shadow_maps.h"
-#include "render/spread_directions.h"
+#include "render/world_directions.h"
 #include "scene/scene.h"
 
 namespace mesograin::render {
@@ -72,7 +72,7 @@ class Lighting {
   std::vector<scene::Light> local_;
   scene::World world_;
   std::optional<lights::WorldLight> world_light_;  // if it shines
-  SpreadDirections spread_;
+  std::optional<WorldDirections> world_directions_;
   std::optional<gl::Texture> world_image_;
   std::optional<gl::Texture> backdrop_image_;
 };
