@@ -70,6 +70,7 @@ double typically_off(const lights::WorldLight& world, const Rows& rows, std::uin
   constexpr std::uint32_t seeds = 24;
   const std::vector<glm::dvec3> all = first(by_plane(world)(777), 1U << 14U);
   std::vector<double> right;
+  right.reserve(normals.size());
   for (const glm::dvec3& normal : normals) right.push_back(irradiance(all, normal));
   double square = 0.0, mean = 0.0;
   for (std::uint32_t seed = 0; seed < seeds; ++seed) {
