@@ -1,4 +1,4 @@
-// What is chosen among is as random as ever, so no direction is drawn more often than it deserves.
+// Whichever scrambling is chosen is a (0,2)-sequence: many of its directions do as well as any other's.
 #include "render/world_directions.h"
 
 #include <algorithm>
