@@ -195,7 +195,7 @@ def test_a_cancelled_comparison_ends_at_once_and_writes_nothing(compared, tmp_pa
     bake = prepare(bpy.context)
     bake.start()
     until = time.monotonic() + 60.0
-    while "Cycles bakes Sphere (volume_index_matched)" not in bake.detail:
+    while "Cycles bakes Sphere (Volume, index-matched)" not in bake.detail:
         bake.look()
         assert bake.running and time.monotonic() < until, bake.error
         time.sleep(0.02)

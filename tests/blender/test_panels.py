@@ -272,7 +272,7 @@ def test_a_profile_that_the_model_does_not_know_is_named_with_model_and_material
     with pytest.raises(native.Error) as complaint:
         export.material_values(material, 1.0).to_native(native)
     sentence = str(complaint.value)
-    assert all(word in sentence for word in ("'Sand'", "model_2", "photon_beam", "half_space")), sentence
+    assert all(word in sentence for word in ("'Sand'", "Model 2", "'Photon beam'", "Half space")), sentence
 
 
 def sugar(material):

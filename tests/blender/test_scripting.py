@@ -40,7 +40,7 @@ def test_it_returns_pictures_and_numbers(sphere, compare, tmp_path):
         assert 0.0 <= case.relative_l1 < 0.5 and case.noise_floor >= 0.0 and case.frame_ms > 0.0
         assert case.reference_seconds > 0.0 and re.search(r"% off|no significant difference", case.verdict)
     assert found.folder == tmp_path / "out" and (found.folder / "results.json").is_file() and found.report is None
-    assert steps[-1].number == steps[-1].count == 4 and "conductor" in steps[-1].what
+    assert steps[-1].number == steps[-1].count == 4 and "Conductor" in steps[-1].what
     assert found.results["command"].startswith("mesograin.compare(models=('lambert', 'conductor')")
 
 

@@ -177,7 +177,7 @@ def test_plots_are_files_too(built):
         assert (built / "plots" / f"{name}.png").read_bytes()[:4] == b"\x89PNG"
     assert "radiance, W m⁻² sr⁻¹" in (built / "plots/lambert.diffuse.profile.svg").read_text()
     cost = (built / "plots/cost.svg").read_text()
-    assert "Cycles Diffuse" in cost and "model 1" in cost, "Cycles is a point among ours"
+    assert "Cycles Diffuse" in cost and "Model 1" in cost, "Cycles is a point among ours"
     figure = (built / "plots/overview.svg").read_text()
     for words in ("disc.blend, 48 × 48 pixels, against Cycles Diffuse.", "noise in a pixel", "in blocks"):
         assert words in figure, words
@@ -199,7 +199,7 @@ def test_names_in_the_plot_of_costs_cover_nothing():
     figure.canvas.draw()
     axes = figure.axes[0]
     names = {text.get_text(): text.get_window_extent() for text in axes.texts}
-    assert {"model 3", "Cycles Glossy BSDF, GGX"} <= set(names)
+    assert {"Model 3", "Cycles Glossy BSDF, GGX"} <= set(names)
     dots = [axes.transData.transform(line.get_xydata()[0]) for line in axes.lines if len(line.get_xydata()) == 1]
     assert len(dots) == 7
     for name, box in names.items():

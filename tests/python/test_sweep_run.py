@@ -42,7 +42,7 @@ def test_plots_have_the_data_in_them(sweep):
     plot = "plots/relative_l1-over-scale.svg"
     assert (sweep / "out" / plot).read_bytes() == (sweep / "again" / plot).read_bytes()
     text = (sweep / "out" / plot).read_text()
-    for word in ("scale (multiplies", "relative L1", "model_1", "model_2", "Test", "%"):
+    for word in ("scale (multiplies", "relative L1", "Model 1", "Model 2", "Test", "%"):
         assert word in text
     marks = re.findall(r">([\d.]+)</text>", text)
     assert marks == ["1", "2", "4"], "the axis is marked where the sweep has values"
@@ -54,8 +54,8 @@ def test_the_page_holds_every_case_definition_and_link(sweep):
     assert f"The page: {sweep}/out/report.html" in done.stdout and done.stderr == ""
     page = (sweep / "out/report.html").read_text()
     text = " ".join(html.unescape(re.sub(r"<[^>]*>", " ", page)).split())
-    assert "Relative L1 from 25.0 % (a model_1 scale=4) to 100 % (a model_1 scale=1)." in text
-    assert "a model_2 scale=2 failed: compare: the reference could not be rendered." in text
+    assert "Relative L1 from 25.0 % (a Model 1 scale=4) to 100 % (a Model 1 scale=1)." in text
+    assert "a Model 2 scale=2 failed: compare: the reference could not be rendered." in text
     assert f"./mesograin sweep {sweep}/s.toml --out {sweep}/out" in text and "llvmpipe" in text
     assert "This was not finished" in text and "4 of 6 cases" in text
     body = page[page.index("<tbody>"):page.index("</tbody>")]
@@ -80,8 +80,8 @@ def test_controls_are_in_the_tables_and_on_the_page(sweep):
     page = (sweep / "out/report.html").read_text()
     text = " ".join(html.unescape(re.sub(r"<[^>]*>", " ", page)).split())
     assert "of 6 identical materials 2 are called different, of 6 wrong ones 4." in text
-    assert "a model_1 scale=1 : The same material with other seeds is called different in 10.0 % of the pixels" in text
-    assert "a model_1 scale=4 : A wrong one, scale 8, is not called different." in text
+    assert "a Model 1 scale=1 : The same material with other seeds is called different in 10.0 % of the pixels" in text
+    assert "a Model 1 scale=4 : A wrong one, scale 8, is not called different." in text
     assert page.count("✓ identical") == 4 and page.count("✗ wrong") == 2
     assert 'popover id="define-controls"' in page and "where the truth is known" in text
 

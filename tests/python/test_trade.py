@@ -65,7 +65,7 @@ def test_traced_time_follows_its_own_points(error, milliseconds, known):
 def test_without_cycles_nothing_is_claimed():
     points = [point("model_1", 1, 2.0, 0.1)]
     assert curve.traced_time(points, 0.1) == (None, None)
-    assert curve.summary(points)[0]["sentence"] == "model_1 with 1 sample: 10 % at 2 ms."
+    assert curve.summary(points)[0]["sentence"] == "Model 1 with 1 sample: 10 % at 2 ms."
 
 
 def test_the_sentence_names_the_cheapest_of_the_good_settings():
@@ -80,7 +80,7 @@ def test_the_sentence_names_the_cheapest_of_the_good_settings():
     assert [points[entry["point"]]["name"] for entry in entries] == ["model_3.16.4", "model_1.None.1"]
     assert entries[0]["ratio"] == pytest.approx(100.0 * (0.8 / 0.061) ** 2 / 12.0)
     assert entries[0]["sentence"] == (
-        "model_3 with 4 samples of 16 taps: 6.1 % at 12 ms; Cycles needs 17 s for the same error: 1400×."
+        "Model 3 with 4 samples of 16 taps: 6.1 % at 12 ms; Cycles needs 17 s for the same error: 1400×."
     )
 
 
@@ -91,7 +91,7 @@ def test_an_error_below_the_noise_is_a_bound():
     assert curve.place({"relative_l1_corrected": 0.02}, {"relative_l1": 0.04}) == {"error": 0.02, "resolved": True}
     entry = curve.summary([point("model_2", 1, 5.0, 0.01, resolved=False), *path_tracer(1, 64)])[0]
     assert entry["sentence"] == (
-        "model_2 with 1 sample: at most 1 % at 5 ms; Cycles needs at least 10 min 40 s for the same error,"
+        "Model 2 with 1 sample: at most 1 % at 5 ms; Cycles needs at least 10 min 40 s for the same error,"
         " extrapolated: 130\u202f000×."
     )
 
@@ -99,7 +99,7 @@ def test_an_error_below_the_noise_is_a_bound():
 def test_the_sentence_names_who_traced():
     points = [point("model_3", 1, 5.0, 0.4, taps=4), point("mesograin-referee", 4, 400.0, 0.4)]
     assert curve.summary(points)[0]["sentence"] == (
-        "model_3 with 1 sample of 4 taps: 40 % at 5 ms; mesograin-referee is as near after 400 ms or less."
+        "Model 3 with 1 sample of 4 taps: 40 % at 5 ms; mesograin-referee is as near after 400 ms or less."
     )
 
 
@@ -195,7 +195,7 @@ def test_the_page_holds_sentences_points_and_definitions(folder):
 
 def test_the_plot_is_a_file_too_and_names_everything(folder):
     svg = (folder / "plots/trade.svg").read_text()
-    for words in ("model_1", "model_3, 16 taps", "Cycles", "Pareto front", "noise floor of the converged render",
+    for words in ("Model 1", "Model 3, 16 taps", "Cycles", "Pareto front", "noise floor of the converged render",
                   "time of a picture", "error: relative L1"):
         assert words in svg
     assert (folder / "plots/trade.png").read_bytes()[:4] == b"\x89PNG"

@@ -7,9 +7,7 @@ import os
 import sys
 from pathlib import Path
 
-ROOM = Path(__file__).resolve().parent
-# The room is its own package here: the add-on round it is neither needed nor imported.
-sys.path.insert(0, str(ROOM.parent))
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
 
 def main(words):
@@ -29,7 +27,7 @@ def main(words):
             f"{error.name} is needed by {sys.executable}: install python3-jinja2, python3-matplotlib and python3-numpy."
         )
 
-    from report import page_builder, reading, sweep_page, trade_page
+    from mesograin.report import page_builder, reading, sweep_page, trade_page
 
     out = chosen.out or chosen.folder / "report.html"
     try:

@@ -9,8 +9,9 @@ import jinja2
 import numpy
 from markupsafe import Markup
 
+from ..schema.labels import of_model
 from . import colours, payload, plots
-from .wording import (compared, controls, form, headline, mask_steps, named, parameters, significance, terms, until,
+from .wording import (compared, controls, form, headline, mask_steps, parameters, significance, terms, until,
                       verdict)
 
 PAGE = Path(__file__).resolve().parent / "page"
@@ -118,7 +119,7 @@ def _view(of, definitions, pictures, folder):
     """What the template needs of one case. of: reading.CasePictures."""
     case = of.case
     view = {"case": case, "done": case["status"] == "done", "parameters": parameters(case["material"]),
-            "model": named(case["model"])}
+            "model": of_model(case["model"])}
     if not view["done"]:
         return view
     view["png"] = of.png

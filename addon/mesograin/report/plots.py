@@ -17,8 +17,9 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 from matplotlib.transforms import Bbox
 
+from ..schema.labels import of_model
 from . import colours
-from .wording import form, headline, named
+from .wording import form, headline
 
 
 @dataclass(frozen=True)
@@ -132,7 +133,7 @@ def cost(cases):
         for at, error, case in shown:
             axes.plot([at], [error], marker="o", color=palette.ours, markersize=6)
             twice = models.count(case["model"]) > 1
-            label = named(case["model"]) + (f", {case['reference_title']}" if twice else "")
+            label = of_model(case["model"]) + (f", {case['reference_title']}" if twice else "")
             names.append((label, (at, error), palette.ink, (_ABOVE, _BELOW, _RIGHT, _LEFT, _HIGHER, _LOWER)))
         _put_names(axes, names)
         axes.grid(True, which="major")
@@ -289,8 +290,8 @@ def overview(pictures, terms):
                 place.set_yticks([])
                 place.spines[:].set_visible(False)
             error = form(case["metrics"][headline(case).partition(".")[2]], "percent")
-            axes[0].set_ylabel(f"{named(case['model'])}\n{error}\nin blocks", color=palette.ink, rotation=0, ha="right",
-                               va="center")
+            axes[0].set_ylabel(f"{of_model(case['model'])}\n{error}\nin blocks", color=palette.ink, rotation=0,
+                               ha="right", va="center")
         for place, title in zip(grid[0], ("model", "reference", "relative error")):
             place.set_title(title, fontsize=9, color=palette.ink)
         shades = matplotlib.cm.ScalarMappable(matplotlib.colors.LogNorm(*colours.ERROR_RANGE),

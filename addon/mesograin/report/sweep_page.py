@@ -3,6 +3,7 @@
 
 from pathlib import Path
 
+from ..cycles.wording import LABELS, in_labels
 from . import page_builder, sweep_plot
 from .wording import controls, form
 
@@ -43,11 +44,12 @@ def build(results, origin, rows, folder):
         "sweep.html.j2",
         results=about,
         done=len(results["rows"]),
-        failures=results["failures"],
+        failures=[{"label": in_labels(failure["label"]), "error": in_labels(failure["error"])}
+                  for failure in results["failures"]],
         plots=[each for each in plots if each],
         headline=_headline(results["rows"]),
         **_controls(results["rows"]),
-        names=[name for name in ("scene", "model", "reference", "part") if _varies(results, name)],
+        names=_names(results),
         axes=results["axes"],
         columns=[
             {"key": key, "title": title, "definition": page_builder.definition(definitions, key)}
@@ -64,13 +66,13 @@ def _headline(rows):
         return ""
     least, most = (choose(known, key=lambda row: row["metrics"]["relative_l1"]) for choose in (min, max))
     low, high = (form(row["metrics"]["relative_l1"], "percent") for row in (least, most))
-    return f"Relative L1 from {low} ({least['label']}) to {high} ({most['label']})."
+    return f"Relative L1 from {low} ({in_labels(least['label'])}) to {high} ({in_labels(most['label'])})."
 
 
 def _controls(rows):
     """What all controls come to, in a sentence, and which of them are wrong: [(case, sentence)]; "" where none was
     asked for."""
-    told = [(row["label"], controls(row)) for row in rows if row.get("controls")]
+    told = [(in_labels(row["label"]), controls(row)) for row in rows if row.get("controls")]
     if not told:
         return {"controls": "", "wrong_controls": []}
     wrong = [(label, sentence) for label, pair in told for right, sentence in pair if not right]
@@ -80,8 +82,10 @@ def _controls(rows):
     return {"controls": sentence, "wrong_controls": wrong}
 
 
-def _varies(results, name):
-    return name == "model" or len({row[name] for row in results["rows"]}) > 1
+def _names(results):
+    """What a case is called by: the model, and what else is not the same in all of them."""
+    return [name for name in ("scene", "model", "reference", "part")
+            if name == "model" or len({row[name] for row in results["rows"]}) > 1]
 
 
 def _row(row, results, number):
@@ -98,6 +102,8 @@ def _row(row, results, number):
     significance = row.entry["significance"]
     return {
         "entry": row.entry,
+        "label": in_labels(row.entry["label"]),
+        "names": [LABELS.get(row.entry[name], row.entry[name]) for name in _names(results)],
         "cells": cells,
         "numbers": numbers,
         "files": row.files,

@@ -6,6 +6,7 @@ import math
 from matplotlib.ticker import FixedLocator, FuncFormatter
 from matplotlib.transforms import ScaledTranslation
 
+from ..cycles.wording import LABELS
 from .plots import log_axis, new_figure, percent
 
 METRICS = {
@@ -92,7 +93,7 @@ def _lines(results, axis, metric):
         x, y = _number(row, axis), row["metrics"].get(metric)
         if x is None or y is None or not math.isfinite(y):
             continue
-        words = [row[name] for name in several]
+        words = [LABELS.get(row[name], row[name]) for name in several]
         words += [f"{name}={text(row['parameters'].get(name))}" for name in results["axes"] if name != axis]
         lines.setdefault(" ".join(words), []).append((x, y, row["noise_floor"].get(metric) or 0.0))
     return lines

@@ -5,6 +5,7 @@ from pathlib import Path
 
 from markupsafe import Markup
 
+from ..schema.labels import of_model
 from . import colours, page_builder, plots, trade_plot
 from .wording import duration, form, parameters
 
@@ -33,7 +34,7 @@ def build(results, pictures, folder):
         count = f"{point['samples']} sample{'s' if point['samples'] > 1 else ''}"
         setting = count + (f" of {point['taps']} taps" if point["taps"] else "")
         text = f"{_error(point)} at {duration(point['milliseconds'])}"
-        shown.append(_shown(point["model"], setting, text, pictures[point["name"]], stops))
+        shown.append(_shown(of_model(point["model"]), setting, text, pictures[point["name"]], stops))
     return page_builder.render(
         "trade.html.j2",
         results=results,
@@ -59,6 +60,8 @@ def _row(point, on_front):
     for key, _, how in COLUMNS:
         value = page_builder.look_up(point, key)
         text = "–" if value is None else str(value) if how in (None, "count") else form(value, how)
+        if key == "model":
+            text = of_model(value)
         if key == "error":
             text = _error(point)
         cells.append({"text": text, "value": value if how else None, "number": how is not None})

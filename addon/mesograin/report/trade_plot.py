@@ -3,6 +3,7 @@
 
 import itertools
 
+from ..schema import labels
 from .plots import log_axis, new_figure, percent
 from .wording import times
 
@@ -34,7 +35,7 @@ def trade(results):
             lines.setdefault((point["side"], point["model"], point["taps"]), []).append(point)
         for number, ((side, model, taps), line) in enumerate(lines.items()):
             colour = palette.theirs if side == "traced" else colours[model]
-            label = f"{model}, {taps} taps" if taps else model
+            label = labels.of_model(model) + (f", {taps} taps" if taps else "")
             _line(axes, line, colour, MARKERS[number % len(MARKERS)], label, palette, judged_by)
         floor = results["reference"]["noise_floor"]
         axes.axhline(floor, color=palette.quiet, linewidth=0.9, linestyle=(0, (1, 2)),

@@ -18,11 +18,6 @@ def _text(value):
     return f"{value:.4g}" if isinstance(value, float) else str(value)
 
 
-def named(model):
-    """A model as a reader says it: 'model 3'."""
-    return model.replace("_", " ")
-
-
 def headline(case):
     """The key of the number to read first: how far off is what noise does not explain, if that is known."""
     metric = "relative_l1_blocks"

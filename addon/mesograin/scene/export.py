@@ -9,7 +9,7 @@ import bpy
 import numpy as np
 
 from .. import compat, native_module
-from ..schema import advice, models, parameters
+from ..schema import advice, labels, models, parameters
 from . import (automatic, budgets, colours, heaps, instance_attributes, left_out, lens, lights, mesh_lights, meshes,
                node_colours, plain_materials, properties, scattered, surroundings, textures)
 
@@ -38,17 +38,22 @@ class MaterialValues:
         values = dict(self.values)
         if automatic.asked(self):  # it is for the object to say which; any may be told whether the rest is right
             values["model"] = models.PREFERRED
-        model, profile = values["model"], values["profile"]
-        known = parameters.profiles_of(model)
-        if profile not in known:
-            raise native.Error(f"Material '{self.name}': {model} knows the profiles {', '.join(known)}; "
-                               f"got '{profile}': choose one of these.")
+        for name, known in (("profile", parameters.profiles_of), ("boundary", parameters.boundaries_of)):
+            self._require(native, values["model"], name, known(values["model"]))
         try:
             if self.finish is not None:
                 values["finish"] = self.finish.to_native(native)
             return native.Material(**values)
         except native.Error as error:
             raise native.Error(f"Material '{self.name}': {error}") from error
+
+    def _require(self, native, model, parameter, known):
+        """Raises native.Error unless the choice is one of those that the model knows."""
+        chosen = dict(self.values)[parameter]
+        if chosen not in known:
+            choices = " or ".join(labels.of_choice(parameter, name) for name in known)
+            raise native.Error(f"Material '{self.name}': {labels.of_model(model)} takes {choices} as {parameter}; got "
+                               f"'{labels.of_choice(parameter, chosen)}': choose one of these.")
 
 
 @dataclasses.dataclass(frozen=True)

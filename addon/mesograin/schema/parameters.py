@@ -95,6 +95,16 @@ SETTABLE = tuple(name for name, parameter in PARAMETERS.items() if not parameter
 """Those that a comparison may set; the reference or the command decides the others."""
 
 
+COSINE_LOBES = ("lambert_lambert", "lambert_refracted")
+"""Boundaries by which light enters as through Cycles' Subsurface Scattering node."""
+
+
+def boundaries_of(model):
+    """The names of the boundaries that a model can be given."""
+    names = tuple(choice.name for choice in PARAMETERS["boundary"].choices)
+    return tuple(name for name in names if name not in COSINE_LOBES) if models.CHOICES[model].mesh else names
+
+
 def profiles_of(model):
     """The names of the profiles that a model can be given."""
     return models.CHOICES[model].profiles or tuple(choice.name for choice in PARAMETERS["profile"].choices)

@@ -4,6 +4,7 @@ import textwrap
 import bpy
 
 from .. import compat, native_module
+from ..cycles.wording import in_labels
 from ..engine import engine, passes, status
 from ..scene import budgets, export, plain_materials
 from ..schema import models, parameters
@@ -21,7 +22,8 @@ SURFACE = {"boundary": (), "eta": REFRACTING, "roughness": REFRACTING, "masking"
 
 
 def draw_sentence(layout, context, sentence, icon="ERROR", units=None):
-    """A sentence of any length, wrapped to the region's width, or to a popover's of so many units."""
+    """A sentence of any length, with labels for identifiers, wrapped to the region's width, or to a popover's of so
+    many units."""
     if units:
         pixels = units * POPOVER_UNIT
     else:
@@ -29,7 +31,7 @@ def draw_sentence(layout, context, sentence, icon="ERROR", units=None):
     columns = max(8, int(pixels / CHARACTER_WIDTH))
     column = layout.column(align=True)
     column.scale_y = 0.8
-    for line, text in enumerate(textwrap.wrap(sentence, columns)):
+    for line, text in enumerate(textwrap.wrap(in_labels(sentence), columns)):
         column.label(text=text, icon="BLANK1" if line and icon != "NONE" else icon)
 
 

@@ -59,7 +59,7 @@ class Pair:
         """Of `comparison.progress.Progress.plan`."""
         sampling, name = self._sampling, self._ours.name
         rendered = sampling.kind.cost * sampling.samples * len(reference.SEEDS) * million(self._ours.size)
-        return [(f"Cycles bakes {name} ({self._kind})", self._kind, rendered),
+        return [(f"Cycles bakes {name} ({sampling.kind.label})", self._kind, rendered),
                 (f"baking {name} as Cycles has it", self._model, our_cost(self._ours.size, self._samples))]
 
     def bake(self, progress):

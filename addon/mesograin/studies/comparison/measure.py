@@ -10,6 +10,7 @@ import numpy
 
 from ... import native_module
 from ...cycles import kinds, reference
+from ...schema import labels
 from . import controls, masks, profile, significance
 
 
@@ -32,13 +33,13 @@ class Measurement:
 
 def steps(case, request, size):
     """What `measure` will begin, as `Progress.plan` takes it: (what, kind, guessed seconds) each."""
-    named = f"{case.reference}, {case.part} part" if case.part else case.reference
-    yield f"{case.model}: reference ({named})", case.kind.recipe, _guess(case.kind, request, size, request.seeds)
+    model, against = labels.of_model(case.model), case.kind.label
+    yield f"{model}: reference ({against})", case.kind.recipe, _guess(case.kind, request, size, request.seeds)
     million = size[0] * size[1] * 1e-6
-    yield f"{case.model}: our picture", case.model, 0.3 * request.samples * million / (os.cpu_count() or 1)
+    yield f"{model}: our picture", case.model, 0.3 * request.samples * million / (os.cpu_count() or 1)
     if request.controls:
         guess = _guess(case.kind, request, size, 2 * request.seeds)
-        yield f"{case.model}: controls of the test ({named})", case.kind.recipe, guess
+        yield f"{model}: controls of the test ({against})", case.kind.recipe, guess
 
 
 def _guess(kind, request, size, seeds):
@@ -152,7 +153,7 @@ def _until(case, request, size, sampling, image, mirror, progress):
             }
             return theirs, entry
         wanted = _wanted_seeds(count, ratio, request)
-        what = f"{case.model}: reference ({case.reference}), seeds {count + 1} to {wanted}"
+        what = f"{labels.of_model(case.model)}: reference ({case.kind.label}), seeds {count + 1} to {wanted}"
         progress.insert([(what, sampling.kind.recipe, _guess(sampling.kind, request, size, wanted - count))])
         progress.begin()
         sampling.add(range(count + 1, wanted + 1), progress.update)

@@ -10,6 +10,7 @@ from ...cycles import kinds, nodes, reference
 from ...cycles.stage import StageError
 from ...report.reading import RESULTS_FORMAT
 from ...scene import as_rendered, export
+from ...schema import labels
 from . import controls, definitions, measure, origin, pictures
 from .ours import Ours
 from .request import Case, Request, cases
@@ -43,7 +44,7 @@ def _compare(request, depsgraph, progress):
     if request.references is None:
         for model in dict.fromkeys(request.models):
             if not any(case.model == model for case in planned):
-                progress.say(f"{model} is left out: no reference has a {request.part} part of it.")
+                progress.say(f"{labels.of_model(model)} is left out: no reference has a {request.part} part of it.")
     progress.plan(step for case in planned for step in measure.steps(case, request, size))
     results = {
         "format": RESULTS_FORMAT[0],

@@ -4,6 +4,7 @@
 import math
 
 from ...report.wording import duration, times
+from ...schema import labels
 
 RESOLVED = 0.25
 """An error below this share of the reference's noise floor is not told from none: taking the floor off in quadrature
@@ -86,7 +87,7 @@ def _sentence(point, entry, tracer):
     taps = f" of {point['taps']} taps" if point["taps"] else ""
     known = entry["traced_known"]
     off = _share(entry["error"]) if point["resolved"] else f"at most {_share(entry['error'])}"
-    ours = f"{point['model']} with {count}{taps}: {off} at {duration(entry['milliseconds'])}"
+    ours = f"{labels.of_model(point['model'])} with {count}{taps}: {off} at {duration(entry['milliseconds'])}"
     if known is None:
         return f"{ours}."
     if known == "below":

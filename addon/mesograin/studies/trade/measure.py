@@ -16,6 +16,7 @@ from ...cycles import kinds, nodes, reference
 from ...cycles.cache import Cache
 from ...report.reading import TRADE_FORMAT
 from ...scene import as_rendered, export
+from ...schema import labels
 from ...schema.models import CHOICES
 from ..comparison import definitions, masks, origin
 from ..comparison.ours import Ours
@@ -278,7 +279,7 @@ def _steps(request):
     for model in request.models:
         for taps in request.taps if CHOICES[model].taps else (None,):
             frames = request.samples[-1] + request.frames
-            what = f"{model}, {taps} taps" if taps else model
+            what = labels.of_model(model) + (f", {taps} taps" if taps else "")
             yield what, f"{model} {taps}", (0.3 + 0.3 * (taps or 0)) * frames * million
     for samples in request.traced_samples:
         yield f"{kind.tracer} at {samples} samples", "traced", kind.cost * samples * million

@@ -1,6 +1,7 @@
 # What the buttons of the Bake panel do.
 import bpy
 
+from ...cycles.wording import in_labels
 from ..side_task.operators import CancelOperator, ShowPictureOperator, StartOperator
 from .session import session
 
@@ -18,9 +19,9 @@ class MESOGRAIN_OT_bake(StartOperator, bpy.types.Operator):
             bake.wait()
             session.finish()
             for sentence in bake.sentences:
-                self.report({"WARNING"}, sentence)
+                self.report({"WARNING"}, in_labels(sentence))
             if bake.error:
-                self.report({"ERROR"}, bake.error)
+                self.report({"ERROR"}, in_labels(bake.error))
                 return {"CANCELLED"}
         return outcome
 

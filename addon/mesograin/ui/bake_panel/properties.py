@@ -4,6 +4,7 @@ from bpy.props import BoolProperty, EnumProperty, IntProperty, StringProperty
 
 from ... import compat
 from ...cycles import kinds
+from ...schema import labels
 from ...studies.baking import choices
 from ..side_task.settings import remembered_by_scenes
 
@@ -48,7 +49,7 @@ class BakeProperties(bpy.types.PropertyGroup):
     reference: EnumProperty(
         name="Reference", default=USUAL, description="What Cycles solves",
         items=((USUAL, "The Model's Usual", "What answers the material's model", 0), *(
-            (kind.name, kind.label, f"Answers {', '.join(kind.models)}", number)
+            (kind.name, kind.label, f"Answers {', '.join(map(labels.of_model, kind.models))}", number)
             for number, kind in enumerate(kinds.KINDS.values(), 1) if kind.has_texture)))
     reference_samples: IntProperty(
         name="Cycles Samples", default=0, min=0, max=1 << 20, soft_max=4096,

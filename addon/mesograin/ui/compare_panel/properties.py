@@ -6,7 +6,7 @@ from bpy.props import EnumProperty, IntProperty, StringProperty
 
 from ... import compat
 from ...cycles import kinds
-from ...schema import models
+from ...schema import labels, models
 from ..side_task.settings import remembered_by_scenes
 
 
@@ -50,7 +50,8 @@ class CompareProperties(bpy.types.PropertyGroup):
         description="Models to compare; every material of the scene is rendered with each (Shift adds to the choice)")
     references: EnumProperty(
         name="References", options={"ENUM_FLAG"}, default=set(),
-        items=_flags([(kind.name, kind.label, f"Answers {', '.join(kind.models)}") for kind in kinds.KINDS.values()]),
+        items=_flags([(kind.name, kind.label, f"Answers {', '.join(map(labels.of_model, kind.models))}")
+                      for kind in kinds.KINDS.values()]),
         description="What Cycles renders to compare with; none chosen is each model's usual one")
     quality: EnumProperty(
         name="Quality", default="draft", description="How many samples both sides take",

@@ -3,6 +3,7 @@ import bpy
 from bpy.props import EnumProperty
 
 from ... import native_module
+from ...cycles.wording import in_labels
 from . import pictures
 
 
@@ -18,7 +19,7 @@ class StartOperator:
             self.session.start(context)
         except self.session.refusals() as error:
             self.session.error = str(error)
-            self.report({"ERROR"}, str(error))
+            self.report({"ERROR"}, in_labels(str(error)))
             return {"CANCELLED"}
         return {"FINISHED"}
 

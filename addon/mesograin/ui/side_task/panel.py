@@ -14,7 +14,7 @@ def draw_settings(layout, context, session, draw):
 
 
 def draw_task(layout, context, session, start, cancel, before_first_step, detail="", **button):
-    """The button of the operator `start`, or how far the task is, with `detail` on a line of its own and `cancel`'s
+    """The button of the operator `start`, or how far the task is, with `detail` below and `cancel`'s
     button; then what went wrong. before_first_step: what is said while nobody knows how long it takes. button: of
     `UILayout.operator`."""
     if session.running:
@@ -23,7 +23,7 @@ def draw_task(layout, context, session, start, cancel, before_first_step, detail
         compat.draw_progress(column, context.window_manager, session.progress,
                              f"about {duration(left)} left" if left is not None else before_first_step)
         if detail:
-            column.label(text=detail)
+            panels.draw_sentence(column, context, detail, icon="NONE")
         layout.operator(cancel.bl_idname, icon="CANCEL")
     else:
         row = layout.row()
