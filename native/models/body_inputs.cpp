@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <utility>
 
+#include "base/memo.h"
 #include "models/light_about_inputs.h"
 #include "physics/body/entering_ring.h"
 #include "physics/body/exit_directions.h"
@@ -91,7 +94,11 @@ Answer answer(const BodyMedium& medium, const BodySurface& surface, const Sphere
     for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += factor * term[i];
   };
   if (orders.multiple) add(half_space, half_space_multiple_exitance(medium, surface, cosines), 1.0);
-  if (orders.single > 0.0) add(half_space, half_space_single_exitance(medium, surface.eta, cosines), orders.single);
+  std::vector<double> half_space_once;
+  if (orders.single > 0.0) {
+    half_space_once = half_space_single_exitance(medium, surface.eta, cosines);
+    add(half_space, half_space_once, orders.single);
+  }
 
   // What is scattered once leaves by the interface's lobe times the phase function.
   const std::vector<double> mean_phase =
@@ -105,7 +112,7 @@ Answer answer(const BodyMedium& medium, const BodySurface& surface, const Sphere
     const BodyMedium scaled{medium.sigma_a * radius, medium.sigma_s * radius, medium.g};
     std::vector<double> body(cosine_count, 0.0);
     if (orders.multiple) add(body, sphere_multiple_exitance(scaled, surface, cosines), 1.0);
-    if (orders.single > 0.0 && medium.sigma_s > 0.0) add(body, single.exitance(scaled), orders.single);
+    if (orders.single > 0.0 && medium.sigma_s > 0.0) add(body, single.exitance(scaled, half_space_once), orders.single);
     // Where it leaves by a cosine lobe, it is seen like diffused light, but does not flow.
     std::vector<double> all = body;
     if (orders.multiple && surface.cosine_entry) add(all, unscattered.exitance(scaled.rest_sigma_t()), 1.0);
@@ -119,6 +126,12 @@ Answer answer(const BodyMedium& medium, const BodySurface& surface, const Sphere
     }
   }
   return result;
+}
+
+// Its ways are those of every medium of one index and mean cosine.
+std::shared_ptr<const SphereSingleScattering> single_scattering(double eta, double g) {
+  static Memo<std::pair<double, double>, SphereSingleScattering> memo(2);
+  return memo.get({eta, g}, [&] { return SphereSingleScattering(eta, g, body_cosines()); });
 }
 
 // Less of the world than this is not seen through a grain.
@@ -158,11 +171,11 @@ std::vector<double> body_cosines() {
 void add_body_difference(const char* name, const scene::Material& material, double grain_radius, const Orders& orders,
                          MaterialInputs& inputs) {
   const BodySurface surface = body_surface(material);
-  const SphereSingleScattering single(surface.eta, material.g, body_cosines());
+  const std::shared_ptr<const SphereSingleScattering> single = single_scattering(surface.eta, material.g);
   const SphereUnscattered unscattered(surface, surface.cosine_entry ? body_cosines() : std::vector<double>());
   const std::array<BodyMedium, 3> media = body_media(material, grain_radius);
   const auto answers = for_each_channel(
-      media, [&](const BodyMedium& medium) { return answer(medium, surface, single, unscattered, orders); });
+      media, [&](const BodyMedium& medium) { return answer(medium, surface, *single, unscattered, orders); });
   Table table =
       pack({answers[0].differences, answers[1].differences, answers[2].differences}, cosine_count, radius_count);
   for (std::size_t i = 0; i < table.texels.size(); ++i) table.texels[i].a = static_cast<float>(answers[0].flows[i]);

@@ -7,11 +7,15 @@ namespace mesograin::models {
 
 using namespace physics;
 
+bool shows_reflections(const scene::Material& material) {
+  return has_dielectric_surface(material) && material.specular;
+}
+
 void add_reflection(const scene::Material& material, MaterialInputs& inputs) {
   if (!has_dielectric_surface(material)) return;
   inputs.uniforms["surface.eta"] = static_cast<float>(material.eta);
   inputs.uniforms["surface.roughness"] = static_cast<float>(material.roughness);
-  if (material.specular) {
+  if (shows_reflections(material)) {
     inputs.facets = true;
     inputs.defines.emplace_back("SPECULAR");
     if (material.masking == scene::Masking::separable) inputs.defines.emplace_back("MASKING_SEPARABLE");

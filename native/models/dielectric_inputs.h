@@ -5,6 +5,9 @@
 
 namespace mesograin::models {
 
+/// Whether the material's surface is of facets that mirror, and they are seen: MaterialInputs::facets.
+bool shows_reflections(const scene::Material& material);
+
 /// Adds what the material's surface reflects, if it is a dielectric one.
 void add_reflection(const scene::Material& material, MaterialInputs& inputs);
 

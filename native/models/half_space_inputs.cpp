@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/memo.h"
 #include "models/dielectric_inputs.h"
 #include "physics/channels.h"
 #include "physics/diffusion.h"
@@ -145,9 +146,7 @@ MaterialInputs lambert_refracted_inputs(const Material& material) {
   return inputs;
 }
 
-}  // namespace
-
-MaterialInputs half_space_inputs(const Material& material, bool first_order) {
+MaterialInputs make_half_space_inputs(const Material& material, bool first_order) {
   switch (material.boundary) {
     case Boundary::lambert_lambert:
       return lambert_lambert_inputs(material);
@@ -156,6 +155,26 @@ MaterialInputs half_space_inputs(const Material& material, bool first_order) {
     default:
       return interface_inputs(material, first_order);
   }
+}
+
+/// All that they depend on.
+struct Key {
+  Material material;
+  bool first_order;
+
+  bool operator==(const Key&) const = default;
+};
+
+// As many as a heap's colours (scene::by_colour).
+constexpr std::size_t most_held = 32;
+
+}  // namespace
+
+MaterialInputs half_space_inputs(const Material& material, bool first_order) {
+  static Memo<Key, MaterialInputs> memo(most_held);
+  Key key{material, first_order};
+  key.material.finish.reset();
+  return *memo.get(key, [&] { return make_half_space_inputs(key.material, first_order); });
 }
 
 }  // namespace mesograin::models

@@ -27,10 +27,14 @@ void require_known_profile(const scene::Material& material, const scene::ModelTr
 
 }  // namespace
 
-MaterialInputs material_inputs(const scene::Material& material, double grain_radius) {
+void require_valid(const scene::Material& material) {
   scene::validate(material);
+  require_known_profile(material, scene::traits_of(material.model));
+}
+
+MaterialInputs material_inputs(const scene::Material& material, double grain_radius) {
+  require_valid(material);
   const scene::ModelTraits& traits = scene::traits_of(material.model);
-  require_known_profile(material, traits);
   MaterialInputs inputs = inputs_of[static_cast<std::size_t>(material.model)](material, grain_radius);
   inputs.light_maps = traits.light_maps;
   if (material.finish) add_finish(material, inputs);

@@ -39,6 +39,9 @@ struct MaterialInputs {
   bool light_maps = false;                              ///< the model reads shaders/models/light_map.glsl
 };
 
+/// Throws Error if the material is not valid.
+void require_valid(const scene::Material& material);
+
 /// Computed once for each material, in double. Throws Error if the material is not valid. `grain_radius` is that of the
 /// sphere with the grain's mean chord, in scene units; only models whose traits say so depend on it.
 MaterialInputs material_inputs(const scene::Material& material, double grain_radius = 1.0);

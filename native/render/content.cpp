@@ -139,6 +139,13 @@ bool Content::facets(const std::function<bool(std::size_t unit)>& of) const {
   return false;
 }
 
+void Content::complete(DeviceCache& cache, const std::function<bool(std::size_t)>& of) const {
+  std::vector<const DeviceMaterial*> asked;
+  for (std::size_t unit = 0; unit < units(); ++unit)
+    if (!material(unit).complete() && of(unit)) asked.push_back(&material(unit));
+  if (!asked.empty()) cache.complete(asked);
+}
+
 bool Content::any_shows_behind() const {
   if ((instances_ ? instances_->count() : 0) + draws_.size() < 2) return false;
   return std::any_of(draws_.begin(), draws_.end(), [](const Draw& draw) { return draw.material->shows_behind(); });

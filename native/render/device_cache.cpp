@@ -9,6 +9,7 @@
 #include <glm/matrix.hpp>
 #include <utility>
 
+#include "models/dielectric_inputs.h"
 #include "models/finish.h"
 #include "models/prototype_inputs.h"
 #include "scene/advice.h"
@@ -39,6 +40,19 @@ double typical(double grain_radius) {
 /// That its inputs are for.
 double table_radius(const scene::Material& material, double grain_radius) {
   return scene::traits_of(material.model).grain_radius ? typical(grain_radius) : 1.0;
+}
+
+// The walks of what is seen of many grains ask no model, and a model's tables for a grain's radius take longest.
+bool may_never_be_drawn(const scene::Material& material) {
+  return scene::traits_of(material.model).grain_radius && !material.finish;
+}
+
+std::vector<models::MaterialInputs> inputs_of(const std::vector<std::pair<scene::Material, double>>& materials) {
+  std::vector<models::MaterialInputs> inputs(materials.size());
+  transport::run_pieces({}, materials.size(), [&](std::size_t i) {
+    inputs[i] = models::material_inputs(materials[i].first, materials[i].second);
+  });
+  return inputs;
 }
 
 std::size_t texels_of(const scene::Picture& picture) {
@@ -75,17 +89,28 @@ std::shared_ptr<const gl::Texture> sent_picture(const scene::TextureMap& map) {
 
 DeviceMaterial::DeviceMaterial(scene::Model model, models::MaterialInputs inputs, Pictures pictures)
     : model_(model),
-      defines_(std::move(inputs.defines)),
-      uniforms_(std::move(inputs.uniforms)),
       pictures_(std::move(pictures)),
       has_finish_(inputs.finish),
       facets_(inputs.facets),
       light_maps_(inputs.light_maps) {
+  complete(std::move(inputs));
+}
+
+DeviceMaterial::DeviceMaterial(scene::Model model, bool facets, std::function<models::MaterialInputs()> make)
+    : model_(model),
+      make_(std::move(make)),
+      has_finish_(false),
+      facets_(facets),
+      light_maps_(scene::traits_of(model).light_maps) {}
+
+void DeviceMaterial::complete(models::MaterialInputs inputs) const {
+  known_.defines = std::move(inputs.defines);
+  known_.uniforms = std::move(inputs.uniforms);
   for (const auto& [name, table] : inputs.tables) {
     gl::Texture texture(GL_RGBA32F, table.width, table.height);
     texture.upload(GL_RGBA, GL_FLOAT, table.texels.data());
     texture.sample_linearly(true);
-    tables_.emplace(name, std::move(texture));
+    known_.tables.emplace(name, std::move(texture));
   }
   for (const auto& [name, volume] : inputs.volumes) {
     constexpr GLenum formats[] = {GL_R16F, GL_RG16F, GL_RGB16F, GL_RGBA16F};
@@ -94,8 +119,9 @@ DeviceMaterial::DeviceMaterial(scene::Model model, models::MaterialInputs inputs
     const GLenum format = (volume.bytes ? of_bytes : formats)[volume.channels - 1];
     gl::Volume texture(format, volume.width, volume.height, volume.depth);
     texture.upload(components[volume.channels - 1], volume.texels.data());
-    volumes_.emplace(name, std::move(texture));
+    known_.volumes.emplace(name, std::move(texture));
   }
+  make_ = nullptr;
 }
 
 void DeviceMaterial::become(scene::Model model, models::MaterialInputs inputs) {
@@ -105,20 +131,21 @@ void DeviceMaterial::become(scene::Model model, models::MaterialInputs inputs) {
 }
 
 bool DeviceMaterial::has(const std::string& define) const {
-  return std::find(defines_.begin(), defines_.end(), define) != defines_.end();
+  const std::vector<std::string>& all = defines();
+  return std::find(all.begin(), all.end(), define) != all.end();
 }
 
 const gl::Volume* DeviceMaterial::volume(const std::string& name) const {
-  const auto found = volumes_.find(name);
-  return found == volumes_.end() ? nullptr : &found->second;
+  const auto found = known().volumes.find(name);
+  return found == known().volumes.end() ? nullptr : &found->second;
 }
 
 void DeviceMaterial::bind(const gl::Program& program) const {
   program.use();
-  for (const auto& [name, value] : uniforms_)
+  for (const auto& [name, value] : known().uniforms)
     std::visit([&, &uniform = name](const auto& number) { program.offer(uniform, number); }, value);
-  for (const auto& [name, table] : tables_) program.offer(name, table);
-  for (const auto& [name, volume] : volumes_) program.offer(name, volume);
+  for (const auto& [name, table] : known().tables) program.offer(name, table);
+  for (const auto& [name, volume] : known().volumes) program.offer(name, volume);
   for (const auto& [name, picture] : pictures_) program.offer(name, *picture);
 }
 
@@ -175,14 +202,42 @@ void DeviceCache::prepare(const std::vector<std::pair<scene::Material, double>>&
   std::vector<std::pair<scene::Material, double>> missing;
   for (const auto& [material, grain_radius] : materials) {
     const std::pair one(material, table_radius(material, grain_radius));
-    if (!known(one.first, one.second) && std::ranges::find(missing, one) == missing.end()) missing.push_back(one);
+    if (known(one.first, one.second)) continue;
+    if (may_never_be_drawn(material))
+      materials_.push_back({one.first, one.second, send_later(one.first, one.second)});
+    else if (std::ranges::find(missing, one) == missing.end())
+      missing.push_back(one);
   }
-  std::vector<models::MaterialInputs> inputs(missing.size());
-  transport::run_pieces({}, missing.size(), [&](std::size_t i) {
-    inputs[i] = models::material_inputs(missing[i].first, missing[i].second);
-  });
+  std::vector<models::MaterialInputs> inputs = inputs_of(missing);
   for (std::size_t i = 0; i < missing.size(); ++i)
     materials_.push_back({missing[i].first, missing[i].second, send(missing[i].first.model, std::move(inputs[i]))});
+}
+
+void DeviceCache::complete(const std::vector<const DeviceMaterial*>& materials) {
+  std::vector<const MaterialEntry*> waiting;
+  for (const MaterialEntry& entry : materials_)
+    if (!entry.device->complete() && std::ranges::find(materials, entry.device.get()) != materials.end())
+      waiting.push_back(&entry);
+  // What does not depend on the size is made once for all sizes: other materials first, while it is.
+  std::ranges::stable_sort(waiting, {}, &MaterialEntry::grain_radius);
+  std::vector<std::pair<scene::Material, double>> missing;
+  for (const MaterialEntry* entry : waiting) missing.emplace_back(entry->source, entry->grain_radius);
+  std::vector<models::MaterialInputs> inputs = inputs_of(missing);
+  for (std::size_t i = 0; i < waiting.size(); ++i) {
+    count(inputs[i]);
+    waiting[i]->device->complete(std::move(inputs[i]));
+  }
+}
+
+std::shared_ptr<DeviceMaterial> DeviceCache::send_later(const scene::Material& material, double radius) {
+  models::require_valid(material);
+  ++sent_.materials;
+  return std::make_shared<DeviceMaterial>(material.model, models::shows_reflections(material),
+                                          [this, material, radius] {
+                                            models::MaterialInputs inputs = models::material_inputs(material, radius);
+                                            count(inputs);
+                                            return inputs;
+                                          });
 }
 
 std::shared_ptr<DeviceMaterial> DeviceCache::known(const scene::Material& material, double radius) const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <glm/mat3x3.hpp>
 #include <map>
 #include <memory>
@@ -61,8 +62,12 @@ class DeviceMaterial {
 
   DeviceMaterial(scene::Model model, models::MaterialInputs inputs, Pictures pictures = {});
 
+  /// One that may never be drawn, whose inputs `make` returns when something asks for more of it than is told here. It
+  /// has no finish and wears no pictures.
+  DeviceMaterial(scene::Model model, bool facets, std::function<models::MaterialInputs()> make);
+
   scene::Model model() const { return model_; }
-  const std::vector<std::string>& defines() const { return defines_; }
+  const std::vector<std::string>& defines() const { return known().defines; }
 
   /// Whether its programs are compiled with this word.
   bool has(const std::string& define) const;
@@ -85,6 +90,12 @@ class DeviceMaterial {
   /// Grows when it becomes another.
   int version() const { return version_; }
 
+  /// Whether all of it is known.
+  bool complete() const { return !make_; }
+
+  /// What `make` would have returned.
+  void complete(models::MaterialInputs inputs) const;
+
   /// From now on it is this one, wherever it is used.
   void become(scene::Model model, models::MaterialInputs inputs);
 
@@ -95,11 +106,20 @@ class DeviceMaterial {
   void bind(const gl::Program& program) const;
 
  private:
+  struct Known {
+    std::vector<std::string> defines;
+    std::map<std::string, models::UniformValue> uniforms;
+    std::map<std::string, gl::Texture> tables;
+    std::map<std::string, gl::Volume> volumes;
+  };
+  const Known& known() const {
+    if (!complete()) complete(make_());
+    return known_;
+  }
+
   scene::Model model_;
-  std::vector<std::string> defines_;
-  std::map<std::string, models::UniformValue> uniforms_;
-  std::map<std::string, gl::Texture> tables_;
-  std::map<std::string, gl::Volume> volumes_;
+  mutable std::function<models::MaterialInputs()> make_;  // null once it is known
+  mutable Known known_;
   Pictures pictures_;
   bool has_finish_;
   bool facets_;
@@ -136,8 +156,12 @@ class DeviceCache {
   /// `grain_radius` as in models::material_inputs; materials are shared by grains within half a percent.
   std::shared_ptr<DeviceMaterial> material(const scene::Material& material, double grain_radius);
 
-  /// Computes on all cores what material() of each would have to.
+  /// Computes on all cores what material() of each would have to, but for what may never be drawn: inputs of grains'
+  /// models wait for complete(), since what is seen of many grains is found without them.
   void prepare(const std::vector<std::pair<scene::Material, double>>& materials);
+
+  /// Computes on all cores what of these waits.
+  void complete(const std::vector<const DeviceMaterial*>& materials);
 
   /// For a model that depends on the mesh, which `stretch` stretches. Until its transport is known, and where none can
   /// be, it is one that stands in for it.
@@ -227,6 +251,7 @@ class DeviceCache {
   void count(const models::MaterialInputs& inputs);
   std::shared_ptr<const gl::Texture> picture(const scene::TextureMap& map);
   std::shared_ptr<DeviceMaterial> send(scene::Model model, models::MaterialInputs inputs);
+  std::shared_ptr<DeviceMaterial> send_later(const scene::Material& material, double radius);
 
   const gl::Program& program(const std::string& name, const gl::ShaderSource& vertex, const gl::ShaderSource& fragment);
 

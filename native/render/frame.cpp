@@ -169,6 +169,7 @@ bool Frame::add_sample(const GoOn& go_on, bool hurried) {
   hurried = hurried && samples_ == 0 && arrays_.casts_on_device(*content_);
   const Sample sample = begin_sample(go_on, hurried);
   arrays_.prepare(sample);
+  content_->complete(cache_, [&](std::size_t unit) { return sample.asks_model(unit); });
   timers_.light_maps.start();
   if (!light_maps_.run(sample, arrays_)) return false;
   timers_.light_maps.stop();

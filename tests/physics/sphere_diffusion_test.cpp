@@ -97,6 +97,23 @@ TEST(SphereExitance, AThickSphereAnswersLikeAHalfSpace) {
     }
 }
 
+TEST(SphereExitance, LightScatteredOnceNeedsTheHalfSpaceOnceForAllSizes) {
+  const std::vector<double> cosines{-0.5, 0.1, 0.4, 0.7, 1.0};
+  for (double g : {-0.6, 0.0, 0.3, 0.95})
+    for (double eta : {1.0, 1.5}) {
+      const SphereSingleScattering single(eta, g, cosines);
+      const BodyMedium thick{0.7, 90.0, g};
+      const std::vector<double> half_space = half_space_single_exitance(thick, eta, cosines);
+      for (double radius : {1.0, 0.3, 0.001}) {
+        const BodyMedium thinner{thick.sigma_a * radius, thick.sigma_s * radius, g};
+        const std::vector<double> own = single.exitance(thinner);
+        const std::vector<double> shared = single.exitance(thinner, half_space);
+        for (std::size_t i = 0; i < cosines.size(); ++i)
+          EXPECT_NEAR(shared[i], own[i], 1e-12 * half_space[i] + 1e-15) << g << ' ' << eta << ' ' << radius;
+      }
+    }
+}
+
 TEST(SphereExitance, GivesBackAtMostWhatEntered) {
   const std::vector<double> cosines = even_cosines(200);
   for (double eta : {0.5, 1.0, 1.3, 2.0, 4.0})

@@ -30,6 +30,27 @@ def test_no_light_maps_are_made_for_them():
     assert {"light_maps", "gather"} & passes(rendered(scene, "heaps")) == {"gather"}
 
 
+def test_their_models_tables_wait_until_something_asks_for_them():
+    scene = lit(heap(native.Material(model="model_2", boundary="index_matched", sigma_s=(9.0, 7.7, 6.1))))
+
+    def sent(exchange):
+        before = native.sent()
+        rendered(scene, exchange)
+        return {what: count - before[what] for what, count in native.sent().items()}
+    followed = sent("heaps")
+    assert followed["materials"] == 1 and followed["bytes"] < 1000
+    assert sent("order_1")["bytes"] - followed["bytes"] > 16 * 33 * 9, "a table of 33 cosines and 9 radii at least"
+
+
+def test_a_model_that_something_asks_for_later_is_as_it_would_have_been():
+    scene = lit(heap(native.Material(model="model_2", boundary="index_matched", sigma_s=(9.0, 7.7, 6.2))))
+    alone = rendered(scene, "order_1").read()
+    view = rendered(scene, "heaps")
+    view.set_scene(native.Scene(arrays=scene.arrays, lights=scene.lights, world=scene.world, exchange="order_1"))
+    view.render(1)
+    numpy.testing.assert_array_equal(view.read(), alone)
+
+
 def test_they_are_followed_where_no_light_goes_between_them():
     view = rendered(lit(heap(white())), "off")
     assert {"light_maps", "gather"} & passes(view) == {"gather"}

@@ -220,11 +220,15 @@ SphereSingleScattering::SphereSingleScattering(double eta, double g, const std::
 }
 
 std::vector<double> SphereSingleScattering::exitance(const BodyMedium& medium) const {
+  return exitance(medium, half_space_single_exitance(medium, eta_, cosines_));
+}
+
+std::vector<double> SphereSingleScattering::exitance(const BodyMedium& medium,
+                                                     const std::vector<double>& half_space) const {
   // Beyond what the depths resolve, the difference from the half-space goes on falling like the curvature.
   constexpr double largest = 40.0;
   const double curvature = std::min(largest / std::max(medium.sigma_t(), 1e-300), 1.0);
   const BodyMedium known{medium.sigma_a * curvature, medium.sigma_s * curvature, medium.g};
-  const std::vector<double> half_space = half_space_single_exitance(known, eta_, cosines_);
   const ForwardPeak peak(medium.g);
   const double past_peak = known.rest_sigma_t();
   const double in_peak = peak.share * known.sigma_s;

@@ -23,6 +23,9 @@ class SphereSingleScattering {
   /// At each of the cosines, per irradiance; `medium` has the g of the constructor.
   std::vector<double> exitance(const BodyMedium& medium) const;
 
+  /// The same where half_space_single_exitance of a medium as thick or thicker, in proportion, is known.
+  std::vector<double> exitance(const BodyMedium& medium, const std::vector<double>& half_space) const;
+
  private:
   struct Way {
     double in;

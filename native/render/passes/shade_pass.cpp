@@ -164,6 +164,8 @@ void ShadePass::shade_mirrored(const Sample& sample, const ShadowPass& shadows, 
   begin_shading();
   glDisable(GL_DEPTH_TEST);
   glBlendFunc(GL_ONE, GL_ONE);
+  const auto shown = [&](std::size_t unit) { return unit < boxes.size() && boxes[unit].first != boxes[unit].end; };
+  sample.content.complete(sample.cache, shown);
   for (std::size_t unit = first; unit < std::min(first + most_in_stencil, boxes.size()); ++unit) {
     const PixelBox& box = boxes[unit];
     if (box.first == box.end) continue;
