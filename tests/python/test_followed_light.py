@@ -32,6 +32,7 @@ def test_no_light_maps_are_made_for_them():
 
 def test_their_models_tables_wait_until_something_asks_for_them():
     scene = lit(heap(native.Material(model="model_2", boundary="index_matched", sigma_s=(9.0, 7.7, 6.1))))
+    rendered(lit(heap(white())), "order_1")  # the mesh is sent
 
     def sent(exchange):
         before = native.sent()
