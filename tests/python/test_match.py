@@ -109,6 +109,34 @@ def test_what_a_picture_does_not_tell_is_said(tmp_path):
     assert "does not determine sigma_a of red, green, blue and sigma_s of" in files.sentence(results)
 
 
+@pytest.mark.parametrize("seed", [7, 8, 9])
+def test_an_absorption_that_is_too_little_to_be_seen_is_bounded(tmp_path, seed):
+    """Sugar, 11 mean free paths wide: a tenth more of the first two changes blocks by less than their noise."""
+    sigma_s, sigma_a = (5.6, 5.6, 5.6), (8e-4, 1.6e-3, 8e-3)
+    found = matched(tmp_path, drawn(described(sigma_s=sigma_s, sigma_a=sigma_a), seed=seed), described(**UNKNOWN))
+    assert found.coefficients["sigma_s"] == pytest.approx(sigma_s, rel=0.02)
+    for entry, true in zip(found.intervals["sigma_a"], sigma_a):
+        assert entry["low"] <= true <= entry["high"], entry
+        assert not entry["determined"] or entry["value"] == pytest.approx(true, rel=0.1), entry
+    assert [entry["bounded"] for entry in found.intervals["sigma_a"]] == [True, True, False]
+    assert not any(entry["bounded"] for entry in found.intervals["sigma_s"])
+    told = files.sentence(files.describe(found, "unit", 1.0, {}))
+    assert told.count("at most") == 2 and "the picture does not determine sigma_a of red, green" in told
+
+
+@pytest.mark.parametrize("sigma_s, scattering_known, bounded", [
+    (5.0, True, True), (5.0, False, False), (0.2, True, False)])
+def test_only_little_absorption_beside_a_known_scattering_is_bounded(sigma_s, scattering_known, bounded):
+    intervals = {"sigma_s": [certainty.interval("sigma_s", sigma_s, 0.01 if scattering_known else 1.0)],
+                 "sigma_a": [certainty.interval("sigma_a", 0.005, 1.0)]}
+    assert intervals["sigma_a"][0]["high"] == pytest.approx(0.037, rel=0.01)
+    [entry] = certainty.bound(intervals, (sigma_s,))["sigma_a"]
+    assert entry["bounded"] == bounded
+    [alone] = certainty.bound({"sigma_a": intervals["sigma_a"]}, (sigma_s,))["sigma_a"]
+    assert alone["bounded"] == (sigma_s == 5.0)
+    assert certainty.bound({"g": []}, (sigma_s,)) == {"g": []}
+
+
 def test_it_goes_on_where_it_was_stopped(tmp_path, picture):
     path = tmp_path / "renders.jsonl"
 

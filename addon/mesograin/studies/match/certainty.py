@@ -9,6 +9,8 @@ UNKNOWING = 3.0
 """Standard deviation of what a picture says nothing about: a factor of twenty."""
 RATIO = 3.0
 """What lies between the ends of an interval, as a factor, where a coefficient is still called determined."""
+SCARCE = 0.1
+"""Of scattering: an absorption that is certainly less is told by that."""
 PATTERNS = 4
 """Of so many smooth patterns over a grain a model's error is made: brighter, from one side to the other, from the top
 to the bottom, from the middle to the rim. docs/match.md has how often intervals hold the truth by that."""
@@ -73,10 +75,23 @@ def _jackknife(jacobian, residuals, tiles, prior):
 
 
 def interval(name, value, deviation):
-    """{'value', 'low', 'high', 'determined'}, two deviations either way. deviation: the standard one of the log, of g
-    itself."""
+    """{'value', 'low', 'high', 'determined', 'bounded'}, two deviations either way; bounded: see `bound`. deviation:
+    the standard one of the log, of g itself."""
     if name == "g":
         low, high = max(value - 2.0 * deviation, -1.0), min(value + 2.0 * deviation, 1.0)
-        return {"value": value, "low": low, "high": high, "determined": high - low <= G_RANGE}
+        return {"value": value, "low": low, "high": high, "determined": high - low <= G_RANGE, "bounded": False}
     factor = float(numpy.exp(2.0 * deviation))
-    return {"value": value, "low": value / factor, "high": value * factor, "determined": factor**2 <= RATIO}
+    return {"value": value, "low": value / factor, "high": value * factor, "determined": factor**2 <= RATIO,
+            "bounded": False}
+
+
+def bound(intervals, sigma_s):
+    """The same intervals, {name: [of each channel]}, `bounded` where absorption is too little for the picture to tell
+    how much, and certainly little: below SCARCE of a scattering that is known. sigma_s: of each channel."""
+    scattering = intervals.get("sigma_s")
+    found = []
+    for channel, entry in enumerate(intervals.get("sigma_a", ())):
+        known = scattering is None or scattering[channel]["determined"]
+        little = entry["high"] < SCARCE * sigma_s[channel]
+        found.append({**entry, "bounded": bool(not entry["determined"] and known and little)})
+    return {**intervals, "sigma_a": found} if found else intervals

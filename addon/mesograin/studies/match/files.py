@@ -16,7 +16,8 @@ DEFINITIONS = {
     "sigma_s": "scattering coefficient of R, G and B, for a `scale` of 1, in the unit named",
     "intervals": "two standard deviations either way, by the picture's derivatives, by what it leaves unexplained and"
     " by the model's own error as far as others imitate it; what is wrong about the scene itself is not in it."
-    " determined: the ends of the interval are less than a factor of 3 apart (g: 0.5)",
+    " determined: the ends of the interval are less than a factor of 3 apart (g: 0.5); bounded: the absorption is not"
+    " determined, but its high end is below a tenth of the scattering",
     "exposure": "factor by which the scene's light was multiplied to be as bright as the picture; 1 if it was known",
     "metrics": "of the picture drawn against the target, over the mask (docs/metrics.md)",
     "corrected_blocks": "relative L1 in blocks of the picture times what Cycles' picture of the last coefficients was"
@@ -31,7 +32,7 @@ def describe(found, unit, per_unit, settings, **origin):
     def intervals(name, entries):
         power = {"sigma_a": -1, "sigma_s": -1, "mean_free_path": 1}.get(name, 0)
         factor = per_unit**power
-        return [{key: value if key == "determined" else value * factor for key, value in entry.items()}
+        return [{key: value if isinstance(value, bool) else value * factor for key, value in entry.items()}
                 for entry in entries]
 
     return {
@@ -120,7 +121,9 @@ def _numbers(entries):
 
 
 def number(entry):
-    """'2.3 (2.2 to 2.4)'; of what is not determined, the value alone, marked."""
+    """'2.3 (2.2 to 2.4)'; of what is not determined, the value alone, marked, or what it is at most."""
+    if entry["bounded"]:
+        return f"at most {entry['high']:.2g}"
     if not entry["determined"]:
         return f"{entry['value']:.3g} (not determined)"
     return f"{entry['value']:.3g} ({entry['low']:.3g} to {entry['high']:.3g})"

@@ -279,6 +279,7 @@ class _Search:
                                       self._smooth_jacobian(fit), self._unsteadiness(fit))
         intervals = {name: [certainty.interval(name, value, deviation) for value, deviation in channels]
                      for name, channels in medium.told(fit.state, spread).items()}
+        intervals = certainty.bound(intervals, coefficients["sigma_s"])
         return Found(
             model=self._model, coefficients=coefficients, exposure=exposure, intervals=intervals, picture=picture,
             target=self._target.pixels, mask=self._mask,

@@ -58,7 +58,9 @@ def draw_results(layout, context):
 
 
 def _short(name, entry):
-    """'2.3 ± 4 %', '0.1 ?'; of g, '0.8 ± 0.05'."""
+    """'2.3 ± 4 %', '0.1 ?', '≤ 0.01'; of g, '0.8 ± 0.05'."""
+    if entry["bounded"]:
+        return f"≤ {entry['high']:.2g}"
     if not entry["determined"]:
         return f"{entry['value']:.3g} ?"
     if name == "g":
