@@ -1,9 +1,12 @@
 # What is said over a viewport fits beside what else lies there.
 import types
 
+import bpy
 import pytest
 
-from mesograin.engine import viewport_text
+from mesograin import compat
+from mesograin.engine import engine, viewport_text
+from mesograin.scene import export, meshes
 
 SENTENCE = "Material 'Brick' is no grain and is drawn as a diffuse surface under a coat; left out: its texture."
 
@@ -19,6 +22,46 @@ def test_a_sentence_that_does_not_fit_says_where_all_of_it_is(others, fitting):
     assert len(said) <= fitting
     assert said.startswith("Material 'Brick'") and "…" in said and viewport_text.PLACE in said
     assert not others or f"and {len(others)} more" in said
+
+
+@pytest.mark.parametrize("models, device, said", [
+    (("model_2", "transport"), "llvmpipe (LLVM 15.0.6, 256 bits)", "Model 2, Transport | 78.3 ms a sample | llvmpipe"),
+    ((), "NVIDIA RTX A2000/PCIe/SSE2", "78.3 ms a sample | NVIDIA RTX A2000")])
+def test_facts_say_models_time_and_device(models, device, said):
+    assert viewport_text.facts(models, (("light_maps", 70.25), ("shade", 8.01)), device) == said
+
+
+@pytest.fixture
+def session():
+    values = types.SimpleNamespace(models_drawn=("model_1",))
+    return types.SimpleNamespace(preparing=None, samples=2, values=values, timings=(("shade", 5.0),))
+
+
+def test_the_line_says_facts_where_there_is_room_beside_what_is_wrong(session, native):
+    device = native.device_info()["renderer"].split("(")[0].split("/")[0].strip()
+    facts = f"Sample 2/64 | Model 1 | 5 ms a sample | {device}"
+    assert engine._line(session, 64, (), len(facts)) == facts
+    assert engine._line(session, 64, (), len(facts) - 1) == "Sample 2/64"
+    assert engine._line(session, 64, (SENTENCE,), 300) == f"{facts} | {SENTENCE}"
+    narrow = engine._line(session, 64, (SENTENCE,), len(facts) + 50)
+    assert narrow.startswith("Sample 2/64 | Material 'Brick'")
+    session.samples, session.values = 1, None  # the first sample asks nobody
+    assert engine._line(session, 64, (), 300) == "Sample 1/64"
+
+
+def test_models_are_those_of_grains_as_they_are_drawn():
+    for number, model in enumerate(("auto", "model_1", None)):
+        bpy.ops.mesh.primitive_uv_sphere_add(segments=16, ring_count=8, location=(3.0 * number, 0.0, 0.0))
+        material = bpy.data.materials.new("Sand")
+        bpy.context.object.data.materials.append(material)
+        if model:
+            material.mesograin.model = model
+            material.mesograin.sigma_s, material.mesograin.sigma_a = (3.0,) * 3, (0.1,) * 3
+        else:
+            compat.use_nodes(material)
+    scene = export.read_scene(bpy.context.evaluated_depsgraph_get(), meshes.MeshCache())
+    [chosen] = {dict(each.values)["model"] for each in scene.with_models_chosen().materials} - {"model_1", "lambert"}
+    assert scene.models_drawn == tuple(sorted(("model_1", chosen))) and chosen != "auto"
 
 
 def region(kind, x, width, alignment="NONE"):

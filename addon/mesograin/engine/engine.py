@@ -328,6 +328,13 @@ def _line(session, target, warnings, columns):
     share = session.preparing
     parts = [] if share is None else [waiting.line(session.awaited, share)]
     parts.append(f"Sample {session.samples}/{target}")
+    # Not of first samples: in a drag there is one for each step, and a thousand grains take time to be asked.
+    if session.samples > 1:
+        said = viewport_text.facts(session.values.models_drawn, session.timings,
+                                   native_module.get().device_info()["renderer"])
+        room = columns - len(" | ".join((*parts, said)))
+        if room >= (viewport_text.LEAST if warnings else 0):
+            parts.append(said)
     if warnings:
         parts.append(viewport_text.line(warnings, columns - len(" | ".join((*parts, "")))))
     return " | ".join(parts)

@@ -1,11 +1,14 @@
 # What is said over a viewport's picture: how much of it fits, and sentences that Blender's own text line cannot hold.
 import textwrap
 
+from ..schema import labels
+
 # At a UI scale of 1, in pixels.
 SIZE, LINE, MARGIN = 11, 17, 12
 CHARACTER = 6.0  # of Blender's own text line, on average
 NAVIGATION = 90  # what the gizmo that turns the view takes of the right end
 FEWEST = 24  # characters that a sentence is worth
+LEAST = 60  # columns that sentences are left, beside which there is room for facts
 FONT = 0  # the interface's
 PLACE = "Render Properties > Sampling"
 """Where every sentence is read in full."""
@@ -33,6 +36,16 @@ def line(sentences, fitting):
         return first + more
     more = more or f" ({PLACE})"
     return textwrap.shorten(first, max(fitting - len(more), FEWEST), placeholder=" …") + more
+
+
+def facts(models, timings, device):
+    """By which models, in what time a sample and where the picture is drawn. models: names; timings: (pass,
+    milliseconds) of a sample; device: as native.device_info()'s renderer, such as 'llvmpipe (LLVM 15.0.6, 256 bits)'
+    or 'NVIDIA RTX A2000/PCIe/SSE2'."""
+    milliseconds = sum(taken for _, taken in timings)
+    parts = [", ".join(labels.of_model(name) for name in models), f"{milliseconds:.3g} ms a sample",
+             device.split("(")[0].split("/")[0].strip()]
+    return " | ".join(part for part in parts if part)
 
 
 def draw(context, sentence, below=False):

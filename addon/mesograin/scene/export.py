@@ -1,6 +1,7 @@
 # From Blender's dependency graph to the native module's scene and camera: plain values, copied, nothing borrowed.
 import array
 import dataclasses
+import functools
 import itertools
 import math
 import typing
@@ -106,6 +107,14 @@ class SceneValues:
         return dataclasses.replace(self, **{
             field: tuple(automatic.with_model(drawn, self.tolerance) for drawn in getattr(self, field))
             for field in ("instances", "heaps")})
+
+    @functools.cached_property
+    def models_drawn(self):
+        """The names of the models of its grains, in the order of their labels; none where nothing is a grain. Raises as
+        `to_native`."""
+        chosen = {dict(material.values)["model"] for material in self.with_models_chosen().materials
+                  if material.finish is None}
+        return tuple(sorted(chosen, key=labels.of_model))
 
     def error_of_models(self):
         """What the models of AUTO for single things were measured to be off at most, in %; None if there are none.
