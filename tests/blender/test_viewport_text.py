@@ -24,11 +24,13 @@ def test_a_sentence_that_does_not_fit_says_where_all_of_it_is(others, fitting):
     assert not others or f"and {len(others)} more" in said
 
 
-@pytest.mark.parametrize("models, device, said", [
-    (("model_2", "transport"), "llvmpipe (LLVM 15.0.6, 256 bits)", "Model 2, Transport | 78.3 ms a sample | llvmpipe"),
-    ((), "NVIDIA RTX A2000/PCIe/SSE2", "78.3 ms a sample | NVIDIA RTX A2000")])
-def test_facts_say_models_time_and_device(models, device, said):
-    assert viewport_text.facts(models, (("light_maps", 70.25), ("shade", 8.01)), device) == said
+@pytest.mark.parametrize("models, milliseconds, device, said", [
+    (("model_2", "transport"), 70.25, "llvmpipe (LLVM 15.0.6, 256 bits)",
+     "Model 2, Transport | 78 ms a sample | llvmpipe"),
+    (("model_1",), 3436.0, "llvmpipe (LLVM 15.0.6, 256 bits)", "Model 1 | 3444 ms a sample | llvmpipe"),
+    ((), 0.3, "NVIDIA RTX A2000/PCIe/SSE2", "8.3 ms a sample | NVIDIA RTX A2000")])
+def test_facts_say_models_time_and_device(models, milliseconds, device, said):
+    assert viewport_text.facts(models, (("light_maps", milliseconds), ("shade", 8.01)), device) == said
 
 
 @pytest.fixture

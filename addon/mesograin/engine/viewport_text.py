@@ -43,7 +43,8 @@ def facts(models, timings, device):
     milliseconds) of a sample; device: as native.device_info()'s renderer, such as 'llvmpipe (LLVM 15.0.6, 256 bits)'
     or 'NVIDIA RTX A2000/PCIe/SSE2'."""
     milliseconds = sum(taken for _, taken in timings)
-    parts = [", ".join(labels.of_model(name) for name in models), f"{milliseconds:.3g} ms a sample",
+    time = f"{milliseconds:.2g}" if milliseconds < 10.0 else f"{milliseconds:.0f}"
+    parts = [", ".join(labels.of_model(name) for name in models), f"{time} ms a sample",
              device.split("(")[0].split("/")[0].strip()]
     return " | ".join(part for part in parts if part)
 
