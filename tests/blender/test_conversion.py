@@ -3,6 +3,7 @@ import bpy
 import pytest
 from mesograin import compat
 from mesograin.cycles import inversion, nodes, reading
+from mesograin.scene import export
 from mesograin.ui import conversion
 
 SIGMA_A, SIGMA_S = (0.003, 0.034, 0.46), (2.29, 2.39, 1.97)
@@ -101,6 +102,108 @@ def test_a_principled_volume_in_glass(native):
     assert tuple(made.sigma_s) == pytest.approx((1.0, 0.5, 1.5))
     assert tuple(made.sigma_a) == pytest.approx((0.5, 1.5, 0.0))
     assert (made.g, made.eta, made.boundary) == (pytest.approx(-0.5), pytest.approx(1.33), "dielectric")
+
+
+@pytest.mark.parametrize("boundary, had, has", [
+    ("dielectric", "auto", "auto"), ("index_matched", "transport", "transport"), ("dielectric", "model_3", "model_3"),
+    ("lambert_lambert", "auto", "auto"), ("lambert_lambert", "transport", "model_2"),
+    ("dielectric", "lambert", "model_2")])
+def test_there_and_back(native, boundary, unit):
+    if boundary == "lambert":
+        boundary = "lambert_refracted" if nodes.features().subsurface_refracts else "lambert_lambert"
+    material = grain(boundary, roughness=0.25 if boundary == "dielectric" else 0.0)
+    conversion.to_cycles(material, unit)
+    made = material.mesograin
+    made.sigma_a = made.sigma_s = (1.0, 1.0, 1.0)
+    made.g, made.boundary, made.roughness = 0.0, "dielectric", 0.5
+    if boundary != "index_matched":
+        made.eta = 1.0
+    assert conversion.to_grain(material, unit) == []
+    assert tuple(made.sigma_a) == pytest.approx(SIGMA_A, rel=2e-3)
+    assert tuple(made.sigma_s) == pytest.approx(SIGMA_S, rel=2e-3)
+    assert (made.g, made.eta) == pytest.approx((0.3, 1.45), rel=1e-4)
+    assert made.boundary == boundary
+    if boundary == "dielectric":
+        assert made.roughness == pytest.approx(0.25, rel=1e-4)
+
+
+def tree_of(name):
+    material = bpy.data.materials.new(name)
+    compat.use_nodes(material)
+    tree = material.node_tree
+    tree.nodes.clear()
+    return material, tree, tree.nodes.new("ShaderNodeOutputMaterial")
+
+
+def principled():
+    material, tree, output = tree_of("Skin")
+    node = tree.nodes.new("ShaderNodeBsdfPrincipled")
+    tree.links.new(node.outputs["BSDF"], output.inputs["Surface"])
+    return material, tree, node
+
+
+def test_a_principled_material_becomes_what_cycles_walks_in(native):
+    material, _, node = principled()
+    weight = next(name for name in reading.WEIGHTS if name in node.inputs)
+    colour = "Subsurface Color" if "Subsurface Color" in node.inputs else "Base Color"
+    node.inputs[weight].default_value = 1.0
+    node.inputs[colour].default_value = (0.8, 0.4, 0.2, 1.0)
+    node.inputs["Subsurface Radius"].default_value = (1.0, 0.5, 0.25)
+    if "Subsurface Scale" in node.inputs:
+        node.inputs["Subsurface Scale"].default_value = 1.0
+    node.inputs["Subsurface Anisotropy"].default_value = 0.0
+    node.inputs["IOR"].default_value, node.inputs["Roughness"].default_value = 1.4, 0.5
+    node.subsurface_method = nodes.WALKS[0] if nodes.WALKS[0] in reading._methods() else "RANDOM_WALK"
+    assert conversion.to_grain(material, 1.0) == []
+    made = material.mesograin
+    sigma_t = [a + s for a, s in zip(made.sigma_a, made.sigma_s)]
+    assert sigma_t == pytest.approx([inversion.FIXED_RADIUS_FACTOR / radius for radius in (1.0, 0.5, 0.25)], rel=1e-5)
+    assert [s / t for s, t in zip(made.sigma_s, sigma_t)] == pytest.approx(
+        [inversion.single_scattering_albedo(channel) for channel in (0.8, 0.4, 0.2)], rel=1e-5)
+    assert (made.model, made.boundary) == ("model_2", "dielectric")
+    assert (made.eta, made.roughness) == pytest.approx((1.4, 0.25))
+
+
+def test_what_is_lost_is_said(native):
+    material, tree, node = principled()
+    weight = next(name for name in reading.WEIGHTS if name in node.inputs)
+    node.inputs[weight].default_value, node.inputs["Metallic"].default_value = 0.25, 0.5
+    texture = tree.nodes.new("ShaderNodeTexNoise")
+    tree.links.new(texture.outputs["Color"], node.inputs["Base Color"])
+    tree.links.new(texture.outputs["Fac"], node.inputs["Roughness"])
+    lost = " ".join(conversion.to_grain(material, 1.0))
+    assert "75%" in lost and "metal" in lost and "Roughness" in lost
+
+
+def test_a_principled_volume_in_glass(native):
+    material, tree, output = tree_of("Juice")
+    glass, volume = tree.nodes.new("ShaderNodeBsdfGlass"), tree.nodes.new("ShaderNodeVolumePrincipled")
+    tree.links.new(glass.outputs[0], output.inputs["Surface"])
+    tree.links.new(volume.outputs[0], output.inputs["Volume"])
+    glass.inputs["IOR"].default_value, glass.inputs["Roughness"].default_value = 1.33, 0.0
+    glass.inputs["Color"].default_value = (1.0, 1.0, 1.0, 1.0)
+    volume.inputs["Color"].default_value = (0.5, 0.25, 0.75, 1.0)
+    volume.inputs["Absorption Color"].default_value = (0.25, 0.0, 1.0, 1.0)
+    volume.inputs["Density"].default_value, volume.inputs["Anisotropy"].default_value = 4.0, -0.5
+    volume.inputs["Emission Strength"].default_value = 0.0
+    assert conversion.to_grain(material, 2.0) == []
+    made = material.mesograin
+    assert tuple(made.sigma_s) == pytest.approx((1.0, 0.5, 1.5))
+    assert tuple(made.sigma_a) == pytest.approx((0.5, 1.5, 0.0))
+    assert (made.g, made.eta, made.boundary) == (pytest.approx(-0.5), pytest.approx(1.33), "dielectric")
+
+
+@pytest.mark.parametrize("boundary, had, has", [
+    ("dielectric", "auto", "auto"), ("index_matched", "transport", "transport"), ("dielectric", "model_3", "model_3"),
+    ("lambert_lambert", "auto", "auto"), ("lambert_lambert", "transport", "model_2"), ("dielectric", "lambert",
+                                                                                        "model_2")])
+def test_there_and_back_the_model_stays_if_it_answers_what_the_nodes_say(native, boundary, had, has):
+    material = grain(boundary)
+    conversion.to_cycles(material, 1.0)
+    material.mesograin.model = had
+    conversion.to_grain(material, 1.0)
+    assert material.mesograin.model == has
+    export.material_values(material, 1.0).to_native(native)  # which says what it does not answer
 
 
 @pytest.mark.parametrize("kind, words", [("ShaderNodeBsdfDiffuse", "lets no light through"),

@@ -4,12 +4,17 @@ import bpy
 from ..cycles import nodes, reading, recipes
 from ..cycles.grain_values import GrainValues
 from ..scene import export
+from ..schema import models, parameters
 from .active_material import OnActiveMaterial, active_material
 
 
 def to_grain(material, millimetres_per_unit):
-    """Makes a material the grain that its Cycles nodes are; returns what is lost. Raises reading.NoGrain."""
+    """Makes a material the grain that its Cycles nodes are, of the model that it had if that answers such grains;
+    returns what is lost. Raises reading.NoGrain."""
     values, lost = reading.read(material)
+    model = material.mesograin.model
+    if models.CHOICES[model].translucent and values["boundary"] in parameters.boundaries_of(model):
+        values["model"] = model
     for name, value in values.items():
         if name in ("sigma_a", "sigma_s"):
             value = tuple(channel / millimetres_per_unit for channel in value)
