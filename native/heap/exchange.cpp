@@ -27,11 +27,17 @@ Quality quality_for(std::size_t grains) {
   return quality;
 }
 
-Quality affordable(const Quality& quality, std::size_t seats, std::size_t links_of_others) {
+Quality affordable(const Quality& quality, std::size_t seats, std::size_t sharing) {
   constexpr std::size_t most_links = 16'000'000;
-  const std::size_t left = most_links - std::min(links_of_others, most_links);
-  const auto each = static_cast<int>(left / std::max(seats, std::size_t{1}));
+  constexpr std::size_t most_of_sharing = most_links / 4;
+  // Fewer tell too little of a cell's light.
+  constexpr int fewest_of_sharing = 12;
   Quality result = quality;
+  result.sharing_rays = std::clamp(static_cast<int>(most_of_sharing / std::max(sharing, std::size_t{1})),
+                                   std::min(fewest_of_sharing, quality.sharing_rays), quality.sharing_rays);
+  const std::size_t links_of_sharing = sharing * static_cast<std::size_t>(result.sharing_rays);
+  const std::size_t left = most_links - std::min(links_of_sharing, most_links);
+  const auto each = static_cast<int>(left / std::max(seats, std::size_t{1}));
   result.rays = std::clamp(each, std::min(coarse.rays, quality.rays), quality.rays);
   result.light_rays = std::clamp(each, std::min(coarse.light_rays, quality.light_rays), quality.light_rays);
   result.seen_rays = std::clamp(each / 2, std::min(coarse.seen_rays, quality.seen_rays), quality.seen_rays);

@@ -21,7 +21,7 @@ struct Quality {
   int walks = GrainTable::most_walks;       ///< for each interval of a kind's table, where kinds are few
   bool quick = false;                       ///< links that were found at other materials will do
   int deep_rays = 16;                       ///< of each kind, of grains that lie deep in a heap of many
-  int sharing_rays = 12;                    ///< of each kind, of each of the few that answer for all that share numbers
+  int sharing_rays = 36;                    ///< of each kind, of each of the few that answer for all that share numbers
   std::size_t shared_from = 50'000;         ///< as many grains or more share numbers where they lie deep
   std::size_t clear_shared_from = 250'000;  ///< some of them clear: few rays tell too little of what those scatter
 };
@@ -29,8 +29,9 @@ struct Quality {
 /// Where there are few grains, finer than the default, but with no more rays in all than 10^4 grains have there.
 Quality quality_for(std::size_t grains);
 
-/// As fine as the memory for so many seats allows: half a gigabyte for links, of which others have so many.
-Quality affordable(const Quality& quality, std::size_t seats, std::size_t links_of_others = 0);
+/// As fine as the memory for so many seats allows, and so many more that answer for those that share: half a gigabyte
+/// for links.
+Quality affordable(const Quality& quality, std::size_t seats, std::size_t sharing = 0);
 
 /// For a first picture of 10^4 grains or more.
 inline constexpr Quality coarse{.rays = 16,

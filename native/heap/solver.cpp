@@ -317,8 +317,7 @@ Quality Solver::within_memory(const Quality& quality) {
     return quality;
   const Seats& seats = *space().seats();
   if (!seats.shared()) return affordable(quality, grains);
-  return affordable(quality, seats.own(),
-                    (seats.answering() - seats.own()) * static_cast<std::size_t>(quality.sharing_rays));
+  return affordable(quality, seats.own(), seats.answering() - seats.own());
 }
 
 Field Solver::guess() const {
