@@ -5,6 +5,7 @@
 import json
 import math
 import pathlib
+import subprocess
 import sys
 import time
 
@@ -50,8 +51,33 @@ class Clock:
                 and session._next_camera is None and session._kept is None)
 
 
-def measured(clock, area, change, rendered, changes):
-    """A generator for a timer; its value is {"wait": [ms], ...}."""
+class Mouse:
+    """Turns the view with its middle button, as an artist does."""
+
+    def __init__(self, window, region, view):
+        self._middle = region.x + region.width // 2, window.height - 1 - (region.y + region.height // 2)
+        self._view, self._before = view, None
+
+    def press(self):
+        self._tell("mousemove", *self._middle, "mousedown", 2)
+
+    def release(self):
+        self._tell("mouseup", 2)
+
+    def drag(self, number):
+        self._before = self._view.view_matrix.copy()
+        self._tell("mousemove_relative", "--", 4 if number // 25 % 2 else -4, 0)
+
+    def has_dragged(self):
+        return self._view.view_matrix != self._before
+
+    @staticmethod
+    def _tell(*words):
+        subprocess.run(["xdotool", *map(str, words)], check=True, timeout=20)
+
+
+def measured(clock, area, change, rendered, changes, changed=lambda: True):
+    """A generator for a timer; its value is {"wait": [ms], ...}. changed(): whether Blender has heard of the change."""
     for times in clock.spent.values():
         times.clear()
     waits = []
@@ -59,8 +85,9 @@ def measured(clock, area, change, rendered, changes):
         drawn = clock.drawn
         start = time.perf_counter()
         change(number)
-        area.tag_redraw()
-        while not (clock.drawn > drawn and clock.when > start and (not rendered or clock.shows_news())):
+        if changed():
+            area.tag_redraw()
+        while not (changed() and clock.drawn > drawn and clock.when > start and (not rendered or clock.shows_news())):
             if time.perf_counter() - start > MOST:
                 raise RuntimeError("a change was never seen")
             yield PAUSE
@@ -90,11 +117,24 @@ def work(out, changes, models):
     def drag_view(number):
         view.view_rotation = (math.cos(0.01 * number), 0.0, math.sin(0.01 * number), 0.0)
 
+    mouse = Mouse(bpy.context.window_manager.windows[0], region, view)
+
+    def by_mouse(rendered):
+        mouse.press()
+        yield SETTLE
+        times = yield from measured(clock, area, mouse.drag, rendered, changes, mouse.has_dragged)
+        mouse.release()
+        yield SETTLE
+        return times
+
+    def by_script(change):
+        return lambda rendered: measured(clock, area, change, rendered, changes)
+
     found = {"size": (region.width, region.height)}
-    for name, change in (("parameter", drag_parameter), ("view", drag_view)):
+    for name, drag in (("parameter", by_script(drag_parameter)), ("view", by_script(drag_view)), ("mouse", by_mouse)):
         space.shading.type = "SOLID"
         yield SETTLE
-        found[f"{name} solid"] = yield from measured(clock, area, change, False, changes)
+        found[f"{name} solid"] = yield from drag(False)
         space.shading.type = "RENDERED"
         for model in models:
             grain.model = model
@@ -102,7 +142,7 @@ def work(out, changes, models):
             deadline = time.perf_counter() + MOST
             while clock.session is None or clock.session.preparing is not None and time.perf_counter() < deadline:
                 yield PAUSE
-            found[f"{name} {model}"] = yield from measured(clock, area, change, True, changes)
+            found[f"{name} {model}"] = yield from drag(True)
             out.write_text(json.dumps(found))
     out.write_text(json.dumps(found))
 

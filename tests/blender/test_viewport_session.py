@@ -232,6 +232,59 @@ def test_a_drag_whose_changes_are_taken_late_shows_pictures_before_its_end(drag,
     assert shown >= CHANGES // 4
 
 
+def settled(session, target):
+    """The pictures until none is to come."""
+    pictures, deadline = [], time.monotonic() + 60.0
+    while session.busy or session.samples < target:
+        assert time.monotonic() < deadline
+        picture = session.advance(target)
+        pictures += [] if picture is None else [picture.copy()]
+    return pictures
+
+
+@pytest.mark.parametrize("dragged", ["camera", "scene"])
+def test_a_drag_is_followed_by_coarse_pictures_and_sharp_at_its_end(drag, native, monkeypatch, dragged):
+    _, session = drag(sample_seconds=0.0, redraw_seconds=0.0)
+    settled(session, 1)
+    begun = []
+
+    def start(view, samples):
+        begun.append((view.width, view.height))
+        return Slow(view.start(samples, read=True), view.width * view.height / (SIZE[0] * SIZE[1]))
+
+    monkeypatch.setattr(viewport, "_start", start)  # a sharp one takes a second from now on, as of another material
+    session.set_camera(native.Camera.look_at((0.0, 0.0, 8.9), (0.0, 0.0, 0.0), (0.0, 1.0, 0.0), 45.0), *SIZE)
+    settled(session, 1)
+    begun.clear()
+    shown = []
+    for step in range(CHANGES):
+        if dragged == "scene":
+            bpy.data.materials["Translucent"].mesograin.reflectance = (reflectance(step),) * 3
+            session.set_scene(export.read_scene(bpy.context.evaluated_depsgraph_get(), meshes.MeshCache()))
+        else:
+            eye = (0.0, 0.0, 9.0 + step)
+            session.set_camera(native.Camera.look_at(eye, (0.0, 0.0, 0.0), (0.0, 1.0, 0.0), 45.0), *SIZE)
+        deadline = time.monotonic() + 60.0
+        while (picture := session.advance(2)) is None:  # Blender redraws
+            assert time.monotonic() < deadline
+        shown.append(picture.copy())
+        assert session.busy and session.waits and session.settling
+    coarse = shown[0].shape[:2]
+    assert begun == [coarse[::-1]] * CHANGES, "something else was drawn while changes came"
+    assert coarse[1] <= SIZE[0] / 3  # where a sharp one takes a second
+    assert len({brightness(picture) for picture in shown}) == CHANGES
+    for _ in range(3):  # redraws for other reasons, at once
+        assert not session.look()
+    pictures = settled(session, 2)
+    widths = [picture.shape[1] for picture in pictures]
+    assert widths == sorted(widths) and widths[0] < SIZE[0] and widths.count(SIZE[0]) == 2
+    right = native.View(*SIZE)
+    right.set_scene(export.scene_from_depsgraph(bpy.context.evaluated_depsgraph_get())[0])
+    right.set_camera(session._camera)
+    right.render(2)
+    np.testing.assert_allclose(pictures[-1], right.read(), atol=1e-5)
+
+
 def test_after_a_drag_the_last_change_is_shown(drag):
     returned, session = drag(sample_seconds=0.08, redraw_seconds=0.0)
     deadline, last = time.monotonic() + 60.0, None
@@ -417,7 +470,7 @@ def test_transport_is_waited_for_by_nobody_and_comes_into_the_picture(native, bl
         session.set_camera(export.camera_from_scene(depsgraph, *SIZE), *SIZE)
         while session.busy and time.monotonic() - started < 300.0:
             picture = session.advance(4)
-            if picture is not None:
+            if picture is not None and picture.shape[:2] == SIZE[::-1]:  # those before are coarse
                 shown.append(picture.copy())
                 session._view.told = True
         assert not session.busy and session.samples == 4 and session.warnings == ()

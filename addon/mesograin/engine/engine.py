@@ -269,8 +269,9 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
                 self._take(pixels, context, scene)
             elif session.seconds_behind > BEHIND_SECONDS:
                 self.update_stats("", f"Drawing, {duration(session.seconds_behind)}")
-            if pixels is not None or (session.busy and not session.waits):
-                self.tag_redraw()  # the text line of a redraw is what was said before it
+            # The text line of a redraw is what was said before it: a coarse picture's comes with the sharp one.
+            if (pixels is not None and not session.settling) or (session.busy and not session.waits):
+                self.tag_redraw()
             elif session.waits and not bpy.app.timers.is_registered(_look):
                 bpy.app.timers.register(_look, first_interval=LOOK_SECONDS)
         if self._texture is not None:
@@ -286,8 +287,8 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
         warnings = (*self._warnings, *session.warnings)
         self.update_stats("", _line(session, scene.mesograin.viewport_samples, warnings,
                                     viewport_text.columns(context)))
-        region = context.region
-        if status.put(status.VIEWPORT, status.Status(session.samples, region.width, region.height, session.timings,
+        height, width, _ = pixels.shape
+        if status.put(status.VIEWPORT, status.Status(session.samples, width, height, session.timings,
                                                      warnings, exchange=session.exchange)):
             _redraw_panels()
 

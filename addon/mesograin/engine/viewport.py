@@ -5,7 +5,7 @@ import numpy as np
 
 from .. import native_module
 from ..scene import meshes
-from . import status
+from . import coarseness, status
 
 # A redraw may wait this long for samples under way: short enough for a fluid window, long enough that a fast device
 # answers a change within the same redraw.
@@ -14,6 +14,8 @@ PATIENCE_SECONDS = 0.03
 LARGEST_DISPLAYED = 65504.0
 # What a better answer changes in the picture comes over this long.
 FADE_SECONDS = 0.3
+# No sharp picture is begun before so long has passed without a change: a change would have to wait for it.
+STILL_SECONDS = 0.1
 
 
 class Session:
@@ -32,16 +34,21 @@ class Session:
         self._values = None  # of the scene that was last asked for
         self._camera = None
         self._size = (1, 1)  # that was last asked for
+        self._coarseness = coarseness.Coarseness()
+        self._divisor = 1  # of what the view draws or is about to, as Coarseness'
+        self._still = None  # since when no change came after a coarse picture was seen
         self._next_scene = self._next_camera = None  # asked for, and not yet the view's
         self._taking = None  # a scene or a camera that the view is being given, or news that it takes in
         self._took = None  # what goes on once that is done: no method of this object, which would keep it alive
         self._view = None
+        self._view_size = None  # of the region that the view draws for
         self._read = None  # the picture last read, as native.Reading's
         self._pixels = None  # the same, as it is displayed
         self._kept = None  # (picture, samples) that is finished, and not yet returned
         self._seen = False  # whether a picture of the view's scene and camera was returned
         self._restarted = 0.0  # when the view's picture was last begun
         self._task = None
+        self._drawn = None  # (samples, divisor) of that
         self._given_up = False  # whether that is to be heard of no more
         self._preparing = False  # whether more may become known of what the view draws
         self._fade = None  # (picture before that, when the other's first was read)
@@ -87,6 +94,7 @@ class Session:
         """Moves on towards `target` samples, for PATIENCE_SECONDS at most. Returns the picture, (height, width, 4)
         float32 with row 0 at the top, when it is new, else None."""
         self._target = target
+        self._sharpen_in_time()
         self._keep_busy()
         if self._taking is not None:
             if self._taking.wait(PATIENCE_SECONDS):
@@ -96,7 +104,7 @@ class Session:
                 self._finish()
         elif self._fade:
             self._kept = self._displayed(), self._view.samples
-        elif self._preparing:
+        elif self._preparing or self.settling:
             time.sleep(PATIENCE_SECONDS)
         if self._kept is None:
             return None
@@ -109,16 +117,25 @@ class Session:
 
     @property
     def busy(self):
-        return self._taking is not None or self._task is not None or self._preparing or self._fade is not None
+        return (self._taking is not None or self._task is not None or self._preparing or self._fade is not None
+                or self.settling)
+
+    @property
+    def settling(self):
+        """Whether the picture is a coarse one, which is left so until no change has come for a while."""
+        return self._seen and self._divisor > 1
 
     @property
     def waits(self):
-        """Whether redraws would show nothing new until more is known of what the view draws: `look` tells when."""
-        return (self._preparing and self._taking is None and self._task is None and self._fade is None
-                and self._kept is None)
+        """Whether redraws would show nothing new until more is known of what the view draws, or no change has come for
+        a while: `look` tells when."""
+        return ((self._preparing or self.settling) and self._taking is None and self._task is None
+                and self._fade is None and self._kept is None)
 
     def look(self):
-        """Whether a session that waits has a reason for a redraw. Starts samples of what has become known."""
+        """Whether a session that waits has a reason for a redraw. Starts samples of what has become known, or of a
+        picture that is to be sharp."""
+        self._sharpen_in_time()
         self._keep_busy()
         return not self.waits
 
@@ -145,7 +162,8 @@ class Session:
     @property
     def _is_at_hand(self):
         """Whether the view tells at once of what its scene waits for."""
-        return self._view is not None and (self._taking is None or self._took is Session._took_camera)
+        return self._view is not None and (
+            self._taking is None or self._took in (Session._took_camera, Session._took_sharpness))
 
     def __del__(self):
         # Blender lets go of an engine, and so of its session, without a call that could be relied upon.
@@ -168,7 +186,25 @@ class Session:
             self._keep()
         if self._task is not None and self._seen:  # which would only refine what is shown already
             self._interrupt()
+        self._still = None
+        divisor = self._coarseness.divisor()
+        if divisor != self._divisor and self._camera is not None:
+            self._divisor, self._next_camera = divisor, self._camera
         self._apply()
+
+    def _sharpen_in_time(self):
+        """Goes over from a coarse picture to a finer one, unless changes come yet."""
+        if not self.settling or self._taking is not None or self._task is not None or self._fade is not None:
+            return
+        now = time.perf_counter()
+        self._still = self._still or now
+        if now - self._still < STILL_SECONDS:
+            return
+        self._divisor = coarseness.finer(self._divisor)
+        size = coarseness.size(self._size, self._divisor)
+        self._take(self._view.start_camera(self._camera, *size), Session._took_sharpness)
+        if self._taking.wait(PATIENCE_SECONDS):
+            self._went_over()
 
     def _apply(self):
         """Makes what was asked for the view's, if no samples are under way, and goes on."""
@@ -186,7 +222,7 @@ class Session:
                 return False
             self._went_over()
             # Where a change comes for each redraw, and is taken later than that, no picture would ever be begun.
-            if late and not self._seen and (self._view.width, self._view.height) == self._size:
+            if late and not self._seen and self._view_size == self._size:
                 self._draw()
                 if self._task is not None:
                     return True
@@ -204,7 +240,9 @@ class Session:
             taking, self._next_scene = self._view.start_scene(self._next_scene), None
             self._take(taking, Session._took_scene)
         else:
-            taking, self._next_camera = self._view.start_camera(self._next_camera, *self._size), None
+            size = coarseness.size(self._size, self._divisor)
+            taking, self._next_camera = self._view.start_camera(self._next_camera, *size), None
+            self._view_size = self._size
             self._take(taking, Session._took_camera)
 
     def _take(self, taking, took):
@@ -231,6 +269,14 @@ class Session:
             raise
         self._begin()
 
+    def _took_sharpness(self, taking):
+        try:
+            taking.result()
+        except native_module.get().Error:
+            self._camera = None
+            raise
+        self._chunk = 1
+
     def _took_news(self, news):
         if news.result():
             before = self._pixels.copy() if self._seen else None
@@ -254,9 +300,11 @@ class Session:
             self._draw()
 
     def _draw(self):
+        if self._divisor > 1 and self._view.samples:
+            return
         if self._camera is not None and self._view.samples < self._target:
             count = min(self._chunk, self._target - self._view.samples)
-            self._task = _start(self._view, count)
+            self._task, self._drawn = _start(self._view, count), (count, self._divisor)
 
     def _finish(self):
         """Keeps the picture of the task that is done, and goes on. Raises native.Error if it failed."""
@@ -279,7 +327,10 @@ class Session:
         given_up, self._given_up = self._given_up, False
         if given_up:
             return None
-        self._adapt(task.result())
+        seconds = task.result()
+        samples, divisor = self._drawn
+        self._coarseness.note(divisor, seconds / samples)
+        self._adapt(seconds)
         self._read = task.picture()
         told = self._read
         self.timings = tuple((timing["pass"], timing["milliseconds"]) for timing in told["timings"])
@@ -313,7 +364,7 @@ class Session:
         """The picture last read, as it may be shown."""
         read = self._read["pixels"]
         if self._pixels is None or self._pixels.shape != read.shape:
-            self._pixels = np.empty_like(read)
+            self._pixels, self._fade = np.empty_like(read), None
         np.minimum(read, LARGEST_DISPLAYED, out=self._pixels)
         if self._fade:
             self._fade_over()
