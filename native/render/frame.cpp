@@ -15,6 +15,9 @@ namespace {
 // How many directions of the world light one sample; where each costs a grain its own light map, one.
 constexpr int most_world_directions = 4;
 
+// How long shading may go on without a question whether it should, in milliseconds.
+constexpr double longest_strip = 40.0;
+
 // Sets the lens' sequence apart from others of the same seed.
 constexpr std::uint32_t lens_seed = 0x30000U;
 
@@ -152,6 +155,7 @@ Sample Frame::begin_sample(const GoOn& go_on, bool hurried) {
                 .traced = traced,
                 .gathers = gathers,
                 .denoises = scene_.denoise,
+                .pixels_at_once = pixels_at_once_,
                 .go_on = go_on};
   if (unwrapping_) return sample;
   // Of what light goes between it is known otherwise what is seen behind.
@@ -182,6 +186,7 @@ bool Frame::add_sample(const GoOn& go_on, bool hurried) {
   timers_.accumulate.stop();
   if (!add_portions(sample)) return false;
   timed_ = true;
+  pixels_at_once_ = longest_strip / timers_.shade.milliseconds() * static_cast<double>(size_.x) * size_.y;
   samples_ = added_to() + 1;
   hurried_ = hurried;
   return true;
@@ -198,7 +203,7 @@ bool Frame::draw_seen(const Sample& sample) {
       if (sample.cast) timers_.shade.start();
       shade_.clear(sample);
     }
-    shade_.shade_seen(sample, shadows_, gather_, first);
+    if (!shade_.shade_seen(sample, shadows_, gather_, first)) return false;
   }
   return true;
 }
@@ -213,7 +218,7 @@ bool Frame::add_portions(Sample sample) {
     for (std::size_t first = 0; first < units || first == 0; first += most_in_stencil) {
       // The last of them is what the surfaces show already, unless what is mirrored took their place.
       if ((units > most_in_stencil || mirror_.ran()) && !surfaces_.run(sample, arrays_, first)) return false;
-      shade_.shade_seen(sample, shadows_, gather_, first);
+      if (!shade_.shade_seen(sample, shadows_, gather_, first)) return false;
     }
     const bool looks_on = portion == Portion::specular || portion == Portion::transmission;
     if (looks_on && !mirror_.run(sample, arrays_, surfaces_, shadows_, shade_)) return false;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -168,6 +169,7 @@ class Frame {
   AccumulatePass accumulate_;
   PassTimers timers_;
   bool timed_ = false;
+  double pixels_at_once_ = std::numeric_limits<double>::infinity();  // by how long the last sample's took
   int samples_ = 0;
   bool hurried_ = false;  // the only one of them lacks what others have
 };

@@ -74,7 +74,7 @@ bool MirrorPass::add(const Sample& sample, const ArrayVisibility& arrays, const 
   if (!shadows.run_mirrored(sample, arrays, seen)) return false;
   for (std::size_t first = 0; first < boxes.size(); first += most_in_stencil) {
     if (first > 0) found.upload(sample.targets, first);
-    shade.shade_mirrored(sample, shadows, by, boxes, first);
+    if (!shade.shade_mirrored(sample, shadows, by, boxes, first)) return false;
   }
   return true;
 }

@@ -54,6 +54,7 @@ struct Sample {
   bool denoises;     ///< and neighbours that show the same tell each other what was found
   Mirrors mirrors = Mirrors::none;
   bool straight_through = false;  ///< light that goes straight through single draws is followed
+  double pixels_at_once;          ///< that are shaded from one question whether to go on to the next
   const GoOn& go_on;
   std::optional<Portion> portion{};  ///< of its light, that is shaded alone
 

@@ -46,11 +46,14 @@ void offer_backdrop(const gl::Program& program, const Lighting& lighting) {
   if (image != nullptr) program.offer("backdrop_image", *image);
 }
 
-// Draws on no pixel that a single draw's bounds do not cover; everywhere if they reach behind the camera, and for a
-// group of instances.
-void confine_to(const Sample& sample, std::size_t unit) {
-  glScissor(0, 0, sample.size.x, sample.size.y);
-  if (sample.content.draw(unit) == nullptr) return;
+void confine_to(const PixelBox& box) {
+  glScissor(box.first.x, box.first.y, box.end.x - box.first.x, box.end.y - box.first.y);
+}
+
+// What a single draw's bounds cover; everything if they reach behind the camera, and for a group of instances.
+PixelBox box_of(const Sample& sample, std::size_t unit) {
+  const PixelBox everything{glm::ivec2(0), sample.size};
+  if (sample.content.draw(unit) == nullptr) return everything;
   const Draw& draw = *sample.content.draw(unit);
   const glm::dmat4 to_clip = sample.camera.camera_to_clip * (sample.camera.world_to_camera * draw.object_to_world);
   const glm::dvec2 size(sample.size);
@@ -60,7 +63,7 @@ void confine_to(const Sample& sample, std::size_t unit) {
     const glm::bvec3 high((corner & 1U) != 0, (corner & 2U) != 0, (corner & 4U) != 0);
     const glm::dvec4 clip =
         to_clip * glm::dvec4(glm::mix(glm::dvec3(draw.source->lower()), glm::dvec3(draw.source->upper()), high), 1.0);
-    if (!(clip.w > 0.0)) return;
+    if (!(clip.w > 0.0)) return everything;
     const glm::dvec2 pixel = (0.5 * glm::dvec2(clip) / clip.w + 0.5) * size;
     lower = glm::min(lower, pixel);
     upper = glm::max(upper, pixel);
@@ -68,7 +71,7 @@ void confine_to(const Sample& sample, std::size_t unit) {
   // The jitter moves the picture by up to half a pixel.
   const glm::ivec2 first(glm::clamp(glm::floor(lower - 1.0), glm::dvec2(0.0), size));
   const glm::ivec2 end(glm::clamp(glm::ceil(upper + 1.0), glm::dvec2(0.0), size));
-  glScissor(first.x, first.y, std::max(end.x - first.x, 0), std::max(end.y - first.y, 0));
+  return {first, glm::max(first, end)};
 }
 
 // About as many as show it, or texels if it is baked.
@@ -120,10 +123,17 @@ void ShadePass::draw_background(const Sample& sample) {
   full_screen_.draw();
 }
 
-void ShadePass::shade_seen(const Sample& sample, const ShadowPass& shadows, const GatherPass& gathered,
+bool ShadePass::shade_seen(const Sample& sample, const ShadowPass& shadows, const GatherPass& gathered,
                            std::size_t first) {
   begin_shading();
   glDisable(GL_BLEND);
+  const bool whole = shade_seen_units(sample, shadows, gathered, first);
+  end_shading();
+  return whole;
+}
+
+bool ShadePass::shade_seen_units(const Sample& sample, const ShadowPass& shadows, const GatherPass& gathered,
+                                 std::size_t first) {
   for (std::size_t unit = first; unit < std::min(first + most_in_stencil, sample.content.units()); ++unit) {
     if (sample.gathers_all_of(sample.content.first_number(unit)) && sample.portion != Portion::normal) {
       show_gathered(sample, gathered, unit, stencil_mark(unit, first));
@@ -143,10 +153,9 @@ void ShadePass::shade_seen(const Sample& sample, const ShadowPass& shadows, cons
     shadows.bind(program, material);
     gathered.bind(program);
     (looks_on && (material.facets() || sees_behind) ? sample.targets.mirror->shade : sample.targets.shade).bind();
-    confine_to(sample, unit);
-    shade_unit(sample, program, unit, stencil_mark(unit, first));
+    if (!shade_unit(sample, program, unit, stencil_mark(unit, first), box_of(sample, unit))) return false;
   }
-  end_shading();
+  return true;
 }
 
 void ShadePass::show_gathered(const Sample& sample, const GatherPass& gathered, std::size_t unit, int mark) {
@@ -154,16 +163,24 @@ void ShadePass::show_gathered(const Sample& sample, const GatherPass& gathered, 
   program.use();
   gathered.bind(program);
   sample.targets.shade.bind();
-  confine_to(sample, unit);
+  confine_to(box_of(sample, unit));
   glStencilFunc(GL_EQUAL, mark, most_in_stencil);
   full_screen_.draw();
 }
 
-void ShadePass::shade_mirrored(const Sample& sample, const ShadowPass& shadows, const MirroredBy& by,
+bool ShadePass::shade_mirrored(const Sample& sample, const ShadowPass& shadows, const MirroredBy& by,
                                const std::vector<PixelBox>& boxes, std::size_t first) {
   begin_shading();
   glDisable(GL_DEPTH_TEST);
   glBlendFunc(GL_ONE, GL_ONE);
+  const bool whole = shade_mirrored_units(sample, shadows, by, boxes, first);
+  glDisable(GL_BLEND);
+  end_shading();
+  return whole;
+}
+
+bool ShadePass::shade_mirrored_units(const Sample& sample, const ShadowPass& shadows, const MirroredBy& by,
+                                     const std::vector<PixelBox>& boxes, std::size_t first) {
   const auto shown = [&](std::size_t unit) { return unit < boxes.size() && boxes[unit].first != boxes[unit].end; };
   sample.content.complete(sample.cache, shown);
   for (std::size_t unit = first; unit < std::min(first + most_in_stencil, boxes.size()); ++unit) {
@@ -182,14 +199,13 @@ void ShadePass::shade_mirrored(const Sample& sample, const ShadowPass& shadows, 
     (goes_on ? by.onwards->shade : sample.targets.shade).bind();
     glDisable(GL_BLEND);
     glEnablei(GL_BLEND, 0);  // the rest of what it draws tells of it alone
-    glScissor(box.first.x, box.first.y, box.end.x - box.first.x, box.end.y - box.first.y);
-    shade_unit(sample, program, unit, stencil_mark(unit, first));
+    if (!shade_unit(sample, program, unit, stencil_mark(unit, first), box)) return false;
   }
-  glDisable(GL_BLEND);
-  end_shading();
+  return true;
 }
 
-void ShadePass::shade_unit(const Sample& sample, const gl::Program& program, std::size_t unit, int mark) {
+bool ShadePass::shade_unit(const Sample& sample, const gl::Program& program, std::size_t unit, int mark,
+                           const PixelBox& box) {
   if (const Draw* draw = sample.content.draw(unit))
     set_draw(sample, program, *draw);
   else
@@ -198,7 +214,25 @@ void ShadePass::shade_unit(const Sample& sample, const gl::Program& program, std
   program.set("surface_normal", sample.targets.normal);
   if (sample.targets.coordinates) program.offer("surface_coordinates", *sample.targets.coordinates);
   glStencilFunc(GL_EQUAL, mark, most_in_stencil);
-  full_screen_.draw();
+  return draw_in_strips(sample, box);
+}
+
+bool ShadePass::draw_in_strips(const Sample& sample, const PixelBox& box) {
+  const glm::dvec2 size(box.end - box.first);
+  const int rows =
+      static_cast<int>(std::clamp(sample.pixels_at_once / std::max(size.x, 1.0), 1.0, std::max(size.y, 1.0)));
+  for (PixelBox strip = box; strip.first.y < box.end.y; strip.first.y += rows) {
+    strip.end.y = std::min(strip.first.y + rows, box.end.y);
+    confine_to(strip);
+    full_screen_.draw();
+    unfinished_ += size.x * rows;
+    if (unfinished_ < sample.pixels_at_once) continue;
+    // A device that is only told goes on to the end, whatever the answer.
+    glFinish();
+    unfinished_ = 0.0;
+    if (!sample.go_on()) return false;
+  }
+  return true;
 }
 
 void ShadePass::shade_unwrapped(const Sample& sample, const ShadowPass& shadows) {
