@@ -50,7 +50,7 @@ class MaterialValues:
 
     def _require(self, native, model, parameter, known):
         """Raises native.Error unless the choice is one of those that the model knows."""
-        chosen = dict(self.values)[parameter]
+        chosen = dict(self.values).get(parameter, parameters.PARAMETERS[parameter].default)
         if chosen not in known:
             choices = " or ".join(labels.of_choice(parameter, name) for name in known)
             raise native.Error(f"Material '{self.name}': {labels.of_model(model)} takes {choices} as {parameter}; got "
