@@ -9,7 +9,7 @@ from . import coarseness, status
 
 # A redraw may wait this long for samples under way: short enough for a fluid window, long enough that a fast device
 # answers a change within the same redraw.
-PATIENCE_SECONDS = 0.03
+PATIENCE_SECONDS = 0.028
 # The display is half-float: a value beyond its largest would become Inf and blacken the viewport.
 LARGEST_DISPLAYED = 65504.0
 # What a better answer changes in the picture comes over this long.
