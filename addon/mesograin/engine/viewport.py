@@ -262,20 +262,19 @@ class Session:
         self._begin()
 
     def _took_camera(self, taking):
-        try:
-            taking.result()
-        except native_module.get().Error:
-            self._camera = None
-            raise
+        self._took_view(taking)
         self._begin()
 
     def _took_sharpness(self, taking):
+        self._took_view(taking)
+        self._chunk = 1
+
+    def _took_view(self, taking):
         try:
             taking.result()
         except native_module.get().Error:
             self._camera = None
             raise
-        self._chunk = 1
 
     def _took_news(self, news):
         if news.result():
