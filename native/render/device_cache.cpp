@@ -221,6 +221,7 @@ void DeviceCache::complete(const std::vector<const DeviceMaterial*>& materials) 
   // What does not depend on the size is made once for all sizes: other materials first, while it is.
   std::ranges::stable_sort(waiting, {}, &MaterialEntry::grain_radius);
   std::vector<std::pair<scene::Material, double>> missing;
+  missing.reserve(waiting.size());
   for (const MaterialEntry* entry : waiting) missing.emplace_back(entry->source, entry->grain_radius);
   std::vector<models::MaterialInputs> inputs = inputs_of(missing);
   for (std::size_t i = 0; i < waiting.size(); ++i) {

@@ -31,8 +31,10 @@ TEST(Memo, IsMadeOnceForAllThreads) {
   Memo<int, int> memo(4);
   std::atomic<int> made = 0;
   std::atomic<int> right = 0;
+  constexpr int asking = 8;
   std::vector<std::jthread> threads;
-  for (int thread = 0; thread < 8; ++thread)
+  threads.reserve(asking);
+  for (int thread = 0; thread < asking; ++thread)
     threads.emplace_back([&] {
       for (int key = 0; key < 4; ++key)
         right += *memo.get(key, [&] {
