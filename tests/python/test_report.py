@@ -16,6 +16,7 @@ from addon_rooms import ADDON, room
 colours = room("report.colours")
 payload = room("report.payload")
 plots = room("report.plots")
+LABELS = room("cycles.wording").LABELS
 
 BUILDER = ADDON / "mesograin" / "report" / "build.py"
 
@@ -80,16 +81,20 @@ def write_folder(tmp_path):
         write_case(tmp_path, "lambert.diffuse", 1.003 * reference, reference),
         write_significance(
             tmp_path,
-            write_case(tmp_path, "model_1.volume", 1.4 * reference, reference, notes=["Cycles <cannot> do this."]),
+            write_case(tmp_path, "model_1.volume_index_matched", 1.4 * reference, reference,
+                       notes=["Cycles <cannot> do this with volume_dielectric."], boundary="index_matched",
+                       reference_title="Cycles volume, index-matched", passes_ms={"light_maps": 2.5},
+                       material={"Grain": {"model": "model_1", "boundary": "index_matched", "profile": "half_space",
+                                           "specular": False, "sigma_a": [0.1, 0.2, 0.3]}}),
         ),
         {
-            "name": "model_2.volume",
+            "name": "model_2.subsurface_burley",
             "model": "model_2",
             "reference_title": "Cycles volume",
             "status": "failed",
             "material": {},
             "reference": "volume",
-            "error": "Out of <memory>.",
+            "error": "Out of <memory> for subsurface_burley.",
         },
     ]
     results = {
@@ -171,7 +176,7 @@ def test_page_needs_nothing_else(built):
 
 
 def test_plots_are_files_too(built):
-    for name in ("overview", "cost", "lambert.diffuse.profile", "model_1.volume.histogram"):
+    for name in ("overview", "cost", "lambert.diffuse.profile", "model_1.volume_index_matched.histogram"):
         svg = (built / "plots" / f"{name}.svg").read_text()
         assert svg.rstrip().endswith("</svg>") and "var(--" not in svg
         assert (built / "plots" / f"{name}.png").read_bytes()[:4] == b"\x89PNG"
@@ -179,7 +184,7 @@ def test_plots_are_files_too(built):
     cost = (built / "plots/cost.svg").read_text()
     assert "Cycles Diffuse" in cost and "Model 1" in cost, "Cycles is a point among ours"
     figure = (built / "plots/overview.svg").read_text()
-    for words in ("disc.blend, 48 × 48 pixels, against Cycles Diffuse.", "noise in a pixel", "in blocks"):
+    for words in ("disc.blend, 48 × 48 pixels, against Cycles Diffuse; Cycles volume", "noise in a pixel", "in blocks"):
         assert words in figure, words
     page = (built / "report.html").read_text()
     assert "#010203" not in page, "a plot in the page has the page's colours"
@@ -220,16 +225,31 @@ def test_page_says_what_happened(built):
     page = (built / "report.html").read_text()
     text = html.unescape(re.sub(r"<[^>]*>", " ", page))
     assert "./mesograin compare disc.blend --set 'g=0.1'" in text
-    assert "Out of <memory>." in text and "Cycles <cannot> do this." in text and "Sand <b>" in text
+    assert "Out of <memory> for Subsurface Scattering, Christensen-Burley." in text \
+        and "Cycles <cannot> do this with Glass" in text and "Sand <b>" in text
     assert "sum |i - r| / sum r" in text and "llvmpipe" in text and "A CPU" in text
     assert page.count('<section class="case"') == 2
+
+
+def test_page_and_figure_call_things_by_their_labels(built):
+    page = re.sub(r"<(script|style).*?</\1>", "", (built / "report.html").read_text(), flags=re.S)
+    told = " ".join(re.findall(r'(?:title|alt|aria-label)="([^"]*)"', page))
+    text = " ".join(html.unescape(re.sub(r"<[^>]*>", " ", page)).split())
+    figure = " ".join(html.unescape(re.sub(r"<[^>]*>", " ", (built / "plots/overview.svg").read_text())).split())
+    names = {name for name in LABELS if "_" in name} | {"light_maps"}
+    assert names > {"index_matched", "model_1", "half_space", "volume_dielectric"}
+    for where, words in (("page", text), ("attributes", told), ("figure", figure)):
+        assert {name for name in names if re.search(rf"\b{name}\b", words)} == set(), where
+    assert "boundary Index matched" in text and "(boundary Index matched)" in figure
+    assert "specular off" in text and "Model 1 against Cycles volume, index-matched" in text
+    assert "here for relative L1: sum |i - r| / sum r" in text
 
 
 def test_live_pictures_are_the_exr_files(built):
     page = (built / "report.html").read_text()
     live = [json.loads(text) for text in re.findall(r'class="live">(.*?)</script>', page)]
     assert len(live) == 2 and live[1]["stops"] == -1.5
-    expected = native.read_exr(built / "model_1.volume" / "model.exr")[0][..., :3]
+    expected = native.read_exr(built / "model_1.volume_index_matched" / "model.exr")[0][..., :3]
     texts = dict(re.findall(r'<script type="text/plain" id="(\w+)">(.*?)</script>', page))
     np.testing.assert_array_equal(unpack(texts[live[1]["model"]], 48, 48), expected.astype(np.float16))
     mask = unpack(texts[live[1]["mask"]], 48, 48)[..., 0]
@@ -248,7 +268,7 @@ def test_significance_is_shown_where_it_was_tested(built):
     assert "where the truth is known" in html.unescape(page) and 'popover id="define-controls"' in page
     assert "Differs significantly in 10.0 % of 900 pixels and 25.0 % of 20 blocks of 8×8" in text
     assert "noise was 0.200 of the error in relative_l1: it is 0.310 of it; 4 seeds were not enough." in text
-    assert (built / "plots/model_1.volume.by_angle.svg").is_file() and "by_angle" not in first
+    assert (built / "plots/model_1.volume_index_matched.by_angle.svg").is_file() and "by_angle" not in first
     overview = page[:page.index('<section class="case"')]
     assert overview.count('popovertarget="define-metrics.relative_l1_blocks_corrected"') == 2, "what to read first"
     assert "1.23 %" in text and "whether <noise> explains it" in html.unescape(page)

@@ -9,10 +9,11 @@ import jinja2
 import numpy
 from markupsafe import Markup
 
+from ..cycles.wording import in_labels
 from ..schema.labels import of_model
 from . import colours, payload, plots
-from .wording import (compared, controls, form, headline, mask_steps, parameters, significance, terms, until,
-                      verdict)
+from .wording import (boundary, case_title, compared, controls, form, headline, mask_steps, parameters, significance,
+                      terms, until, verdict)
 
 PAGE = Path(__file__).resolve().parent / "page"
 PLOTS = "plots"
@@ -119,9 +120,12 @@ def _view(of, definitions, pictures, folder):
     """What the template needs of one case. of: reading.CasePictures."""
     case = of.case
     view = {"case": case, "done": case["status"] == "done", "parameters": parameters(case["material"]),
-            "model": of_model(case["model"])}
+            "model": of_model(case["model"]), "title": case_title(case)}
     if not view["done"]:
+        view["error"] = in_labels(case["error"])
         return view
+    view["boundary"] = boundary(case)
+    view["notes"] = [in_labels(note) for note in case["notes"]]
     view["png"] = of.png
     height, width = of.model.shape[:2]
     live = {
@@ -198,7 +202,8 @@ def definition(definitions, key):
     """The sentence for a number by its dotted path; "" if there is none."""
     group, _, name = key.rpartition(".")
     if group in ("noise_floor", "our_noise") and group in definitions:
-        return f"{definitions[group]}; here for {name}: {definitions.get(name, '')}"
+        called = next((title for known, title, _ in LEADING if known == f"metrics.{name}"), name)
+        return f"{definitions[group]}; here for {called}: {definitions.get(name, '')}"
     return definitions.get(name) or definitions.get(key, "")
 
 

@@ -107,7 +107,7 @@ def _number(row, axis):
 
 
 def text(value):
-    """A parameter's value as it is written: a colour as one number where its channels are equal."""
+    """A parameter's value as it is read: a colour as one number where its channels are equal, a choice by its label."""
     if isinstance(value, list):
         return "/".join(f"{channel:g}" for channel in (value if len(set(value)) > 1 else value[:1]))
-    return f"{value:g}" if isinstance(value, (int, float)) else "–" if value is None else str(value)
+    return f"{value:g}" if isinstance(value, (int, float)) else "–" if value is None else LABELS.get(value, str(value))

@@ -3,6 +3,9 @@
 
 import math
 
+from ..cycles.wording import LABELS
+from ..schema.labels import of_model
+
 
 def parameters(material):
     """[(material name, [(parameter, text)])]."""
@@ -12,10 +15,26 @@ def parameters(material):
 
 
 def _text(value):
+    if isinstance(value, bool):
+        return "on" if value else "off"
+    if isinstance(value, str):
+        return LABELS.get(value, value)
     if isinstance(value, list):
         parts = [f"{number:.4g}" for number in value]
         return parts[0] if len(set(parts)) == 1 else ", ".join(parts)
     return f"{value:.4g}" if isinstance(value, float) else str(value)
+
+
+def case_title(case):
+    """What a case is called: its model and what it is against."""
+    part = case.get("part", "whole")
+    return f"{of_model(case['model'])} against {case['reference_title']}" + (
+        "" if part == "whole" else f", {part} part alone")
+
+
+def boundary(case):
+    """Of a case's grains, by its label; "" where it says none."""
+    return LABELS.get(case["boundary"], case["boundary"])
 
 
 def headline(case):
@@ -29,7 +48,7 @@ def terms(results):
     """What a figure must say of a comparison to be read alone: [sentence]."""
     done = [case for case in results["cases"] if case["status"] == "done"]
     references = dict.fromkeys(
-        case["reference_title"] + (f" (boundary {case['boundary']})" if case["boundary"] else "") for case in done
+        case["reference_title"] + (f" (boundary {boundary(case)})" if case["boundary"] else "") for case in done
     )
     floors = [case["noise_floor"]["relative_l1"] for case in done if case["noise_floor"]["relative_l1"] is not None]
     noise = "not known"
