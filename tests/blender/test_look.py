@@ -65,6 +65,19 @@ def test_water_around_a_grain_is_taken_back(material):
     assert grain.eta == pytest.approx(1.544) and said.surroundings == "air"
 
 
+def test_what_a_grain_lies_in_can_be_animated(material):
+    grain, said = material.mesograin, material.mesograin_look
+    grain_object(material, 1.0)
+    grain.eta = 1.544
+    for frame, around in ((1, "air"), (11, "water"), (21, "oil")):
+        said.surroundings = around
+        said.keyframe_insert("surroundings", frame=frame)
+    for frame, index in ((1, 1.0), (11, 1.333), (21, 1.47), (1, 1.0)):
+        bpy.context.scene.frame_set(frame)
+        evaluated = material.evaluated_get(bpy.context.evaluated_depsgraph_get())
+        assert dict(export.material_values(evaluated, 1.0).values)["eta"] == pytest.approx(1.544 / index, rel=1e-5)
+
+
 def grain_object(material, size, is_cube=False):
     make = bpy.ops.mesh.primitive_cube_add if is_cube else bpy.ops.mesh.primitive_uv_sphere_add
     make(**({"size": size} if is_cube else {"radius": 0.5 * size}))

@@ -14,6 +14,9 @@ from ..schema import advice, labels, models, parameters
 from . import (automatic, budgets, colours, heaps, instance_attributes, left_out, lens, lights, mesh_lights, meshes,
                node_colours, plain_materials, properties, scattered, surroundings, textures)
 
+INDICES = {"air": 1.0, "water": 1.333, "oil": 1.47}
+"""Of refraction, of what a grain may lie in."""
+
 
 @dataclasses.dataclass(frozen=True)
 class MaterialValues:
@@ -261,6 +264,9 @@ def material_values(material, millimetres_per_unit, reading=None):
         return MaterialValues("(none)", tuple({**dict(_default_parameters(millimetres_per_unit)), **values}.items()),
                               finish)
     values = dict(_parameters(material.mesograin, millimetres_per_unit))
+    # By hand, a choice of what the grain lies in changes eta at once; of an animated one Blender tells nobody.
+    said, eta = material.mesograin_look, parameters.PARAMETERS["eta"]
+    values["eta"] = min(max(values["eta"] * said.index_around / INDICES[said.surroundings], eta.least), eta.most)
     if not plain_materials.is_plain(material):
         return MaterialValues(material.name_full, tuple(values.items()))
     reading = reading or plain_materials.read(material)

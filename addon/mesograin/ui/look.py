@@ -9,7 +9,6 @@ from ..scene import budgets, export, meshes, thick_layer
 from ..scene.properties import OVERRIDABLE
 from .active_material import OnActiveMaterial, active_material
 
-INDICES = {"air": 1.0, "water": 1.333, "oil": 1.47}
 UNKNOWN = (0.0, 0.0, 0.0)
 
 
@@ -69,7 +68,7 @@ def _sentences():
 
 
 def _surround(look, _context):
-    index = INDICES[look.surroundings]
+    index = export.INDICES[look.surroundings]
     look.id_data.mesograin.eta *= look.index_around / index
     look.index_around = index
 
@@ -94,12 +93,12 @@ class LookProperties(bpy.types.PropertyGroup):
         name="Lies in", default="air", update=_surround, override=OVERRIDABLE, description="What is around the grain."
         " eta is relative to it: a wet grain refracts and reflects less, and more of what is inside shows", items=tuple(
             (name, name.capitalize(), f"Index of refraction {index:g}", number)
-            for number, (name, index) in enumerate(INDICES.items())))
+            for number, (name, index) in enumerate(export.INDICES.items())))
     index_around: FloatProperty(default=1.0, options={"HIDDEN"}, override=OVERRIDABLE)
 
     def forget_surroundings(self):
         """The grain lies in air from here on, and its eta is what it is."""
-        self.index_around = INDICES["air"]
+        self.index_around = export.INDICES["air"]
         self.surroundings = "air"
 
 
