@@ -188,6 +188,49 @@ def test_the_result_is_applied(grain):
     assert "UNDO" in operators.MESOGRAIN_OT_apply_match.bl_options
 
 
+def test_one_undo_takes_an_applied_result_back(grain):
+    names = ("sigma_a", "sigma_s", "g", "scale")
+
+    def values():
+        made = bpy.data.materials["Sand"].mesograin
+        return [list(value) if hasattr(value := getattr(made, name), "__len__") else [value] for name in names]
+
+    grain.mesograin.scale, grain.mesograin.g = 20.0, -0.25
+    bpy.ops.ed.undo_push(message="before")
+    before = values()
+    session.results = {"material": "Sand", "sigma_a": (0.25, 0.5, 0.75), "sigma_s": (4.0, 5.0, 6.0), "g": 0.5,
+                       "scale": 1.0}
+    try:
+        assert bpy.ops.mesograin.apply_match("EXEC_DEFAULT", True) == {"FINISHED"}
+        after = [[0.25, 0.5, 0.75], [4.0, 5.0, 6.0], [0.5], [1.0]]
+        assert values() == after
+        bpy.ops.ed.undo()
+        assert values() == before
+        bpy.ops.ed.redo()
+        assert values() == after
+        assert operators.MESOGRAIN_OT_apply_match.poll(bpy.context), "the result is there to be applied again"
+    finally:
+        session.forget()
+
+
+def test_a_result_is_not_applied_to_a_linked_material(grain, tmp_path):
+    library = str(tmp_path / "library.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=library)
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
+    with bpy.data.libraries.load(library, link=True) as (_, here):
+        here.materials = ["Sand"]
+    linked = here.materials[0]
+    before = tuple(linked.mesograin.sigma_a)
+    session.results = {"material": "Sand", "sigma_a": (0.25, 0.5, 0.75), "sigma_s": (4.0, 5.0, 6.0), "g": 0.5,
+                       "scale": 1.0}
+    try:
+        with pytest.raises(RuntimeError, match="'Sand' is linked"):
+            bpy.ops.mesograin.apply_match()
+    finally:
+        session.forget()
+    assert tuple(linked.mesograin.sigma_a) == before
+
+
 def test_the_panel_asks_for_what_the_study_takes(grain, tmp_path):
     asked = bpy.context.scene.mesograin_match
     asked.image = bpy.data.images.new("Picture", 64, 64)

@@ -66,6 +66,9 @@ class MESOGRAIN_OT_apply_match(OnActiveMaterial, bpy.types.Operator):
         if material is None:
             self.report({"ERROR"}, f"There is no material '{found['material']}' any more.")
             return {"CANCELLED"}
+        if material.library is not None:  # it would be as it was when the file is opened again
+            self.report({"ERROR"}, f"'{material.name}' is linked: make it local, or override it.")
+            return {"CANCELLED"}
         grain = material.mesograin
         for name in ("sigma_a", "sigma_s", "g", "scale"):
             setattr(grain, name, found[name])
