@@ -49,7 +49,7 @@ def main():
     parser = argparse.ArgumentParser(prog="./mesograin bench drag", description=__doc__.split("\n\n")[0])
     parser.add_argument("build", help=argparse.SUPPRESS)
     parser.add_argument("--changes", type=int, default=200,
-                        help="of a parameter, and as many of the view, by a script and by the mouse (default: 200)")
+                        help="of each: colour and view by a script, a slider and the view by the mouse (default: 200)")
     parser.add_argument("--models", nargs="+", choices=NAMES, default=NAMES, help="default: all")
     parser.add_argument("--json", metavar="FILE", help="where to keep every number")
     chosen = parser.parse_args()
@@ -60,7 +60,9 @@ def main():
     print(f"Viewport of {width} x {height}, {chosen.changes} changes each; Solid is Blender's redraw after the same.")
     print(f"{'dragged':<10}{'shown':<12}{'median ms':>10}{'/ Solid':>9}{'95 % ms':>9}{'/ Solid':>9}{'update ms':>11}"
           f"{'draw ms':>9}")
-    for dragged in ("parameter", "view", "mouse"):
+    for dragged in ("parameter", "slider", "view", "mouse"):
+        if f"{dragged} solid" not in found:  # no model that was chosen has it
+            continue
         solid = statistics.median(found[f"{dragged} solid"]["wait"])
         for setting, times in found.items():
             if not setting.startswith(dragged):

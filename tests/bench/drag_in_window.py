@@ -8,6 +8,7 @@ import pathlib
 import subprocess
 import sys
 import time
+import traceback
 
 import addon_utils
 import bpy
@@ -15,6 +16,7 @@ import bpy
 PAUSE = 0.01  # s between looks
 SETTLE = 1.0  # s before a setting is measured
 MOST = 30.0  # s for one change
+PAGES = 6  # of the Properties editor that are looked through
 
 
 class Clock:
@@ -52,28 +54,98 @@ class Clock:
 
 
 class Mouse:
-    """Turns the view with its middle button, as an artist does."""
+    """What an artist does with it, in real events."""
 
-    def __init__(self, window, region, view):
-        self._middle = region.x + region.width // 2, window.height - 1 - (region.y + region.height // 2)
-        self._view, self._before = view, None
+    def __init__(self, window):
+        self._height = window.height
 
-    def press(self):
-        self._tell("mousemove", *self._middle, "mousedown", 2)
+    def move_to(self, x, y):
+        """In the window's own pixels, from below."""
+        self._tell("mousemove", x, self._height - 1 - y)
 
-    def release(self):
-        self._tell("mouseup", 2)
+    def move_by(self, x):
+        self._tell("mousemove_relative", "--", x, 0)
 
-    def drag(self, number):
-        self._before = self._view.view_matrix.copy()
-        self._tell("mousemove_relative", "--", 4 if number // 25 % 2 else -4, 0)
+    def press(self, button):
+        self._tell("mousedown", button)
 
-    def has_dragged(self):
-        return self._view.view_matrix != self._before
+    def release(self, button):
+        self._tell("mouseup", button)
+
+    def scroll(self, lines):
+        self._tell("click", "--repeat", lines, 5)
+
+    def key(self, name):
+        # Without a window manager nobody else gives Blender's window the focus.
+        self._tell("search", "--onlyvisible", "--class", "Blender", "windowfocus", "key", name)
 
     @staticmethod
     def _tell(*words):
         subprocess.run(["xdotool", *map(str, words)], check=True, timeout=20)
+
+
+def there_and_back(number):
+    """Pixels that the mouse is moved by."""
+    return 4 if number // 25 % 2 else -4
+
+
+class TurnedView:
+    """The view, turned with the middle button."""
+
+    BUTTON = 2
+
+    def __init__(self, mouse, region, view):
+        self._mouse, self._view, self._before = mouse, view, None
+        self._middle = region.x + region.width // 2, region.y + region.height // 2
+
+    def reach(self):
+        self._mouse.move_to(*self._middle)
+        yield PAUSE
+
+    def drag(self, number):
+        self._before = self._view.view_matrix.copy()
+        self._mouse.move_by(there_and_back(number))
+
+    def has_dragged(self):
+        return self._view.view_matrix != self._before
+
+
+class Slider:
+    """A number of a material in the Properties editor."""
+
+    BUTTON = 1
+
+    def __init__(self, mouse, area, owner, name):
+        self._mouse, self._area, self._owner, self.name = mouse, area, owner, name
+        self._before = None
+
+    def reach(self):
+        """Goes up the editor, and turns the wheel, until the key that copies a property's path copies this one's."""
+        region = next(region for region in self._area.regions if region.type == "WINDOW")
+        x = region.x + region.width * 3 // 4
+        for _ in range(PAGES):
+            for y in range(region.y + 5, region.y + region.height, 8):
+                if (yield from self._is_at(x, y)):
+                    return
+            self._mouse.scroll(5)
+            yield SETTLE
+        raise RuntimeError(f"the Properties editor shows no {self.name}")
+
+    def _is_at(self, x, y):
+        manager = bpy.context.window_manager
+        manager.clipboard = ""
+        self._mouse.move_to(x, y)
+        yield 0.1
+        self._mouse.key("ctrl+shift+c")
+        yield 0.1
+        return manager.clipboard.endswith(self.name)
+
+    def drag(self, number):
+        self._before = getattr(self._owner, self.name)
+        self._mouse.move_by(-there_and_back(number))
+
+    def has_dragged(self):
+        return getattr(self._owner, self.name) != self._before
 
 
 def measured(clock, area, change, rendered, changes, changed=lambda: True):
@@ -97,6 +169,7 @@ def measured(clock, area, change, rendered, changes, changed=lambda: True):
 
 def work(out, changes, models):
     from mesograin.engine import engine
+    from mesograin.schema.models import CHOICES
 
     path = pathlib.Path(__file__).resolve().parents[2] / "blend_files/sphere.blend"
     bpy.ops.wm.open_mainfile(filepath=str(path), load_ui=False)
@@ -117,33 +190,51 @@ def work(out, changes, models):
     def drag_view(number):
         view.view_rotation = (math.cos(0.01 * number), 0.0, math.sin(0.01 * number), 0.0)
 
-    mouse = Mouse(bpy.context.window_manager.windows[0], region, view)
+    mouse = Mouse(bpy.context.window_manager.windows[0])
+    properties = next(area for area in screen.areas if area.type == "PROPERTIES")
+    bpy.context.view_layer.objects.active = next(
+        thing for thing in scene.objects if thing.active_material == grain.id_data)
+    slider = Slider(mouse, properties, grain, "scale")
 
-    def by_mouse(rendered):
-        mouse.press()
-        yield SETTLE
-        times = yield from measured(clock, area, mouse.drag, rendered, changes, mouse.has_dragged)
-        mouse.release()
-        yield SETTLE
+    def by_mouse(dragged):
+        def times(rendered):
+            if dragged is slider:
+                properties.spaces.active.context = "MATERIAL"
+                grain.scale = 1.0
+            yield SETTLE
+            yield from dragged.reach()
+            mouse.press(dragged.BUTTON)
+            yield SETTLE
+            for _ in range(4):  # no drag begins with the first pixels
+                mouse.move_by(4)
+                yield SETTLE / 4
+            found = yield from measured(clock, area, dragged.drag, rendered, changes, dragged.has_dragged)
+            mouse.release(dragged.BUTTON)
+            yield SETTLE
+            return found
+
         return times
 
     def by_script(change):
         return lambda rendered: measured(clock, area, change, rendered, changes)
 
     found = {"size": (region.width, region.height)}
-    for name, drag in (("parameter", by_script(drag_parameter)), ("view", by_script(drag_view)), ("mouse", by_mouse)):
-        space.shading.type = "SOLID"
+    for name, drag in (("parameter", by_script(drag_parameter)), ("view", by_script(drag_view)),
+                       ("slider", by_mouse(slider)), ("mouse", by_mouse(TurnedView(mouse, region, view)))):
+        shown = [model for model in models if name != "slider" or slider.name in CHOICES[model].parameters]
+        if not shown:
+            continue
+        space.shading.type, grain.model = "SOLID", shown[0]
         yield SETTLE
         found[f"{name} solid"] = yield from drag(False)
         space.shading.type = "RENDERED"
-        for model in models:
+        for model in shown:
             grain.model = model
             yield SETTLE
             deadline = time.perf_counter() + MOST
             while clock.session is None or clock.session.preparing is not None and time.perf_counter() < deadline:
                 yield PAUSE
             found[f"{name} {model}"] = yield from drag(True)
-            out.write_text(json.dumps(found))
     out.write_text(json.dumps(found))
 
 
@@ -156,8 +247,11 @@ def main():
         try:
             return next(steps)
         except StopIteration:
-            bpy.ops.wm.quit_blender()
-            return None
+            pass
+        except Exception:  # who started Blender waits for its end and shows what it said
+            traceback.print_exc()
+        bpy.ops.wm.quit_blender()
+        return None
 
     bpy.app.timers.register(step, first_interval=1.0, persistent=True)
 

@@ -14,7 +14,8 @@ PATIENCE_SECONDS = 0.028
 LARGEST_DISPLAYED = 65504.0
 # What a better answer changes in the picture comes over this long.
 FADE_SECONDS = 0.3
-# No sharp picture is begun before so long has passed without a change: a change would have to wait for it.
+# No sharper or better picture is begun before so long has passed without a change: a change would have to wait for it,
+# or for the redraw that shows it.
 STILL_SECONDS = 0.1
 
 
@@ -36,7 +37,8 @@ class Session:
         self._size = (1, 1)  # that was last asked for
         self._coarseness = coarseness.Coarseness()
         self._divisor = 1  # of what the view draws or is about to, as Coarseness'
-        self._still = None  # since when no change came after a coarse picture was seen
+        self._still = None  # since when no change came after a picture was seen
+        self._rests = False  # whether nothing is drawn beyond that yet, as a change may come
         self._next_scene = self._next_camera = None  # asked for, and not yet the view's
         self._taking = None  # a scene or a camera that the view is being given, or news that it takes in
         self._took = None  # what goes on once that is done: no method of this object, which would keep it alive
@@ -122,8 +124,9 @@ class Session:
 
     @property
     def settling(self):
-        """Whether the picture is a coarse one, which is left so until no change has come for a while."""
-        return self._seen and self._divisor > 1
+        """Whether the picture is the first of what was asked for, or a coarse one, and left so until no change has come
+        for a while."""
+        return self._seen and (self._rests or self._divisor > 1)
 
     @property
     def waits(self):
@@ -186,19 +189,22 @@ class Session:
             self._keep()
         if self._task is not None and self._seen:  # which would only refine what is shown already
             self._interrupt()
-        self._still = None
+        self._still, self._rests = None, True
         divisor = self._coarseness.divisor()
         if divisor != self._divisor and self._camera is not None:
             self._divisor, self._next_camera = divisor, self._camera
         self._apply()
 
     def _sharpen_in_time(self):
-        """Goes over from a coarse picture to a finer one, unless changes come yet."""
+        """Goes over from a coarse picture to a finer one, or to further samples of it, unless changes come yet."""
         if not self.settling or self._taking is not None or self._task is not None or self._fade is not None:
             return
         now = time.perf_counter()
         self._still = self._still or now
         if now - self._still < STILL_SECONDS:
+            return
+        self._rests = False
+        if self._divisor == 1:
             return
         self._divisor = coarseness.finer(self._divisor)
         size = coarseness.size(self._size, self._divisor)
@@ -299,7 +305,7 @@ class Session:
             self._draw()
 
     def _draw(self):
-        if self._divisor > 1 and self._view.samples:
+        if self.settling and self._view.samples:
             return
         if self._camera is not None and self._view.samples < self._target:
             count = min(self._chunk, self._target - self._view.samples)
@@ -328,6 +334,8 @@ class Session:
             return None
         seconds = task.result()
         samples, divisor = self._drawn
+        if seconds < PATIENCE_SECONDS / 2:  # another is no hindrance
+            self._rests = False
         self._coarseness.note(divisor, seconds / samples)
         self._adapt(seconds)
         self._read = task.picture()
