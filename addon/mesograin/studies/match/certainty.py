@@ -14,11 +14,14 @@ SCARCE = 0.1
 PATTERNS = 4
 """Of so many smooth patterns over a grain a model's error is made: brighter, from one side to the other, from the top
 to the bottom, from the middle to the rim. docs/match.md has how often intervals hold the truth by that."""
+LEAST_ERROR = 0.005
+"""What a model is off in each of them at least, a part of the picture: docs/accuracy.md. Of a picture by a model that
+errs alike, as model_2 and model_3 do of spheres, a fit shows less."""
 G_RANGE = 0.5
 """The same of g, as a difference."""
 
 
-def covariance(fit, pattern, tiles, even, noise, smooth, unsteady=0.0):
+def covariance(fit, pattern, tiles, even, noise, smooth, unsteady=0.0, least_error=0.0):
     """(unknowns, unknowns): of the state of a least_squares.Fit, with the pattern that it was found with.
 
     The sum of four: what the residuals' size lets expect of independent errors (Gauss and Newton's); what the state
@@ -27,7 +30,7 @@ def covariance(fit, pattern, tiles, even, noise, smooth, unsteady=0.0):
     neighbours share; and what it would change by if the whole picture were brighter or darker by as much as its blocks
     are off in the mean, which no residual shows; and what the model's own error is, which other unknowns imitate as
     well as any picture (Kennedy and O'Hagan, "Bayesian calibration of computer models", 2001, section 4.2): in each of
-    its PATTERNS it is as large as in those that are left over. tiles: (n,), the part of each residual. even: (channels,
+    its PATTERNS it is as large as in those that are left over, and as `least_error`, a part of the picture. tiles: (n,), the part of each residual. even: (channels,
     n), the residuals of a picture twice as bright, less those of this one. noise: (channels, n), the mean square of
     each residual by noise alone. smooth: as fit.jacobian, of a model whose differences are no steps of a table.
     unsteady: the sum of squares by which the model goes in steps, an error as any other of its.
@@ -38,16 +41,18 @@ def covariance(fit, pattern, tiles, even, noise, smooth, unsteady=0.0):
         total[numpy.ix_(unknowns, unknowns)] = _covariance(
             rows, fit.residuals[channels], tiles, even[channels])
         total[numpy.ix_(unknowns, unknowns)] += _imitated(
-            smooth[channels][..., unknowns], fit.residuals[channels], noise[channels], unsteady)
+            smooth[channels][..., unknowns], fit.residuals[channels], noise[channels], unsteady,
+            least_error**2 * numpy.mean(numpy.sum(even[channels]**2, axis=1)))
     return total
 
 
-def _imitated(jacobian, residuals, noise, unsteady):
-    """Of the error of a model that leaves these residuals and such noise. jacobian: (channels, n, unknowns)."""
+def _imitated(jacobian, residuals, noise, unsteady, least):
+    """Of the error of a model that leaves these residuals and such noise. jacobian: (channels, n, unknowns). least: sum
+    of squares of a pattern."""
     channels, _, size = jacobian.shape
     rows = jacobian.reshape(-1, size)
     left_over = (max(numpy.sum(residuals**2) - numpy.sum(noise), 0.0) + unsteady) / max(PATTERNS * channels - size, 1)
-    return numpy.linalg.inv(rows.T @ rows / max(left_over, 1e-12) + numpy.eye(size) / UNKNOWING**2)
+    return numpy.linalg.inv(rows.T @ rows / max(left_over, least, 1e-12) + numpy.eye(size) / UNKNOWING**2)
 
 
 def _covariance(jacobian, residuals, tiles, even):

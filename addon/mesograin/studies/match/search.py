@@ -276,7 +276,8 @@ class _Search:
         if self._corrections:
             noise *= 2.0  # Cycles' pictures of both have as much
         spread = certainty.covariance(fit, medium.pattern, blocks.tiles, blocks.means * blocks.weights, noise,
-                                      self._smooth_jacobian(fit), self._unsteadiness(fit))
+                                      self._smooth_jacobian(fit), self._unsteadiness(fit),
+                                      0.0 if self._corrections else certainty.LEAST_ERROR)
         intervals = {name: [certainty.interval(name, value, deviation) for value, deviation in channels]
                      for name, channels in medium.told(fit.state, spread).items()}
         intervals = certainty.bound(intervals, coefficients["sigma_s"])
