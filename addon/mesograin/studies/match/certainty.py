@@ -30,9 +30,10 @@ def covariance(fit, pattern, tiles, even, noise, smooth, unsteady=0.0, least_err
     neighbours share; and what it would change by if the whole picture were brighter or darker by as much as its blocks
     are off in the mean, which no residual shows; and what the model's own error is, which other unknowns imitate as
     well as any picture (Kennedy and O'Hagan, "Bayesian calibration of computer models", 2001, section 4.2): in each of
-    its PATTERNS it is as large as in those that are left over, and as `least_error`, a part of the picture. tiles: (n,), the part of each residual. even: (channels,
-    n), the residuals of a picture twice as bright, less those of this one. noise: (channels, n), the mean square of
-    each residual by noise alone. smooth: as fit.jacobian, of a model whose differences are no steps of a table.
+    its PATTERNS it is as large as in those that are left over, and as `least_error`, a part of the picture.
+    tiles: (n,), the part of each residual. even: (channels, n), the residuals of a picture twice as bright, less those
+    of this one. noise: (channels, n), the mean square of each residual by noise alone. smooth: as fit.jacobian, of a
+    model whose differences are no steps of a table.
     unsteady: the sum of squares by which the model goes in steps, an error as any other of its.
     """
     total = numpy.zeros((pattern.shape[1],) * 2)
