@@ -15,6 +15,8 @@ class Interface {
 
   bool matched() const { return eta_ == 1.0; }
 
+  double eta() const { return eta_; }
+
   struct Entry {
     glm::vec3 inwards;
     glm::vec3 mirrored;

@@ -2,6 +2,7 @@
 // of many lengths is known at three extinctions and is exp(polynomial) in between.
 #pragma once
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -61,7 +62,21 @@ class NearWeights {
     return std::exp(logarithm);
   }
 
+  /// Of one logarithm after the other, into a row of Eigen's.
+  template <typename Row>
+  void decayed(const Logarithm* logarithms, Row& row) const {
+    for (Eigen::Index i = 0; i < row.size(); ++i, logarithms += near_extinctions) {
+      float logarithm = -60.0F + 0.5e-3F;
+      for (std::size_t e = 0; e < near_extinctions; ++e)
+        logarithm += 1e-3F * weights_[e] * static_cast<float>(logarithms[e]);
+      row[i] = logarithms[0] == 0 ? least : logarithm;
+    }
+    row = (row.array() > least).select(row.array().exp(), 0.0F).matrix();
+  }
+
  private:
+  static constexpr float least = -80.0F;  // nothing, whose exponential is a number that is not slow
+
   std::array<float, near_extinctions> weights_{};
 };
 

@@ -59,6 +59,13 @@ double densest_told(const glm::vec3& spacing);
 /// know.
 StoredTransport compute_transport(Walks& walks, const StoredMedium& medium, const Effort& effort = {});
 
+/// Whether `walks` were traced for the medium, or for another that is near enough for an answer that is nearly right.
+bool known(const Walks& walks, const StoredMedium& medium);
+bool nearly_known(const Walks& walks, const StoredMedium& medium);
+
+/// From what `walks` know already: nearly it must be known.
+StoredTransport recalled_transport(const Walks& walks, const StoredMedium& medium, const Effort& effort = {});
+
 /// With walks of its own.
 StoredTransport compute_transport(const Body& body, const StoredMedium& medium, const Quality& quality = {},
                                   const Effort& effort = {});

@@ -2,6 +2,8 @@
 #include "transport/walks.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <utility>
 
 #include "transport/near_extinctions.h"
@@ -9,6 +11,15 @@
 #include "transport/unscattered.h"
 
 namespace mesograin::transport {
+namespace {
+
+// Terms that the light is solved for, for each that is stored.
+constexpr int solved_a_stored = 2;
+
+// Steps of the ladder from one that was traced to the farthest that it nearly tells, and a little for rounding.
+constexpr double farthest_told = 1.01;
+
+}  // namespace
 
 Walks::Walks(std::shared_ptr<const Body> body, const Interface& interface, const Quality& quality, const Effort& effort)
     : body_(std::move(body)),
@@ -44,20 +55,63 @@ void Walks::trace(const std::vector<double>& extinctions, const Effort& effort) 
   std::vector<TracedExchange> exchanges =
       trace_exchange(*body_, grid_, interface_, missing, quality_.way_across, part_of(effort, 0.7, 1.0));
   for (std::size_t i = 0; i < missing.size(); ++i) {
-    steps[i].exchange = std::move(exchanges[i]);
+    Step& step = steps[i];
+    step.exchange = std::move(exchanges[i]);
+    step.sights = transport::sights(*body_, grid_, interface_.eta(), missing[i], effort);
+    step.lobes = principal_terms(step.sights, unscattered(step, missing[i], effort), {},
+                                 solved_a_stored * quality_.terms, effort)
+                     .told_by;
     steps_.emplace(missing[i], std::move(steps[i]));
   }
 }
 
-const Walks::Step& Walks::step(double sigma_t) const { return steps_.at(nearest_step(sigma_t)); }
+bool Walks::know(const std::vector<double>& extinctions) const {
+  return std::all_of(extinctions.begin(), extinctions.end(),
+                     [this](double sigma_t) { return steps_.contains(nearest_step(sigma_t)); });
+}
 
-Lights Walks::unscattered(double sigma_t) const {
-  const Step& near = step(sigma_t);
-  const NearWeights weights(near.exchange.sigma_t, sigma_t);
-  Lights light(static_cast<Eigen::Index>(grid_.places().size()), octahedron_texels);
-  for (Eigen::Index i = 0; i < light.size(); ++i)
-    light.data()[i] = weights.decayed(&near.light[static_cast<std::size_t>(i) * near_extinctions]);
+bool Walks::nearly_know(const std::vector<double>& extinctions) const {
+  return std::all_of(extinctions.begin(), extinctions.end(), [this](double sigma_t) {
+    const double wanted = nearest_step(sigma_t);
+    return std::any_of(steps_.begin(), steps_.end(), [wanted](const auto& known) {
+      return std::abs(std::log(known.first / wanted)) < farthest_told * std::log(extinction_step);
+    });
+  });
+}
+
+const Walks::Step& Walks::step(double sigma_t) const {
+  const double wanted = nearest_step(sigma_t);
+  const auto apart = [wanted](const auto& known) { return std::abs(std::log(known.first / wanted)); };
+  return std::min_element(steps_.begin(), steps_.end(),
+                          [&](const auto& a, const auto& b) { return apart(a) < apart(b); })
+      ->second;
+}
+
+// Unscattered light from everywhere is known: what a place sees of the outside, in which radiance is eta^2 less. It
+// takes out what nodes at the surface have wrong by standing for more than themselves.
+Lights Walks::unscattered(const Step& step, double sigma_t, const Effort& effort) const {
+  const NearWeights weights(step.exchange.sigma_t, sigma_t);
+  const std::array<float, octahedron_texels> angles = octahedron_solid_angles();
+  const Eigen::Map<const Eigen::RowVectorXf> solid_angles(angles.data(), octahedron_texels);
+  const auto square = static_cast<float>(interface_.eta() * interface_.eta());
+  const std::size_t nodes = grid_.places().size();
+  Lights light(static_cast<Eigen::Index>(nodes), octahedron_texels);
+  Effort quiet = effort;
+  quiet.progress = {};
+  constexpr std::size_t nodes_a_piece = 64;
+  run_pieces(quiet, (nodes + nodes_a_piece - 1) / nodes_a_piece, [&](std::size_t piece) {
+    for (std::size_t node = piece * nodes_a_piece; node < std::min(nodes, (piece + 1) * nodes_a_piece); ++node) {
+      auto row = light.row(static_cast<Eigen::Index>(node));
+      weights.decayed(&step.light[node * octahedron_texels * near_extinctions], row);
+      const float right = square * weights.decayed(&step.exchange.escapes[node * near_extinctions]);
+      row *= std::clamp(right / std::max(row.dot(solid_angles), 1e-9F), 0.1F, 10.0F);
+    }
+  });
   return light;
+}
+
+Lights Walks::unscattered(double sigma_t, const Effort& effort) const {
+  return unscattered(step(sigma_t), sigma_t, effort);
 }
 
 Exchange Walks::exchange(double sigma_t) const { return step(sigma_t).exchange.at(sigma_t); }
@@ -66,6 +120,9 @@ std::size_t Walks::bytes() const {
   std::size_t sum = surface_.size() * sizeof(float);
   for (const auto& [sigma_t, step] : steps_) {
     const Exchange& traced = step.exchange.traced;
+    const auto of_lobes = static_cast<std::size_t>(step.lobes.readers.size() + step.lobes.lobes.size());
+    const auto of_sights = static_cast<std::size_t>(step.sights.nonZeros());
+    sum += of_lobes * sizeof(float) + of_sights * (sizeof(float) + sizeof(int));
     sum += (step.exchange.distances.size() + traced.values.size() + traced.columns.size()) * sizeof(float) +
            (step.light.size() + step.exchange.escapes.size()) * sizeof(Logarithm) +
            traced.first.size() * sizeof(std::size_t);

@@ -12,7 +12,9 @@
 #include "transport/grid.h"
 #include "transport/interface.h"
 #include "transport/multiple.h"
+#include "transport/sights.h"
 #include "transport/surface.h"
+#include "transport/terms.h"
 
 namespace mesograin::transport {
 
@@ -39,11 +41,20 @@ class Walks {
   /// Traces what is not known yet for `extinctions`, sigma_t per unit of the body.
   void trace(const std::vector<double>& extinctions, const Effort& effort);
 
+  /// Whether all of them were traced, or are within a step of some that were: what is told of these is nearly right.
+  bool know(const std::vector<double>& extinctions) const;
+  bool nearly_know(const std::vector<double>& extinctions) const;
+
   /// Mean radiance of unscattered light at every node, a column for each texel of the octahedral map that it comes
-  /// from, per irradiance on a plane that faces it. Was traced.
-  Lights unscattered(double sigma_t) const;
+  /// from, per irradiance on a plane that faces it. As all below, what was traced, or of the nearest that was.
+  Lights unscattered(double sigma_t, const Effort& effort = {}) const;
 
   Exchange exchange(double sigma_t) const;
+
+  /// What is seen, and by which lobes light that is scattered once is told: of the ladder's step, for they say but what
+  /// matters.
+  const Sights& sights(double sigma_t) const { return step(sigma_t).sights; }
+  const Lobes& lobes(double sigma_t) const { return step(sigma_t).lobes; }
 
   std::size_t bytes() const;
 
@@ -51,8 +62,14 @@ class Walks {
   struct Step {
     std::vector<Logarithm> light;  // [node][texel][extinction of `near_extinctions`]
     TracedExchange exchange;
+    Sights sights;
+    Lobes lobes;
   };
 
+  /// Of `step`, as unscattered() has it.
+  Lights unscattered(const Step& step, double sigma_t, const Effort& effort) const;
+
+  /// That was traced, the nearest to `sigma_t`.
   const Step& step(double sigma_t) const;
 
   std::shared_ptr<const Body> body_;

@@ -172,11 +172,20 @@ void Works::work(const Job& job, const std::stop_token& stop) {
           "this "
           "one has {:.0f}.",
           2.0 * told, 2.0 * most_thinned * told, 2.0 * densest(medium));
-    if (densest(medium) <= densest_told(node_spacing(body, coarse)))
-      tell(std::make_shared<StoredTransport>(
-               compute_transport(*few, medium, part_of(effort, 0.2 * coarse_share, coarse_share))),
-           {}, false);
-    const std::shared_ptr<Walks> many = walks(job, quality, part_of(effort, coarse_share, 2.0 * coarse_share));
+    const Effort quick = part_of(effort, 0.2 * coarse_share, coarse_share);
+    const auto tell_first = [&](StoredTransport stored) {
+      tell(std::make_shared<StoredTransport>(std::move(stored)), {}, false);
+    };
+    std::shared_ptr<Walks> many = shelf_.find(job.about_body, describe(quality));
+    const bool coarsely_told = densest(medium) <= densest_told(node_spacing(body, coarse));
+    if (many && nearly_known(*many, medium)) {
+      // A slider that is dragged on: what was traced a moment ago tells it better than coarse walks of its own do.
+      if (coarsely_told && nearly_known(*few, medium)) tell_first(recalled_transport(*few, medium, quick));
+      if (!known(*many, medium)) tell_first(recalled_transport(*many, medium, quick));
+    } else if (coarsely_told) {
+      tell_first(compute_transport(*few, medium, quick));
+    }
+    if (!many) many = walks(job, quality, part_of(effort, coarse_share, 2.0 * coarse_share));
     const auto stored =
         std::make_shared<StoredTransport>(compute_transport(*many, medium, part_of(effort, 2.0 * coarse_share, 1.0)));
     cache_.keep(job.name, job.about, *stored);

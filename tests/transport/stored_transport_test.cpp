@@ -128,6 +128,42 @@ TEST(StoredTransport, ReusesItsWalksForOtherColours) {
   EXPECT_EQ(compute_transport(walks, medium).sources, compute_transport(*body, medium, coarse).sources);
 }
 
+// While a slider is dragged, walks that were traced a step of the ladder from there tell what is seen about as well as
+// other random numbers do, and trace nothing; two steps away they do not.
+TEST(StoredTransport, NearlyTellsWhatWalksWereTracedBeside) {
+  const auto body = std::make_shared<const Body>(cube());
+  Walks walks(body, Interface(1.3), coarse, {});
+  const double step = nearest_step(3.0);
+  const auto grey = [](double sigma_t) { return StoredMedium{glm::dvec3(sigma_t), glm::dvec3(0.93), 1.3}; };
+  EXPECT_FALSE(nearly_known(walks, grey(step)));
+  walks.trace({step}, {});
+  EXPECT_TRUE(known(walks, grey(step)));
+  EXPECT_FALSE(nearly_known(walks, grey(step * extinction_step * extinction_step)));
+  const std::vector<int>& used = walks.grid().used();
+  for (const double sigma_t : {step * extinction_step, step / extinction_step}) {
+    ASSERT_TRUE(nearly_known(walks, grey(sigma_t)));
+    EXPECT_FALSE(known(walks, grey(sigma_t)));
+    Walks own(body, Interface(1.3), coarse, {});
+    own.trace({sigma_t}, {});
+    // In pictures from all sides, in light from some.
+    const auto seen = [&](const StoredTransport& stored) -> Lights {
+      constexpr int apart = 61;
+      Lights sources = Lights::Zero(own.sights(sigma_t).cols(), octahedron_texels / apart);
+      for (std::size_t term = 0; term < static_cast<std::size_t>(stored.terms); ++term)
+        for (std::size_t node = 0; node < stored.nodes(); ++node)
+          for (Eigen::Index light = 0; light < sources.cols() && used[node] >= 0; ++light)
+            sources(used[node], light) +=
+                stored.sources[term * stored.nodes() + node] *
+                stored.lobes[term * octahedron_texels + static_cast<std::size_t>(apart * light)];
+      return own.sights(sigma_t) * sources;
+    };
+    const Lights right = seen(compute_transport(own, grey(sigma_t)));
+    const Lights of_other_seed = seen(compute_transport(*body, grey(sigma_t), coarse, Effort{.seed = 7}));
+    const Lights recalled = seen(recalled_transport(walks, grey(sigma_t)));
+    EXPECT_LT((recalled - right).cwiseAbs().sum(), 1.5F * (of_other_seed - right).cwiseAbs().sum()) << sigma_t / step;
+  }
+}
+
 // Light that is absorbed falls off as fast whether nodes lie a mean free path from one another or half of one: five
 // mean free paths below a surface that is lit evenly, straight lines between nodes far apart would have it 1.074 times
 // as bright as those between near ones.

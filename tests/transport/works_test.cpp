@@ -102,6 +102,31 @@ TEST_F(WorksTest, TellsCoarselyFirstAndFindsAgainWhatItKept) {
   EXPECT_FALSE(works.ask(order(0.6))->news().final) << "another material's";
 }
 
+// A slider that leaves what walks were traced for is answered by them before new ones are traced.
+TEST_F(WorksTest, TellsByTheWalksOfAMomentAgo) {
+  Works works{TransportCache(folder_)};
+  const auto thicker = [](double factor) {
+    Order order = WorksTest::order();
+    order.medium.sigma_t *= factor;
+    return order;
+  };
+  const auto first = works.ask(thicker(1.0));
+  finish(*first);
+  const auto within = works.ask(thicker(1.01));
+  finish(*within);
+  EXPECT_EQ(within->news().number, 2) << "coarsely, and all that there is to know";
+  const auto beyond = works.ask(thicker(1.5));
+  News recalled;
+  while (recalled.number < 2) recalled = beyond->news();
+  EXPECT_FALSE(recalled.final);
+  EXPECT_EQ(recalled.stored->nodes(), first->news().stored->nodes());
+  finish(*beyond);
+  EXPECT_EQ(beyond->news().number, 3);
+  const auto far = works.ask(thicker(4.0));
+  finish(*far);
+  EXPECT_EQ(far->news().number, 2) << "they tell nothing of that";
+}
+
 TEST_F(WorksTest, MakesAnewWhatIsDamaged) {
   const StoredTransport stored = small();
   const TransportCache cache(folder_);
