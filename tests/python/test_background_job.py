@@ -79,6 +79,24 @@ send("done")
     assert [path.name for path in tmp_path.iterdir()] == ["out"]
 
 
+def test_what_is_left_passes_and_is_not_told_for_ever(start, monkeypatch):
+    monkeypatch.setattr(job, "OVERDUE_SECONDS", 0.5)
+    started = start("""
+send("step", number=1, count=1, what="ours", fraction=0.0, seconds_left=1.0)
+sys.stdin.read()
+""")
+    assert started.seconds_left is None and started.unknown == "Blender is starting"
+    until(lambda: started.look() or started.step)
+    first = started.seconds_left
+    assert 0.0 < first <= 1.0
+    until(lambda: started.seconds_left < first - 0.2)
+    until(lambda: started.seconds_left == 0.0)
+    until(lambda: started.seconds_left is None)
+    assert started.unknown == "Longer than guessed"
+    started.cancel()
+    assert started.wait(job.PATIENCE_SECONDS + 5.0)
+
+
 @pytest.mark.parametrize("script, words", [
     ("send('failed', text='There is no camera.'); sys.exit(1)", "There is no camera."),
     ("print('out of memory', flush=True); os.kill(os.getpid(), signal.SIGSEGV)", "signal 11; it last said: out of mem"),

@@ -23,6 +23,8 @@ PATIENCE_SECONDS = 2.0
 """What a cancelled process is given to end by itself, before it is killed."""
 LOOK_SECONDS = 0.02
 """How often `Job.wait` looks."""
+OVERDUE_SECONDS = 2.0
+"""How much longer than it was told a step may take, before the guess is no longer told."""
 MOST_READ = 1 << 16
 NICENESS = 10
 """How much further back a job's process stands than Blender, whose window answers while Cycles takes every core."""
@@ -51,6 +53,7 @@ class Job:
         self.staging = Path(tempfile.mkdtemp(prefix=".unfinished-", dir=self.out))
         self.over = False
         """Whether the process and what it left are gone."""
+        self._told = 0.0  # when the step was
         self._lines = collections.deque(maxlen=40)
         self._process = None
         self._read = b""  # of a line whose end is not there yet
@@ -85,9 +88,16 @@ class Job:
 
     @property
     def seconds_left(self):
-        """None before the first step."""
-        step = self.step
-        return step.seconds_left if step else None
+        """None before the first step, and where the last one takes longer than was told."""
+        if self.step is None:
+            return None
+        left = self.step.seconds_left - (time.monotonic() - self._told)
+        return max(left, 0.0) if left > -OVERDUE_SECONDS else None
+
+    @property
+    def unknown(self):
+        """What is said where `seconds_left` is None."""
+        return "Longer than guessed" if self.step else "Blender is starting"
 
     def cancel(self):
         """Ends the job; its state says so at once. Looked at, its process and files are gone PATIENCE_SECONDS later."""
@@ -155,6 +165,7 @@ class Job:
     def _take(self, event):
         if event["event"] == "step":
             self.step = Step(**{name: value for name, value in event.items() if name != "event"})
+            self._told = time.monotonic()
         elif event["event"] == "sentence":
             self.sentences.append(event["text"])
         elif event["event"] == "failed":

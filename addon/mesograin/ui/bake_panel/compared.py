@@ -15,8 +15,6 @@ class ComparedBake:
     object. arguments: of `baking.beside.bake`, but for what these and the folders say. results: what OUT.json holds,
     once it was finished."""
 
-    before_first_step = "Blender is starting"
-
     def __init__(self, path, name, **arguments):
         self.path, self.name = path, name
         self.results = None
@@ -40,6 +38,11 @@ class ComparedBake:
     @property
     def fraction(self):
         return self._job.fraction
+
+    @property
+    def before_first_step(self):
+        """What is said while nobody knows how long it takes."""
+        return self._job.unknown
 
     @property
     def seconds_left(self):

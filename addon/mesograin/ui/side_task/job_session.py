@@ -21,7 +21,7 @@ class JobSession(Session):
 
     results = None
     """What the file of the last job that ended well holds."""
-    _seen = 0
+    _seen = None
 
     def __init__(self, progress, shown_in, called, folder, file, error, others=()):
         super().__init__(progress, shown_in)
@@ -63,10 +63,11 @@ class JobSession(Session):
 
     def start(self, context):
         super().start(context)
-        self.results, self._seen = None, 0
+        self.results, self._seen = None, None
 
     def has_news(self):
-        seen, self._seen = self._seen, self.task.changes
+        left = self.task.seconds_left
+        seen, self._seen = self._seen, (self.task.changes, left if left is None else round(left))
         return seen != self._seen
 
     def finish(self):

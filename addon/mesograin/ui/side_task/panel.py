@@ -13,15 +13,15 @@ def draw_settings(layout, context, session, draw):
         draw(column, context)
 
 
-def draw_task(layout, context, session, start, cancel, before_first_step, detail="", **button):
+def draw_task(layout, context, session, start, cancel, unknown, detail="", **button):
     """The button of the operator `start`, or how far the task is, with `detail` below and `cancel`'s
-    button; then what went wrong. before_first_step: what is said while nobody knows how long it takes. button: of
+    button; then what went wrong. unknown: what is said while nobody knows how long it takes. button: of
     `UILayout.operator`."""
     if session.running:
         left = session.task.seconds_left
         column = layout.column(align=True)
         compat.draw_progress(column, context.window_manager, session.progress,
-                             f"about {duration(left)} left" if left is not None else before_first_step)
+                             f"about {duration(left)} left" if left is not None else unknown)
         if detail:
             panels.draw_sentence(column, context, detail, icon="NONE")
         layout.operator(cancel.bl_idname, icon="CANCEL")
@@ -38,7 +38,7 @@ def draw_job(layout, context, session, start, cancel, kept, about="", **button):
     cancelled. about: before the number of its steps, where that is a guess. button: of `UILayout.operator`."""
     job = session.task
     detail = f"{job.step.number} of {about}{job.step.count}: {job.step.what}" if job is not None and job.step else ""
-    draw_task(layout, context, session, start, cancel, "Blender is starting", detail, **button)
+    draw_task(layout, context, session, start, cancel, job.unknown if job is not None else "", detail, **button)
     if not session.error and job is not None and job.state == jobs.CANCELLED:
         layout.label(text=f"Cancelled; {kept}", icon="INFO")
     for sentence in job.sentences if job is not None else ():
