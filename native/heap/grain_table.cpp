@@ -298,7 +298,9 @@ std::shared_ptr<const GrainTable> grain_table(const Optics& optics, Sense sense,
   const std::lock_guard lock(mutex);
   kept.push_front({optics, sense, walks, number, table});
   std::size_t gone = 0;
-  kept.remove_if([&gone](const Entry& entry) { return entry.table.use_count() == 1 && ++gone > most_gone; });
+  kept.remove_if([&gone](const Entry& entry) {
+    return entry.table.use_count() == 1 && (entry.walks < GrainTable::outcomes || ++gone > most_gone);
+  });
   return table;
 }
 

@@ -95,9 +95,9 @@ class GrainTable {
 };
 
 /// Tables that were made before are found by what they were made of: those that somebody has, and the last 64 that
-/// nobody has any more. Each number has random numbers of its own, so that the noise of many kinds' tables is none of
-/// their heap's; of one number they stay whatever the grains are made of, so that noise does not flicker while that is
-/// dragged.
+/// nobody has any more, but for those of fewer walks than outcomes, which are soon made again. Each number has random
+/// numbers of its own, so that the noise of many kinds' tables is none of their heap's; of one number they stay
+/// whatever the grains are made of, so that noise does not flicker while that is dragged.
 std::shared_ptr<const GrainTable> grain_table(const Optics& optics, Sense sense, const transport::Effort& effort,
                                               int walks, std::size_t number = 0);
 

@@ -22,8 +22,9 @@ float mean(const glm::vec3& colour) { return (colour.r + colour.g + colour.b) / 
 std::vector<Kind> kinds_of(const std::vector<Optics>& of, int most_walks, const transport::Effort& effort) {
   // What one kind's table is too bright another's is too dark, the more so the more there are.
   constexpr std::size_t few = 8;
-  const std::size_t shares = std::bit_floor(std::max(of.size() / few, std::size_t{1}));
-  const int walks = std::max(most_walks / static_cast<int>(std::min(shares, std::size_t{1024})), GrainTable::outcomes);
+  constexpr std::size_t most_shares = 8;  // of most_walks, an outcome is a walk then
+  const std::size_t shares = std::bit_floor(std::clamp(of.size() / few, std::size_t{1}, most_shares));
+  const int walks = most_walks / static_cast<int>(shares);
   std::vector<Kind> kinds;
   double done = 0.0;
   for (const Optics& optics : of) {

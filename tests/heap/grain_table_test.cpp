@@ -9,7 +9,9 @@
 #include <glm/geometric.hpp>
 #include <limits>
 #include <memory>
+#include <set>
 
+#include "heap/exchange.h"
 #include "heap/heap.h"
 
 namespace mesograin::heap {
@@ -35,14 +37,16 @@ TEST(GrainTable, LosesNoLightWithoutAbsorption) {
 }
 
 TEST(GrainTable, IsKeptWhileSomebodyHasItElseAmongTheLast64) {
-  const auto table_of = [](double radius) {
-    constexpr int walks = 16;
+  const auto table_of = [](double radius, int walks = GrainTable::outcomes) {
     const Optics optics = medium(Surface::index_matched, glm::dvec3(radius), glm::dvec3(0.5));
     return grain_table(optics, Sense::from_light, {}, walks);
   };
   const std::shared_ptr<const GrainTable> held = table_of(1.0);
   const std::weak_ptr<const GrainTable> last = table_of(2.0);
   EXPECT_FALSE(last.expired());
+  const std::weak_ptr<const GrainTable> quick = table_of(2.0, 64);
+  table_of(2.5);
+  EXPECT_TRUE(quick.expired()) << "few walks are soon walked again";
   for (int others = 0; others < 65; ++others) table_of(3.0 + others);
   EXPECT_TRUE(last.expired());
   EXPECT_EQ(table_of(1.0), held);
@@ -114,6 +118,26 @@ TEST(GrainTable, TheNoiseOfManyKindsIsNotThatOfTheirMean) {
   const GrainTable one(grains.kinds[0], Sense::from_light, {});
   EXPECT_NEAR(mean, one.albedo().r, 0.003 * mean);
   EXPECT_GT(std::sqrt(std::max(squares / kinds - mean * mean, 0.0)), 0.0005 * mean) << "all have the same noise";
+}
+
+// For a first picture kinds share their walks: each has few, all together tell what they do to light.
+TEST(GrainTable, ManyKindsShareTheWalksOfAQuickAnswer) {
+  constexpr int kinds = 64;
+  Grains grains;
+  for (int i = 0; i < kinds; ++i)
+    grains.kind(medium(Surface::dielectric, glm::dvec3(3.0 * (1.0 + 1e-9 * i)), glm::dvec3(0.9)));
+  double sum = 0.0;
+  for (const Kind& kind : kinds_of(grains.kinds, coarse.walks, {})) {
+    sum += static_cast<double>(kind.from_light->albedo().r);
+    std::set<float> outcomes;  // at one angle, as many as there were walks
+    for (int i = 0; i < GrainTable::outcomes; ++i)
+      outcomes.insert(kind.from_light->draw(0.9F, (static_cast<float>(i) + 0.5F) / GrainTable::outcomes).direction.x);
+    EXPECT_LE(outcomes.size(), static_cast<std::size_t>(coarse.walks / 8));
+  }
+  const GrainTable one(grains.kinds[0], Sense::from_light, {});
+  // What a walk sends back, between 0 and 1, deviates by half at most; `one` has as many as all kinds together.
+  constexpr double walks = double{GrainTable::most_walks} * GrainTable::entries;
+  EXPECT_NEAR(sum / kinds, one.albedo().r, 3.0 * 0.5 * std::sqrt(2.0 / walks));
 }
 
 // What a slider's step changes beyond a line through many steps would be seen to flicker; each table's own noise is
