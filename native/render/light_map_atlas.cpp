@@ -18,6 +18,10 @@ constexpr double most_bytes = 64.0 * 1024.0 * 1024.0;
 constexpr double bytes_a_texel = 16.0;
 constexpr int least_resolution = 64;
 
+// Of the coarser grid, in nodes of the finer; both have the edges of the octahedral map.
+constexpr int coarse_step = 3;
+static_assert((LightMapDirections::side - 1) % coarse_step == 0);
+
 double sign_not_zero(double value) { return value < 0.0 ? -1.0 : 1.0; }
 
 // To [-1, 1]^2; the lower half is folded over the edges.
@@ -64,9 +68,24 @@ glm::dvec3 LightMapDirections::direction(int node) {
   return from_octahedral(2.0 * place / static_cast<double>(side - 1) - 1.0);
 }
 
+int LightMapDirections::coarse(int node) {
+  const auto nearest = [](int along) { return (along + coarse_step / 2) / coarse_step * coarse_step; };
+  return nearest(node / side) * side + nearest(node % side);
+}
+
+LightMapDirections LightMapDirections::coarse() const {
+  LightMapDirections result;
+  for (int node = 0; node < count; ++node) {
+    if (!is_asked_for(node) || result.is_asked_for(coarse(node))) continue;
+    result.asked_[static_cast<std::size_t>(coarse(node))] = true;
+    --result.left_;
+  }
+  return result;
+}
+
 LightMapAtlas::LightMapAtlas(const scene::MeshPointer& mesh) : drawing_(mesh, to_middle(*mesh)) {}
 
-void LightMapAtlas::make_room(const LightMapDirections& directions, int resolution) {
+void LightMapAtlas::make_room(const LightMapDirections& directions, int resolution, std::size_t level) {
   int wanted = 0;
   for (int node = 0; node < LightMapDirections::count; ++node)
     if (directions.is_asked_for(node) || layers_[static_cast<std::size_t>(node)] >= 0) ++wanted;
@@ -76,7 +95,8 @@ void LightMapAtlas::make_room(const LightMapDirections& directions, int resoluti
   const auto affordable = static_cast<unsigned>(std::sqrt(most_bytes / bytes_a_texel / room));
   const int allowed = std::clamp(resolution, least_resolution,
                                  std::max(static_cast<int>(std::bit_floor(affordable)), least_resolution));
-  if (maps_ && wanted <= maps_->layers() && allowed <= maps_->width()) return;
+  if (maps_ && wanted <= maps_->layers() && allowed <= maps_->width() && level_ <= level) return;
+  level_ = level;
   maps_.emplace(GL_RGBA32F, allowed, allowed, room);
   depth_.emplace(GL_DEPTH_COMPONENT32F, allowed, allowed);
   std::fill(layers_.begin(), layers_.end(), -1);
@@ -91,7 +111,12 @@ void LightMapAtlas::draw(const gl::VertexArray& device_mesh, const LightMapProgr
 
 void LightMapAtlas::send_frames() {
   device_frames_.emplace(frames_);
-  device_layers_.emplace(layers_);
+  std::vector<int> shown = layers_;
+  for (int node = 0; node < LightMapDirections::count; ++node) {
+    int& layer = shown[static_cast<std::size_t>(node)];
+    if (layer < 0) layer = layers_[static_cast<std::size_t>(LightMapDirections::coarse(node))];
+  }
+  device_layers_.emplace(shown);
 }
 
 void LightMapAtlas::bind(const gl::Program& program) const {

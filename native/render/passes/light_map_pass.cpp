@@ -58,11 +58,14 @@ bool LightMapPass::run(const Sample& sample, const ArrayVisibility& arrays) {
       mean_free_paths = std::max(mean_free_paths, group.mean_free_paths_across);
     }
     if (!asked) continue;
-    const int resolution = light_map_resolution(arrays.selection()->selection.largest_pixels_across, mean_free_paths);
+    const double pixels_across = arrays.selection()->selection.largest_pixels_across;
+    const int resolution = light_map_resolution(pixels_across, mean_free_paths);
     LightMapDirections directions = instances->light_directions(i, to_light);
     // A light amid the heap meets its grains from everywhere.
     if (sample.lighting.any_local()) directions.ask_for_all();
-    prototype.light_maps->update(prototype.details->mesh(0), program, directions, resolution, [&] { return drawn(1); });
+    // Where light between grains is being found, what is asked of models next may be nothing.
+    prototype.light_maps->update(*prototype.details, prototype.details->level(pixels_across), program, directions,
+                                 resolution, sample.exchange.awaits_more(), [&] { return drawn(1); });
     if (!sample.go_on()) return false;
   }
   return true;
