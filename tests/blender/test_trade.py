@@ -3,6 +3,7 @@ import csv
 import io
 import json
 import pathlib
+import re
 import subprocess
 import time
 
@@ -56,6 +57,7 @@ def test_every_point_is_measured_and_taken_over(tmp_path, native, monkeypatch):
     ]
     by_name = {point["name"]: point for point in found["points"]}
     assert found["complete"] and found["front"] and len(found["summary"]) == 2
+    assert [text for text in found["definitions"].values() if re.search(r"[a-z]_[a-z]", text)] == [], "no keys"
     assert by_name["model_1.samples3"]["milliseconds"] == pytest.approx(3 * by_name["model_1.samples1"]["milliseconds"])
     assert by_name["cycles.samples4"]["error"] < by_name["cycles.samples1"]["error"]
     assert by_name["model_1.samples3"]["error"] < by_name["cycles.samples1"]["error"]

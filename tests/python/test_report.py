@@ -16,7 +16,12 @@ from addon_rooms import ADDON, room
 colours = room("report.colours")
 payload = room("report.payload")
 plots = room("report.plots")
+wording = room("report.wording")
+definitions = room("studies.comparison.definitions")
 LABELS = room("cycles.wording").LABELS
+
+# Of results.json, beside those that its first case has here.
+KEYS = ("mask_steps", "judged_by", "false_alarm_rate", "most_seeds", "noise_floor", "metric_corrected", "our_noise")
 
 BUILDER = ADDON / "mesograin" / "report" / "build.py"
 
@@ -109,13 +114,8 @@ def write_folder(tmp_path):
         "device": {"renderer": "llvmpipe", "version": "4.5"},
         "cpu": {"name": "A CPU", "cores": 2},
         "settings": {"pixel_filter": "box", "colour_space": "linear"},
-        "definitions": {
-            "relative_l1": "sum |i - r| / sum r",
-            "noise_floor": "what noise scores",
-            "significance.verdict": "whether <noise> explains it",
-            "controls": "where the truth is known",
-            "mask.pixels": "pixels compared",
-        },
+        "definitions": {**definitions.all_definitions(cases[0]["metrics"]),
+                        "significance.verdict": "whether <noise> explains it"},
         "cases": cases,
     }
     (tmp_path / "results.json").write_text(json.dumps(results))
@@ -236,13 +236,18 @@ def test_page_and_figure_call_things_by_their_labels(built):
     told = " ".join(re.findall(r'(?:title|alt|aria-label)="([^"]*)"', page))
     text = " ".join(html.unescape(re.sub(r"<[^>]*>", " ", page)).split())
     figure = " ".join(html.unescape(re.sub(r"<[^>]*>", " ", (built / "plots/overview.svg").read_text())).split())
-    names = {name for name in LABELS if "_" in name} | {"light_maps"}
-    assert names > {"index_matched", "model_1", "half_space", "volume_dielectric"}
+    numbers = json.loads((built / "results.json").read_text())["cases"][0]
+    names = {name for name in (*LABELS, "light_maps", *numbers, *numbers["metrics"], *KEYS) if "_" in name}
+    assert names > {"index_matched", "model_1", "half_space", "volume_dielectric", "frames_timed", "rse_root_mean"}
     for where, words in (("page", text), ("attributes", told), ("figure", figure)):
         assert {name for name in names if re.search(rf"\b{name}\b", words)} == set(), where
     assert "boundary Index matched" in text and "(boundary Index matched)" in figure
     assert "specular off" in text and "Model 1 against Cycles volume, index-matched" in text
     assert "here for relative L1: sum |i - r| / sum r" in text
+    metrics = [wording.metric(name) for name in numbers["metrics"]]
+    assert len(set(metrics)) == len(metrics), "no two are called alike"
+    assert "mean root RSE in 8×8 blocks, noise taken off" in metrics
+    assert {name for name in metrics if name not in text} == set()
 
 
 def test_live_pictures_are_the_exr_files(built):
@@ -267,7 +272,7 @@ def test_significance_is_shown_where_it_was_tested(built):
     assert "✗ A wrong one, scale 2, is not called different." in text and "✗" not in first
     assert "where the truth is known" in html.unescape(page) and 'popover id="define-controls"' in page
     assert "Differs significantly in 10.0 % of 900 pixels and 25.0 % of 20 blocks of 8×8" in text
-    assert "noise was 0.200 of the error in relative_l1: it is 0.310 of it; 4 seeds were not enough." in text
+    assert "noise was 0.200 of the error in relative L1: it is 0.310 of it; 4 seeds were not enough." in text
     assert (built / "plots/model_1.volume_index_matched.by_angle.svg").is_file() and "by_angle" not in first
     overview = page[:page.index('<section class="case"')]
     assert overview.count('popovertarget="define-metrics.relative_l1_blocks_corrected"') == 2, "what to read first"

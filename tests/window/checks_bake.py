@@ -76,10 +76,10 @@ def check_cycles_bakes_beside_and_the_panel_shows_both(window):
         yield from window.picture(area)
         with window.override(area):
             try:
-                outcome = str(bpy.ops.mesograin.show_bake(picture="z-map"))
+                outcome = str(bpy.ops.mesograin.show_bake(picture="significance"))
             except RuntimeError as error:  # how a script hears of an operator's report
                 outcome = str(error)
-        assert "no picture 'z-map'" in outcome
+        assert "no picture 'significance'" in outcome
     finally:
         area.type = "VIEW_3D"
 

@@ -63,7 +63,7 @@ def check_it_compares_beside_and_shows_what_it_found(window):
 def assert_pictures(window, cases):
     made = {image["mesograin_picture"] for image in bpy.data.images if "mesograin_picture" in image}
     assert made == {f"{case} {picture}" for case in cases
-                    for picture in ("model", "reference", "error", "error colours", "z-map")}, made
+                    for picture in ("model", "reference", "error", "error colours", "significance")}, made
     for picture in ("model", "reference", "error"):
         image = next(image for image in bpy.data.images if image.get("mesograin_picture") == f"{cases[0]} {picture}")
         pixels = np.array(image.pixels[:], np.float32).reshape(32, 48, image.channels)[::-1]

@@ -12,8 +12,8 @@ from markupsafe import Markup
 from ..cycles.wording import in_labels
 from ..schema.labels import of_model
 from . import colours, payload, plots
-from .wording import (boundary, case_title, compared, controls, form, headline, mask_steps, parameters, significance,
-                      terms, until, verdict)
+from .wording import (boundary, case_title, compared, controls, form, headline, label, mask_steps, metric, parameters,
+                      significance, terms, until, verdict)
 
 PAGE = Path(__file__).resolve().parent / "page"
 PLOTS = "plots"
@@ -23,20 +23,20 @@ LIVE_BUDGET = 48 * 2**20
 """Characters of packed pictures in one page; cases beyond it are shown as still pictures."""
 
 # The numbers that lead the table and each case, with how to write them: (key, title, form).
-LEADING = (
-    ("metrics.relative_l1_blocks_corrected", "L1 in 8×8 blocks, noise taken off", "percent"),
-    ("metrics.relative_l1_blocks", "L1 in 8×8 blocks", "percent"),
-    ("metrics.relative_l1_corrected", "L1 a pixel, noise taken off", "percent"),
-    ("metrics.relative_l1", "relative L1", "percent"),
-    ("noise_floor.relative_l1", "noise floor", "percent"),
-    ("our_noise.relative_l1", "our own noise", "percent"),
-    ("significance.share", "significant pixels", "percent"),
-    ("metrics.bias", "bias", "ratio"),
-    ("metrics.rse_mean", "mean RSE", "number"),
-    ("metrics.rse_max", "max RSE", "number"),
-    ("frame_ms", "ms a frame", "milliseconds"),
-    ("reference_seconds", "Cycles, s", "seconds"),
-)
+LEADING = tuple((key, label(key), how) for key, how in (
+    ("metrics.relative_l1_blocks_corrected", "percent"),
+    ("metrics.relative_l1_blocks", "percent"),
+    ("metrics.relative_l1_corrected", "percent"),
+    ("metrics.relative_l1", "percent"),
+    ("noise_floor.relative_l1", "percent"),
+    ("our_noise.relative_l1", "percent"),
+    ("significance.share", "percent"),
+    ("metrics.bias", "ratio"),
+    ("metrics.rse_mean", "number"),
+    ("metrics.rse_max", "number"),
+    ("frame_ms", "milliseconds"),
+    ("reference_seconds", "seconds"),
+))
 
 
 def build(results, cases, folder):
@@ -77,6 +77,7 @@ def render(template, **values):
         undefined=jinja2.StrictUndefined,
     )
     environment.filters["form"] = form
+    environment.filters["label"] = label
     styles = {
         "style": Markup((PAGE / "report.css").read_text(encoding="utf-8")),
         "common_script": Markup((PAGE / "common.js").read_text(encoding="utf-8")),
@@ -170,7 +171,7 @@ def _view(of, definitions, pictures, folder):
     ]
     view["others"] = [
         {
-            "title": name,
+            "title": metric(name),
             "text": form(value, "number"),
             "floor": form(case["noise_floor"].get(name), "number"),
             "unfiltered": form(look_up(case, f"unfiltered.metrics.{name}"), "number"),
@@ -202,8 +203,7 @@ def definition(definitions, key):
     """The sentence for a number by its dotted path; "" if there is none."""
     group, _, name = key.rpartition(".")
     if group in ("noise_floor", "our_noise") and group in definitions:
-        called = next((title for known, title, _ in LEADING if known == f"metrics.{name}"), name)
-        return f"{definitions[group]}; here for {called}: {definitions.get(name, '')}"
+        return f"{definitions[group]}; here for {metric(name)}: {definitions.get(name, '')}"
     return definitions.get(name) or definitions.get(key, "")
 
 

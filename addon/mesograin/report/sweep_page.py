@@ -5,19 +5,19 @@ from pathlib import Path
 
 from ..cycles.wording import LABELS, in_labels
 from . import page_builder, sweep_plot
-from .wording import controls, form
+from .wording import controls, form, label
 
-COLUMNS = (
-    ("metrics.relative_l1", "relative L1", "percent"),
-    ("noise_floor.relative_l1", "noise floor", "percent"),
-    ("metrics.relative_l1_corrected", "L1, noise taken off", "percent"),
-    ("metrics.relative_l1_blocks", "L1 in 8×8 blocks", "percent"),
-    ("significance.share", "significant pixels", "percent"),
-    ("metrics.bias", "bias", "ratio"),
-    ("metrics.rse_mean", "mean RSE", "number"),
-    ("frame_ms", "ms a frame", "milliseconds"),
-    ("reference_seconds", "reference, s", "seconds"),
-)
+COLUMNS = tuple((key, label(key), how) for key, how in (
+    ("metrics.relative_l1", "percent"),
+    ("noise_floor.relative_l1", "percent"),
+    ("metrics.relative_l1_corrected", "percent"),
+    ("metrics.relative_l1_blocks", "percent"),
+    ("significance.share", "percent"),
+    ("metrics.bias", "ratio"),
+    ("metrics.rse_mean", "number"),
+    ("frame_ms", "milliseconds"),
+    ("reference_seconds", "seconds"),
+))
 PICTURED = 200
 """How many cases show their pictures in the page, at most; the others link to them."""
 

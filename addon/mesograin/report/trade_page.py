@@ -7,19 +7,19 @@ from markupsafe import Markup
 
 from ..schema.labels import of_model
 from . import colours, page_builder, plots, trade_plot
-from .wording import duration, form, parameters
+from .wording import duration, form, label, metric, parameters
 
-COLUMNS = (
-    ("model", "model", None),
-    ("taps", "taps", "count"),
-    ("samples", "samples a pixel", "count"),
-    ("milliseconds", "time, ms", "number"),
-    ("error", "error", "percent"),
-    ("metrics.relative_l1", "relative L1", "percent"),
-    ("metrics.relative_l1_blocks", "L1 in 8×8 blocks", "percent"),
-    ("metrics.bias", "bias", "ratio"),
-    ("metrics.rse_mean", "mean RSE", "number"),
-)
+COLUMNS = tuple((key, label(key), how) for key, how in (
+    ("model", None),
+    ("taps", "count"),
+    ("samples", "count"),
+    ("milliseconds", "number"),
+    ("error", "percent"),
+    ("metrics.relative_l1", "percent"),
+    ("metrics.relative_l1_blocks", "percent"),
+    ("metrics.bias", "ratio"),
+    ("metrics.rse_mean", "number"),
+))
 TRACED_PICTURES = 4
 """How many of the path tracer's renders are shown, at most."""
 
@@ -46,6 +46,7 @@ def build(results, pictures, folder):
         ],
         rows=[_row(point, point["name"] in results["front"]) for point in results["points"]],
         parameters=parameters(results["material"]),
+        judged_by=metric(results["reference"]["judged_by"]),
         exposure=stops,
     )
 

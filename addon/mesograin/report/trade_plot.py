@@ -5,7 +5,7 @@ import itertools
 
 from ..schema import labels
 from .plots import log_axis, new_figure, percent
-from .wording import times
+from .wording import metric, times
 
 MARKERS = ("o", "s", "^", "D", "v", "P", "X")
 LEGEND_LEAVES = 0.7
@@ -42,8 +42,7 @@ def trade(results):
                      label="noise floor of the converged render")
         gain = _gain(axes, results, palette)
         axes.set_xlabel("time of a picture")
-        metric = "relative L1 in 8×8 blocks" if judged_by.endswith("_blocks") else "relative L1"
-        axes.set_ylabel(f"error: {metric},\nthe converged render's noise taken off")
+        axes.set_ylabel(f"error: {metric(judged_by)},\nthe converged render's noise taken off")
         reached = [entry["traced_milliseconds"] for entry in results["summary"][:1] if entry["traced_milliseconds"]]
         log_axis(axes.xaxis, [*reached, *(point["milliseconds"] for point in points)], 1.7, _tick, steps=(1,))
         errors = [size for point in points for size in (point["error"], point["metrics"][judged_by])]

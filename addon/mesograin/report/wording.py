@@ -6,6 +6,61 @@ import math
 from ..cycles.wording import LABELS
 from ..schema.labels import of_model
 
+METRICS = {
+    "relative_l1": "relative L1",
+    "bias": "bias",
+    "rse_mean": "mean RSE",
+    "rse_max": "max RSE",
+    "rse_max_at": "place of max RSE",
+    "rse_root_mean": "mean root RSE",
+    "rae_mean": "mean RAE",
+    "ae_mean": "mean AE",
+    "e_mean": "mean E",
+    "se_mean": "mean SE",
+    "mse": "MSE",
+    "rmse": "RMSE",
+    "max_error": "max AE",
+    "max_error_at": "place of max AE",
+    **{f"{name}_p{share}": f"{name.upper()}, {share} %" for name in ("ae", "rse") for share in (50, 95, 99)},
+}
+"""What pages and figures call the metrics of docs/metrics.md."""
+
+SUFFIXES = {"_corrected": ", noise taken off", "_blocks": " in 8×8 blocks"}
+
+NUMBERS = {
+    "noise_floor": "noise floor",
+    "our_noise": "our own noise",
+    "significance.verdict": "verdict",
+    "significance.share": "significant pixels",
+    "mask.pixels": "pixels compared",
+    "mask.nan": "NaN",
+    "mask.inf": "Inf",
+    "mask_steps": "masks",
+    "judged_by": "number to read first",
+    "profile": "radiance over the angle to the light",
+    "frame_ms": "ms a frame",
+    "reference_seconds": "Cycles, s",
+    "exposure_stops": "exposure",
+    "samples": "samples a pixel",
+    "milliseconds": "time, ms",
+    "exchange_ms": "ms of light between grains",
+}
+"""What pages call other numbers of a result, by dotted paths, where that is not their key."""
+
+
+def label(key):
+    """What pages call a number by its dotted path, or all numbers of a group."""
+    group, _, name = key.rpartition(".")
+    return NUMBERS.get(key) or NUMBERS.get(group) or metric(name)
+
+
+def metric(name):
+    """A metric as pages and figures call it, with what its suffixes say. A name that is no metric's stays."""
+    for suffix, meaning in SUFFIXES.items():
+        if name.endswith(suffix):
+            return metric(name[:-len(suffix)]) + meaning
+    return METRICS.get(name, name)
+
 
 def parameters(material):
     """[(material name, [(parameter, text)])]."""
@@ -133,8 +188,8 @@ def until(case):
     ratio = "not known" if found["ratio"] is None else form(found["ratio"], "number")
     end = "" if found["reached"] else f"; {found['most_seeds']} seeds were not enough"
     return (
-        f"Seeds were added until noise was {form(found['fraction'], 'number')} of the error in {found['metric']}: it is"
-        f" {ratio} of it{end}."
+        f"Seeds were added until noise was {form(found['fraction'], 'number')} of the error in"
+        f" {metric(found['metric'])}: it is {ratio} of it{end}."
     )
 
 

@@ -32,17 +32,16 @@ METRICS = ("relative_l1", "relative_l1_blocks", "bias", "rse_mean")
 
 DEFINITIONS = {
     "error": (
-        "the metric named by judged_by with the converged render's noise taken off: sqrt(max(0, v^2 - floor^2)), v ="
-        " sum |i - r| / sum r, pixel by pixel or in blocks of 8 x 8; 0 is perfect, no unit"
+        "the metric that judges its kind of reference, the converged render's noise taken off: sqrt(max(0, v^2 -"
+        " floor^2)), v = sum |i - r| / sum r, pixel by pixel or in blocks of 8 x 8; 0 is perfect, no unit"
     ),
     "resolved": f"whether the error is above {curve.RESOLVED:g} of the noise floor; if not, it is at most what stands",
     "milliseconds": (
-        "ours: samples times frame_ms, without exchange_ms; the path tracer's: wall-clock time of one render on all"
-        " cores of the CPU, with"
-        " the preparation of its scene"
+        "ours: samples times that of a frame, light between grains not counted; the path tracer's: wall-clock time of"
+        " one render on all cores of the CPU, with the preparation of its scene"
     ),
     "frame_ms": (
-        "milliseconds of all passes of a frame, one sample a pixel, on the device named; the median of frames_timed"
+        "milliseconds of all passes of a frame, one sample a pixel, on the device named; the median of several"
         " frames after a first one that prepared the device"
     ),
     "exchange_ms": "milliseconds that light between grains took to be solved, once before the first sample; 0 if none",

@@ -11,14 +11,14 @@ KEY = "mesograin_picture"
 
 # Which file of a result is shown under which word. The EXR files are linear float, the false colours PNGs.
 FILES = {"model": "model", "reference": "reference", "error": "error", "error colours": "error_png",
-         "z-map": "z_map_png"}
+         "significance": "z_map_png"}
 # What each is called on its button, and what it shows.
 BUTTONS = {
     "model": ("Model", "Our picture, linear"),
     "reference": ("Cycles", "The reference: the mean of Cycles' seeds, linear"),
     "error": ("Error", "Our picture less the reference, linear; negative where ours is too dark"),
     "error colours": ("Colours", "The relative error in false colours"),
-    "z-map": ("Z-map", "In colour where the two differ by more than their noise explains"),
+    "significance": ("Significance", "In colour where the two differ by more than their noise explains"),
 }
 
 
@@ -46,7 +46,7 @@ def _relative(path):
 
 
 def pictures_of(entry):
-    """The words for the pictures that a result has; with one seed of the reference there is no z-map."""
+    """The words for the pictures that a result has; with one seed of the reference there is no test."""
     return [picture for picture, file in FILES.items() if file in entry["files"]]
 
 
