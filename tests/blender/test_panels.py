@@ -13,7 +13,7 @@ from mesograin.ui import grain_colours, node_panels, panels, presets
 from mesograin.ui.bake_panel import panel as bake_panel
 from mesograin.ui.compare_panel import panel as compare_panel
 from mesograin.ui.match_panel import panel as match_panel
-from mesograin.ui.side_task import results
+from mesograin.ui.side_task import pictures, results
 
 # Pixels at a UI scale of 1, in a Properties editor of Blender's default layout on a screen 1500 wide, 260 across: what
 # a label left of its value gets, and one right of a box there.
@@ -190,6 +190,39 @@ def test_no_title_of_a_result_is_cut_off():
     titles = [title for title, _ in results._numbers(entry, ("Mesograin", "41 ms"))]
     assert len(titles) == 5 and all(width(title) < HALF for title in titles), titles
     assert compare_panel.results is results
+
+
+def test_no_button_of_a_results_picture_is_cut_off():
+    class Rows(Layout):
+        """rows: the texts of the buttons of each row, below one another."""
+
+        def __init__(self):
+            super().__init__()
+            self.rows = []
+
+        def row(self, **_):
+            self.rows.append([])
+            return self
+
+        def operator(self, _, text):
+            self.rows[-1].append(text)
+            return types.SimpleNamespace()
+
+    entry = {"name": "lambert.diffuse", "model": "lambert", "reference_title": "Cycles Diffuse",
+             "status": "done", "judged_by": "relative_l1",
+             "metrics": {"relative_l1": 0.01, "relative_l1_corrected": 0.005, "relative_l1_blocks": 0.01,
+                         "relative_l1_blocks_corrected": None},
+             "noise_floor": {"relative_l1": 0.01, "relative_l1_blocks": 0.001}, "reference_seconds": 185.0,
+             "significance": None, "files": dict.fromkeys(pictures.FILES.values(), "")}
+    given = types.SimpleNamespace(region=None, preferences=types.SimpleNamespace(
+        system=types.SimpleNamespace(ui_scale=1.0)))
+    layout = Rows()
+    button = types.SimpleNamespace(bl_idname="mesograin.show_picture")
+    results.draw(layout, given, entry, ("Mesograin", "41 ms"), button)
+    rows = [row for row in layout.rows if row]
+    assert sorted(itertools.chain(*rows)) == sorted(text for text, _ in pictures.BUTTONS.values())
+    beside = 10  # pixels of a button, left and right of its text
+    assert [text for row in rows for text in row if width(text) + beside > 2 * HALF / len(row)] == [], rows
 
 
 @pytest.mark.parametrize("kind, rest", [("worlds", "color"), ("materials", "diffuse_color")])

@@ -25,12 +25,16 @@ def draw(box, context, entry, ours, button, **properties):
     same = test is not None and test["verdict"] == NO_DIFFERENCE
     words = verdict(entry)
     panels.draw_sentence(box, context, words[:1].upper() + words[1:], icon="CHECKMARK" if same else "INFO")
-    row = box.row(align=True)
-    for picture in pictures.pictures_of(entry):
-        made = row.operator(button.bl_idname, text=pictures.BUTTONS[picture][0])
-        made.picture = picture
-        for name, value in properties.items():
-            setattr(made, name, value)
+    shown = pictures.pictures_of(entry)
+    above = (len(shown) + 1) // 2  # all of them in one row are too narrow for their names
+    rows = box.column(align=True)
+    for part in (shown[:above], shown[above:]):
+        row = rows.row(align=True)
+        for picture in part:
+            made = row.operator(button.bl_idname, text=pictures.BUTTONS[picture][0])
+            made.picture = picture
+            for name, value in properties.items():
+                setattr(made, name, value)
 
 
 def seconds(number):
