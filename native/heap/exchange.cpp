@@ -56,6 +56,7 @@ HeapLight light_alone(const Heap& heap, const transport::Effort& effort) {
   HeapLight light;
   light.kinds = kinds_of(heap.grains.kinds, walks, effort);
   light.seats = std::make_shared<const Seats>(heap.grains.grains.size());
+  light.patches = patches_about(heap.grains);
   return light;
 }
 

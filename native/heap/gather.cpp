@@ -55,7 +55,9 @@ Optics glass(Optics optics) {
 /// What takes time to find.
 struct Gather::Found {
   Found(Heap of, std::shared_ptr<const HeapLight> its_light)
-      : heap(std::move(of)), light(std::move(its_light)), space(heap.grains, light->kinds, light->seats) {}
+      : heap(std::move(of)),
+        light(std::move(its_light)),
+        space(heap.grains, light->kinds, light->seats, light->patches) {}
 
   Heap heap;
   std::shared_ptr<const HeapLight> light;

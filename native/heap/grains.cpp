@@ -120,4 +120,17 @@ std::optional<Meeting> Neighbourhood::first_on(std::uint32_t wall, const glm::ve
   return std::nullopt;
 }
 
+bool same_walls(const std::vector<Wall>& a, const std::vector<Wall>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const Wall& one, const Wall& other) {
+    return one.mesh == other.mesh && one.to_heap == other.to_heap;
+  });
+}
+
+bool same_places(const Grains& a, const Grains& b) {
+  return same_walls(a.walls, b.walls) && std::equal(a.grains.begin(), a.grains.end(), b.grains.begin(), b.grains.end(),
+                                                    [](const Grain& one, const Grain& other) {
+                                                      return one.middle == other.middle && one.radius == other.radius;
+                                                    });
+}
+
 }  // namespace mesograin::heap

@@ -36,6 +36,12 @@ struct Grains {
   bool operator==(const Grains&) const = default;
 };
 
+/// Whether walls are where the others are, whatever they are made of.
+bool same_walls(const std::vector<Wall>& a, const std::vector<Wall>& b);
+
+/// The same of grains and walls.
+bool same_places(const Grains& a, const Grains& b);
+
 /// Which grain or wall a ray meets, and where.
 struct Meeting {
   bool wall;

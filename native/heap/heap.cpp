@@ -38,12 +38,17 @@ std::vector<Kind> kinds_of(const std::vector<Optics>& of, int most_walks, const 
   return kinds;
 }
 
+Patches patches_about(const Grains& grains) { return {grains, fewest_nodes + grains.grains.size() / 4}; }
+
 Space::Space(const Grains& grains, const std::vector<Kind>& kinds, std::shared_ptr<const Seats> seats)
+    : Space(grains, kinds, std::move(seats), patches_about(grains)) {}
+
+Space::Space(const Grains& grains, const std::vector<Kind>& kinds, std::shared_ptr<const Seats> seats, Patches patches)
     : grains_(grains.grains),
       walls_(grains.walls),
       kinds_(kinds),
       seats_(seats ? std::move(seats) : std::make_shared<const Seats>(grains.grains.size())),
-      patches_(grains, fewest_nodes + grains.grains.size() / 4),
+      patches_(std::move(patches)),
       neighbourhood_(grains) {}
 
 bool Space::is_open(std::uint32_t grain, float far) const {

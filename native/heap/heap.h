@@ -63,10 +63,16 @@ struct WallPlace {
   glm::vec3 normal;
 };
 
+/// The grids on its walls.
+Patches patches_about(const Grains& grains);
+
 /// The heap as rays go through it.
 class Space {
  public:
   Space(const Grains& grains, const std::vector<Kind>& kinds, std::shared_ptr<const Seats> seats = nullptr);
+
+  /// With grids that are known.
+  Space(const Grains& grains, const std::vector<Kind>& kinds, std::shared_ptr<const Seats> seats, Patches patches);
 
   /// From now on what they send out is told by these; else each grain has a seat of its own.
   void seat(std::shared_ptr<const Seats> seats) { seats_ = std::move(seats); }

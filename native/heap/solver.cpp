@@ -14,16 +14,6 @@
 namespace mesograin::heap {
 namespace {
 
-bool same_places(const Grains& a, const Grains& b) {
-  const bool same_walls = std::equal(
-      a.walls.begin(), a.walls.end(), b.walls.begin(), b.walls.end(),
-      [](const Wall& one, const Wall& other) { return one.mesh == other.mesh && one.to_heap == other.to_heap; });
-  return same_walls && std::equal(a.grains.begin(), a.grains.end(), b.grains.begin(), b.grains.end(),
-                                  [](const Grain& one, const Grain& other) {
-                                    return one.middle == other.middle && one.radius == other.radius;
-                                  });
-}
-
 // Beyond that a material is another, and its links tell nothing.
 constexpr float greatest_change = 4.0F;
 

@@ -38,6 +38,7 @@ class Solving {
       : heap_(std::move(heap)), line_(std::move(line)), news_(std::move(before)) {}
 
   const Heap& heap() const { return *heap_; }
+  const std::shared_ptr<const Heap>& shared_heap() const { return heap_; }
 
   News news() const;
 

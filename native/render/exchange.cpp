@@ -10,6 +10,8 @@
 #include <numbers>
 #include <utility>
 
+#include "heap/moved_light.h"
+
 namespace mesograin::render {
 namespace {
 
@@ -277,12 +279,9 @@ void Exchange::set(DeviceCache& cache, const Content& content, const scene::Scen
   solving_ = heap::Solvers::instance().ask(std::move(heap), solving_);
   roles_ = std::move(gathered.roles);
   balls_ = gathered.balls;
-  if (!regrouped) {
-    find_gather();
-    return;
-  }
-  gather_.reset();
-  send();
+  if (regrouped) gather_.reset();
+  if (regrouped || follow_moves()) send();
+  if (!regrouped) find_gather();
 }
 
 bool Exchange::gathers_all_of(std::size_t number, bool traced) const {
@@ -299,6 +298,7 @@ bool Exchange::take_news() {
   heap::News news = solving_->news();
   if (!news.light || (known_ && known_->number == news.number)) return false;
   known_ = Known{std::move(news.heap), std::move(news.light), news.number};
+  follow_moves();
   gather_.reset();
   find_gather();
   send();
@@ -314,10 +314,21 @@ bool alike(const heap::Grains& a, const heap::Grains& b) {
 
 }  // namespace
 
+// Rays that looked for grains where these are no more would begin in some and miss others. Returns whether what is
+// known is of other places now.
+bool Exchange::follow_moves() {
+  if (!known_ || heap::same_places(known_->grains(), solving_->heap().grains)) return false;
+  std::optional<heap::HeapLight> moved = heap::moved_light(*known_->light, known_->grains(), solving_->heap().grains);
+  if (!moved) return false;
+  known_ = Known{solving_->shared_heap(), std::make_shared<const heap::HeapLight>(std::move(*moved)), known_->number};
+  gather_.reset();
+  return true;
+}
+
 // Of the same grains what was known before is looked at until more is.
 void Exchange::find_gather() {
   const bool wanted =
-      (gathers_ || shows_more_) && known_ && known_->grains().grains.size() == solving_->heap().grains.grains.size();
+      (gathers_ || shows_more_) && known_ && heap::same_places(known_->grains(), solving_->heap().grains);
   if (!wanted) gather_.reset();
   if (wanted && !gather_) gather_ = std::make_unique<const heap::Gather>(*known_->heap, known_->light);
   // What grains are made of, and lights, are seen to change at once, in the light that others sent before.

@@ -116,6 +116,7 @@ class Exchange {
   };
 
   void send();
+  bool follow_moves();
   void find_gather();
   void find_whole();
 
