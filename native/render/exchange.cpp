@@ -6,11 +6,13 @@
 #include <functional>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/vector_relational.hpp>
 #include <map>
 #include <numbers>
 #include <utility>
 
 #include "heap/moved_light.h"
+#include "heap/scaled_light.h"
 
 namespace mesograin::render {
 namespace {
@@ -280,7 +282,7 @@ void Exchange::set(DeviceCache& cache, const Content& content, const scene::Scen
   roles_ = std::move(gathered.roles);
   balls_ = gathered.balls;
   if (regrouped) gather_.reset();
-  if (regrouped || follow_moves()) send();
+  if (regrouped || keep_up()) send();
   if (!regrouped) find_gather();
 }
 
@@ -298,7 +300,7 @@ bool Exchange::take_news() {
   heap::News news = solving_->news();
   if (!news.light || (known_ && known_->number == news.number)) return false;
   known_ = Known{std::move(news.heap), std::move(news.light), news.number};
-  follow_moves();
+  keep_up();
   gather_.reset();
   find_gather();
   send();
@@ -314,13 +316,35 @@ bool alike(const heap::Grains& a, const heap::Grains& b) {
 
 }  // namespace
 
-// Rays that looked for grains where these are no more would begin in some and miss others. Returns whether what is
-// known is of other places now.
-bool Exchange::follow_moves() {
-  if (!known_ || heap::same_places(known_->grains(), solving_->heap().grains)) return false;
-  std::optional<heap::HeapLight> moved = heap::moved_light(*known_->light, known_->grains(), solving_->heap().grains);
-  if (!moved) return false;
-  known_ = Known{solving_->shared_heap(), std::make_shared<const heap::HeapLight>(std::move(*moved)), known_->number};
+namespace {
+
+/// By how much more shines on the heap of what was before, in each channel; 1 where nothing did.
+glm::vec3 growth(const heap::Heap& before, const heap::Heap& now) {
+  if (before.lights == now.lights && before.world.radiance == now.world.radiance) return glm::vec3(1.0F);
+  const glm::dvec3 was = heap::strength(before);
+  const glm::dvec3 is = heap::strength(now);
+  glm::vec3 grown(1.0F);
+  for (int channel = 0; channel < 3; ++channel)
+    if (was[channel] > 0.0) grown[channel] = static_cast<float>(is[channel] / was[channel]);
+  return grown;
+}
+
+}  // namespace
+
+// Rays that looked for grains where these are no more would begin in some and miss others, and a sun that was turned
+// down would go on to glare from all grains. Returns whether what is known is of other places or lights now.
+bool Exchange::keep_up() {
+  if (!known_) return false;
+  const bool stay = heap::same_places(known_->grains(), solving_->heap().grains);
+  const glm::vec3 grown = growth(*known_->heap, solving_->heap());
+  constexpr float noticed = 0.01F;
+  const bool shines_alike = glm::all(glm::lessThan(glm::abs(grown - 1.0F), glm::vec3(noticed)));
+  if (stay && shines_alike) return false;
+  std::optional<heap::HeapLight> light =
+      stay ? *known_->light : heap::moved_light(*known_->light, known_->grains(), solving_->heap().grains);
+  if (!light) return false;
+  if (!shines_alike) heap::scale(*light, grown);
+  known_ = Known{solving_->shared_heap(), std::make_shared<const heap::HeapLight>(std::move(*light)), known_->number};
   gather_.reset();
   return true;
 }

@@ -116,7 +116,7 @@ class Exchange {
   };
 
   void send();
-  bool follow_moves();
+  bool keep_up();
   void find_gather();
   void find_whole();
 

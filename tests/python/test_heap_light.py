@@ -304,6 +304,14 @@ def test_the_first_answer_after_grains_moved_is_within_a_tenth(viewport):
     assert apart(pictures[0], pictures[1]) < 0.1
 
 
+def test_a_sun_that_is_turned_down_glares_no_longer(viewport):
+    view, array = viewport
+    scene = native.Scene(arrays=[array], exchange="order_1",
+                         lights=[native.DirectionalLight((0.0, 0.6, 0.8), (0.1, 0.01, 0.02))])
+    view.set_scene(scene)
+    assert apart(green(view), patiently(scene)) < 0.01
+
+
 def test_a_slope_of_grains_that_turns_is_seen_where_it_is():
     """Under a light from above. Rays from where grains are, to where the slope was, began below it: 36 % off."""
     corners = numpy.array([[x, y, z] for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])
