@@ -314,10 +314,6 @@ bool alike(const heap::Grains& a, const heap::Grains& b) {
   return a.grains == b.grains && a.kinds.size() == b.kinds.size() && a.walls == b.walls;
 }
 
-}  // namespace
-
-namespace {
-
 /// By how much more shines on the heap of what was before, in each channel; 1 where nothing did.
 glm::vec3 growth(const heap::Heap& before, const heap::Heap& now) {
   if (before.lights == now.lights && before.world.radiance == now.world.radiance) return glm::vec3(1.0F);
@@ -340,8 +336,7 @@ bool Exchange::keep_up() {
   constexpr float noticed = 0.01F;
   const bool shines_alike = glm::all(glm::lessThan(glm::abs(grown - 1.0F), glm::vec3(noticed)));
   if (stay && shines_alike) return false;
-  std::optional<heap::HeapLight> light =
-      stay ? *known_->light : heap::moved_light(*known_->light, known_->grains(), solving_->heap().grains);
+  std::optional<heap::HeapLight> light = heap::moved_light(*known_->light, known_->grains(), solving_->heap().grains);
   if (!light) return false;
   if (!shines_alike) heap::scale(*light, grown);
   known_ = Known{solving_->shared_heap(), std::make_shared<const heap::HeapLight>(std::move(*light)), known_->number};
