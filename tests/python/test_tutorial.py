@@ -9,8 +9,8 @@ TEXT = (ROOT / "docs/tutorial.md").read_text()
 ADDON = "".join(path.read_text() for path in sorted((ROOT / "addon/mesograin").rglob("*"))
                 if path.suffix in (".py", ".json"))
 # Blender's own.
-BLENDER = {"File", "New", "General", "Render Engine", "Rendered", "Bevel", "Shade Auto Smooth", "Sun", "Angle", "Add", "Mesh",
-           "Plane"}
+BLENDER = {"File", "New", "General", "Render Engine", "Rendered", "Bevel", "Shade Auto Smooth", "Sun", "Angle", "Add",
+           "Mesh", "Plane"}
 WORDS = sorted(set(re.findall(r"\*([^*\n]+)\*", TEXT)) - BLENDER - {"italics"})
 
 
