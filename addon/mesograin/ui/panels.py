@@ -87,13 +87,18 @@ class MESOGRAIN_PT_material(MesograinPanel, bpy.types.Panel):
             return
         row.prop(grain, "model", text="")
         takes = models.CHOICES[grain.model].parameters
+        advised = self._advice(context) if "sigma_s" in takes else None
         if "sigma_s" in takes:
-            self._draw_choice(context)
+            row = layout.row()
+            row.enabled = advised is not None and advised.model != grain.model
+            row.operator(look.MESOGRAIN_OT_choose_model.bl_idname)
             self._draw_medium(context, grain)
         for name in takes:
             if name not in (*MEDIUM, *SURFACE):
                 layout.prop(grain, name)
         self._draw_surface(grain, takes)
+        if "sigma_s" in takes:
+            self._draw_thickness(context, advised)
 
     def _draw_plain(self, context):
         """Ways to a grain."""
@@ -110,20 +115,25 @@ class MESOGRAIN_PT_material(MesograinPanel, bpy.types.Panel):
         except native.Error as error:
             draw_sentence(self.layout, context, str(error))
 
-    def _draw_choice(self, context):
-        """How thick the object is for light, and a button that takes the model for it."""
+    @staticmethod
+    def _advice(context):
+        """Of models for the object that is selected; None where there is none to give."""
+        thing = getattr(context, "object", None)
+        if thing is None or native_module.problem():
+            return None
+        settings = context.scene.mesograin
+        return look.advise_as_seen(context.material, thing, settings.millimetres_per_unit, budgets.tolerance(settings))
+
+    def _draw_thickness(self, context, advised):
+        """How thick the object is for light, and which model is for it: last, for while a slider is dragged these
+        sentences take more lines or fewer, and what is above them stays under the mouse."""
         thing = getattr(context, "object", None)
         if thing is None or native_module.problem():
             return
-        settings = context.scene.mesograin
-        unit = settings.millimetres_per_unit
-        advised = look.advise_as_seen(context.material, thing, unit, budgets.tolerance(settings))
-        for sentence in (look.hint(context.material, thing, unit), advised and advised.sentence):
+        hint = look.hint(context.material, thing, context.scene.mesograin.millimetres_per_unit)
+        for sentence in (hint, advised and advised.sentence):
             if sentence:
                 draw_sentence(self.layout, context, sentence, icon="LIGHT")
-        row = self.layout.row()
-        row.enabled = advised is not None and advised.model != context.material.mesograin.model
-        row.operator(look.MESOGRAIN_OT_choose_model.bl_idname)
 
     def _draw_medium(self, context, grain):
         layout, said = self.layout, context.material.mesograin_look
@@ -310,7 +320,7 @@ class MESOGRAIN_PT_statistics(MesograinPanel, bpy.types.Panel):
     def _draw_picture(self, context, title, latest):
         column = self.layout.column(align=True)
         samples = "1 sample" if latest.samples == 1 else f"{latest.samples} samples"
-        column.label(text=f"{title}: {latest.width} x {latest.height}, {samples}")
+        draw_sentence(column, context, f"{title}: {latest.width} x {latest.height}, {samples}", icon="NONE")
         for name, milliseconds in latest.passes:
             column.label(text=f"{name.replace('_', ' ')}: {milliseconds:.2f} ms", icon="BLANK1")
         if latest.budget:
