@@ -42,7 +42,7 @@ def draw(layout):
     if time.monotonic() - _seen["at"] > LOOK_SECONDS:
         _seen.update(at=time.monotonic(), bytes=chosen.size())
     row = layout.row(align=True)
-    row.label(text=f"{_readable(_seen['bytes'])} of {_readable(chosen.limit)} cached", icon="DISK_DRIVE")
+    row.label(text=f"{_readable(_seen['bytes'])} of {_readable(chosen.limit)}", icon="DISK_DRIVE")
     row.operator(MESOGRAIN_OT_clear_references.bl_idname, text="", icon="TRASH")
 
 

@@ -5,7 +5,7 @@ from .. import native_module
 from ..scene import instance_attributes
 from ..schema import models
 from .panels import MesograinPanel
-from .widths import arrange
+from .widths import arrange, choose
 
 
 class MESOGRAIN_OT_add_attribute_reader(bpy.types.Operator):
@@ -49,7 +49,7 @@ class MESOGRAIN_PT_colours(MesograinPanel, bpy.types.Panel):
         layout.active = settings.vary
         takes = models.CHOICES[context.material.mesograin.model].parameters
         colour = "Absorption" if "sigma_a" in takes else "Reflectance"
-        layout.prop(settings, "source")
+        choose(layout, settings, "source", "Source")
         if settings.source != "RANGE":
             if settings.source == "ATTRIBUTE":
                 layout.prop(settings, "colour_attribute", text=colour)

@@ -198,11 +198,11 @@ class MESOGRAIN_PT_light(MesograinPanel, bpy.types.Panel):
         layout.use_property_decorate = True
         layout.prop(light, "type")
         if hasattr(light, "use_temperature"):
-            row = layout.row(heading="Temperature")
+            row = layout.row(heading="Temperature" if layout.use_property_split else "")
             row.prop(light, "use_temperature", text="")
             number = row.row()
             number.active = light.use_temperature
-            number.prop(light, "temperature", text="")
+            number.prop(light, "temperature", text="" if layout.use_property_split else "Temperature")
         layout.prop(light, "color")
         layout.prop(light, "energy", text="Irradiance" if light.type == "SUN" else "Power")
         for name in ("exposure", "normalize"):
