@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/exponential.hpp>
 
 namespace mesograin::heap {
 namespace {
@@ -34,6 +35,11 @@ bool Optics::clear() const {
   constexpr double least_crossing = 0.01;
   const double thinnest = std::min({sigma_t.r, sigma_t.g, sigma_t.b});
   return surface == Surface::dielectric && std::exp(-2.0 * thinnest) > least_crossing;
+}
+
+bool Optics::scatters_little() const {
+  const glm::dvec3 scattered = albedo * (1.0 - glm::exp(-2.0 * sigma_t));
+  return std::max({scattered.r, scattered.g, scattered.b}) < 0.5;
 }
 
 Optics optics_of(const scene::Material& material, double radius) {

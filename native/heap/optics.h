@@ -33,6 +33,9 @@ struct Optics {
   /// Whether its surface refracts and 1 % of the light or more goes through its middle, in some channel.
   bool clear() const;
 
+  /// Whether of light through its middle less is scattered than is not, in every channel.
+  bool scatters_little() const;
+
   bool operator==(const Optics&) const = default;
 };
 

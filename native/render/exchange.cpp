@@ -357,13 +357,17 @@ void Exchange::find_gather() {
 }
 
 // What a clear grain scatters is told by a few numbers: enough of one among many, and too little of one alone, whose
-// model knows more.
+// model knows more. Of a round one that scatters most of what it lets in the model knows what suns and lamps do, which
+// a look that is scattered meets by chance; of a crystal it does not.
 void Exchange::find_whole() {
   whole_.assign(roles_.size(), false);
   if (!gather_ || !(gathers_ || follows_)) return;
   const heap::Grains& grains = gather_->heap().grains;
+  const bool lit = !gather_->heap().lights.empty();
   const auto is_clear = [&](const Role& role) {
-    return role.grain && gather_->sees_into(*role.grain) && grains.kinds[grains.grains[*role.grain].kind].clear();
+    if (!role.grain || !gather_->sees_into(*role.grain)) return false;
+    const heap::Optics& optics = grains.kinds[grains.grains[*role.grain].kind];
+    return optics.clear() && (!lit || !optics.lens || optics.scatters_little());
   };
   for (const auto& [first, end] : alike_) {
     const auto begins = roles_.begin() + static_cast<std::ptrdiff_t>(first);

@@ -416,3 +416,26 @@ def test_flakes_are_seen_through_their_own_facets():
     found = blocks_of_heap("coloured", "sky", "flakes", 16)
     assert found.sum(axis=(0, 1)) == pytest.approx(truth.sum(axis=(0, 1)), rel=0.02)
     assert numpy.abs(found - truth).sum() < 0.045 * truth.sum()
+
+
+# A look that is scattered meets a sun by chance: in grains that scatter most of their light that is their model's part,
+# and one sample of it is as near to many as where no look tells of lights.
+@pytest.mark.parametrize("radius", [0.5, 2.0])
+def test_the_sun_in_grains_that_scatter_most_of_their_light_is_no_looks(radius):
+    grain = native.Material(model="model_2", sigma_a=(0.0,) * 3, sigma_s=(radius,) * 3, boundary="dielectric", eta=1.5)
+    places = 2.02 * numpy.stack(numpy.meshgrid(*[numpy.arange(3) - 1.0] * 3), -1).reshape(-1, 3)
+    transforms = numpy.tile(numpy.eye(4), (len(places), 1, 1))
+    transforms[:, :3, 3] = places
+
+    def noise(exchange):
+        view = native.View(48, 48)
+        view.set_scene(native.Scene(arrays=[native.InstanceArray(ROUND, grain, transforms)], exchange=exchange,
+                                    lights=[native.DirectionalLight((1.0, -0.5, 1.0), (3.0,) * 3, angle=0.3)]))
+        view.set_camera(native.Camera.look_at((0.0, -60.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 1.0), 6.0))
+        view.render(1)
+        one = view.read()[..., 1]
+        view.render(63)
+        many = view.read()[..., 1]
+        return numpy.abs(one - many).sum() / many.sum()
+
+    assert noise("heaps") < 1.25 * noise("order_1")
