@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "models/dielectric_inputs.h"
+#include "models/fewer_nodes.h"
 #include "models/inputs_of_models.h"
 #include "models/light_about_inputs.h"
 #include "models/prototype_inputs.h"
@@ -26,6 +27,8 @@ constexpr int terms_a_texel = 4;
 // As shaders/models/stored_products.glsl has it.
 constexpr int fewest_terms = 16;
 constexpr int many_terms = 24;
+constexpr int more_terms = 36;
+constexpr int leading_blocks = 2;  // of a channel: the last, for terms are kept by how much is seen of them
 
 // What is divided by is not 0.
 constexpr double least_albedo = 1e-9;
@@ -103,12 +106,17 @@ void add_forward(const scene::Material& material, const StoredTransport& stored,
 
 // Each block is four terms of a channel, a component each.
 struct Blocks {
-  explicit Blocks(const StoredTransport& stored)
-      : channels(stored.channels), a_channel(stored.terms / terms_a_texel), count(channels * a_channel) {}
+  Blocks(const StoredTransport& stored, int terms)
+      : channels(stored.channels),
+        a_channel(terms / terms_a_texel),
+        count(channels * a_channel),
+        left_out(stored.terms - terms) {}
+
+  bool leads(int block) const { return block % a_channel >= a_channel - leading_blocks; }
 
   // What `stored` holds of some place, of so many that each term has, or of some direction.
   std::size_t index(int block, int component, std::size_t places, std::size_t place) const {
-    const int term = block % a_channel * terms_a_texel + component;
+    const int term = left_out + block % a_channel * terms_a_texel + component;
     return (static_cast<std::size_t>(term) * places + place) * static_cast<std::size_t>(channels) +
            static_cast<std::size_t>(block / a_channel);
   }
@@ -116,6 +124,7 @@ struct Blocks {
   int channels;
   int a_channel;
   int count;
+  int left_out;  // of each channel's terms, the least
 };
 
 // The largest value of each of a block's terms, over which a byte is enough for them: the lobes are multiplied by it.
@@ -131,8 +140,7 @@ std::array<float, terms_a_texel> scales(const StoredTransport& stored, const Blo
 }
 
 // Blocks of nodes, one behind the other along z.
-Volume sources_volume(const StoredTransport& stored) {
-  const Blocks blocks(stored);
+Volume sources_volume(const StoredTransport& stored, const Blocks& blocks) {
   Volume volume{stored.size.x, stored.size.y, stored.size.z * blocks.count, terms_a_texel, {}, true};
   volume.texels.reserve(stored.nodes() * static_cast<std::size_t>(blocks.count * terms_a_texel));
   for (int block = 0; block < blocks.count; ++block) {
@@ -171,7 +179,7 @@ Volume smooth_slopes_volume(const StoredTransport& stored) {
       }
     return rise / apart;
   };
-  Volume volume{stored.size.x, stored.size.y, stored.size.z, 3, {}};
+  Volume volume{stored.size.x, stored.size.y, stored.size.z, 3, {}, true};
   volume.texels.reserve(3 * stored.nodes());
   for (int z = 0; z <= last.z; ++z)
     for (int y = 0; y <= last.y; ++y)
@@ -180,14 +188,37 @@ Volume smooth_slopes_volume(const StoredTransport& stored) {
   return volume;
 }
 
-// Octahedral maps, one below the other, each with a frame of the texels across its edges.
-Volume lobes_volume(const StoredTransport& stored) {
+// Spaces between the surface's nodes in one between the light's, where a grain keeps the most terms: what is left for
+// it of half a megabyte.
+constexpr double finer_beside_most_terms = 1.4;
+
+// Taken at fewer nodes, rather than fitted to all, distances from a bevel that is narrower than a cell lift the whole
+// cell out of the grain: a cube of radius 10 was 0.8 % too dark.
+void add_surface(const StoredTransport& stored, int terms, MaterialInputs& inputs) {
+  glm::ivec3 size = transport::surface_size(stored.size);
+  std::vector<float> distances = stored.distances;
+  if (terms > more_terms) {
+    const glm::ivec3 fewer = glm::ivec3(finer_beside_most_terms * glm::dvec3(stored.size - 1)) + 1;
+    distances = at_fewer_nodes(distances, size, fewer);
+    size = fewer;
+  }
+  inputs.uniforms["stored.surface_nodes_a_unit"] = glm::vec3(size - 1) / (stored.spacing * glm::vec3(stored.size - 1));
+  inputs.uniforms["stored.last_surface_node"] = glm::vec3(size - 1);
+  inputs.volumes["distances"] = {size.x, size.y, size.z, 1, std::move(distances)};
+}
+
+// Octahedral maps of some of the blocks, one below the other, each with a frame of the texels across its edges.
+// `factor` is what a block's terms are multiplied by.
+template <typename Factor>
+void add_maps(const StoredTransport& stored, const Blocks& blocks, bool leading, const Factor& factor, Volume& maps) {
   constexpr int side = transport::octahedron_side;
   constexpr int framed = side + 2;
-  const Blocks blocks(stored);
-  Volume maps{framed, framed * blocks.count, 1, terms_a_texel, {}};
+  maps.width = framed;
+  maps.depth = 1;
   for (int block = 0; block < blocks.count; ++block) {
-    const std::array<float, terms_a_texel> scale = scales(stored, blocks, block);
+    if (blocks.leads(block) != leading) continue;
+    maps.height += framed;
+    const std::array<float, terms_a_texel> times = factor(block);
     for (int y = -1; y <= side; ++y)
       for (int x = -1; x <= side; ++x) {
         // Beyond an edge the map goes on mirrored about that edge's middle.
@@ -202,12 +233,29 @@ Volume lobes_volume(const StoredTransport& stored) {
         }
         const int texel = v * side + u;
         for (int component = 0; component < terms_a_texel; ++component)
-          maps.texels.push_back(scale[static_cast<std::size_t>(component)] *
+          maps.texels.push_back(times[static_cast<std::size_t>(component)] *
                                 stored.lobes[blocks.index(block, component, transport::octahedron_texels,
                                                           static_cast<std::size_t>(texel))]);
       }
   }
-  return maps;
+}
+
+// Of what is seen the leading terms are nearly all: their maps are in half precision. Of the others a byte tells
+// enough, over what they are multiplied by.
+void add_lobes(const StoredTransport& stored, const Blocks& blocks, MaterialInputs& inputs) {
+  add_maps(
+      stored, blocks, true, [&](int block) { return scales(stored, blocks, block); }, inputs.volumes["lobes"]);
+  Table factors{0, 1, {}};
+  const auto set_apart = [&](int block) {
+    const std::array<float, terms_a_texel> scale = scales(stored, blocks, block);
+    factors.texels.emplace_back(scale[0], scale[1], scale[2], scale[3]);
+    return std::array<float, terms_a_texel>{1.0F, 1.0F, 1.0F, 1.0F};
+  };
+  Volume& lesser = inputs.volumes["lesser_lobes"];
+  lesser.bytes = true;
+  add_maps(stored, blocks, false, set_apart, lesser);
+  factors.width = static_cast<int>(factors.texels.size());
+  inputs.tables["lesser_scales"] = std::move(factors);
 }
 
 }  // namespace
@@ -264,7 +312,11 @@ MaterialInputs prototype_inputs(const scene::Material& material, const StoredTra
       is_walked(material) ? stored.unit * material.scale * (material.sigma_a + material.sigma_s) : sigma_t;
   if (stored.mean_chord * std::min({unscattered.r, unscattered.g, unscattered.b}) < most_clear)
     inputs.defines.emplace_back("CLEAR");
-  if (stored.terms > fewest_terms) inputs.defines.emplace_back(stored.terms > many_terms ? "MOST_TERMS" : "MANY_TERMS");
+  // Where light is walked what is stored but ends walks, and shows little of its least terms; how the surface lies
+  // shows the more: it takes their room.
+  const int terms = is_walked(material) ? std::min(stored.terms, more_terms) : stored.terms;
+  if (terms > fewest_terms)
+    inputs.defines.emplace_back(terms > more_terms ? "MOST_TERMS" : terms > many_terms ? "MORE_TERMS" : "MANY_TERMS");
   inputs.uniforms["stored.x_axis"] = stored.axes[0];
   inputs.uniforms["stored.y_axis"] = stored.axes[1];
   inputs.uniforms["stored.z_axis"] = stored.axes[2];
@@ -277,14 +329,14 @@ MaterialInputs prototype_inputs(const scene::Material& material, const StoredTra
   if (stored.convex) inputs.defines.emplace_back("CONVEX");
   if (is_walked(material)) {
     add_forward(material, stored, inputs);
-    inputs.volumes["smooth_slopes"] = smooth_slopes_volume(stored);
+    if (stored.has_unscattered) inputs.volumes["smooth_slopes"] = smooth_slopes_volume(stored);
   }
   // Of the sphere that has this mean chord.
   add_light_about(material, 0.75 * stored.unit * stored.mean_chord, inputs);
-  inputs.volumes["lobes"] = lobes_volume(stored);
-  inputs.volumes["sources"] = sources_volume(stored);
-  const glm::ivec3 surface = transport::surface_size(stored.size);
-  inputs.volumes["distances"] = {surface.x, surface.y, surface.z, 1, stored.distances};
+  const Blocks blocks(stored, terms);
+  add_lobes(stored, blocks, inputs);
+  inputs.volumes["sources"] = sources_volume(stored, blocks);
+  add_surface(stored, terms, inputs);
   return inputs;
 }
 

@@ -135,9 +135,9 @@ bool DeviceMaterial::has(const std::string& define) const {
   return std::find(all.begin(), all.end(), define) != all.end();
 }
 
-const gl::Volume* DeviceMaterial::volume(const std::string& name) const {
-  const auto found = known().volumes.find(name);
-  return found == known().volumes.end() ? nullptr : &found->second;
+const models::UniformValue* DeviceMaterial::uniform(const std::string& name) const {
+  const auto found = known().uniforms.find(name);
+  return found == known().uniforms.end() ? nullptr : &found->second;
 }
 
 void DeviceMaterial::bind(const gl::Program& program) const {
@@ -353,7 +353,7 @@ const gl::Program& DeviceCache::light_map_program(bool tessellated) {
 
 const gl::Program& DeviceCache::sum_program(const DeviceMaterial& material, bool together) {
   std::vector<std::string> defines;
-  for (const std::string define : {"GREY", "MANY_TERMS", "MOST_TERMS", "REFRACTION"})
+  for (const std::string define : {"GREY", "MANY_TERMS", "MORE_TERMS", "MOST_TERMS", "REFRACTION"})
     if (material.has(define)) defines.push_back(define);
   if (together) defines.emplace_back("TOGETHER");
   return programs_.find(fmt::format("sum_products {}", fmt::join(defines, " ")),

@@ -100,7 +100,7 @@ class DeviceMaterial {
   void become(scene::Model model, models::MaterialInputs inputs);
 
   /// Null if it has none of that name.
-  const gl::Volume* volume(const std::string& name) const;
+  const models::UniformValue* uniform(const std::string& name) const;
 
   /// Sets every uniform and binds every table on one of its programs.
   void bind(const gl::Program& program) const;

@@ -28,14 +28,21 @@ glm::vec3 inwards(const Nearest& surface, const glm::vec3& place, bool inside) {
 
 }  // namespace
 
-Grid::Grid(const Body& body, int nodes, Spacing spacing, const Effort& effort) {
+Grid::Grid(const Body& body, int nodes, Spacing spacing, int most_nodes, const Effort& effort) {
   const glm::vec3 extent = glm::max(body.upper() - body.lower(), glm::vec3(1e-4F));
   const glm::vec3 shares = spacing == Spacing::even ? extent : glm::sqrt(extent);
   const glm::vec3 steps = shares * std::cbrt(static_cast<float>(nodes) / (shares.x * shares.y * shares.z));
   // 18 of them behind one another are one texture, and 36 where those that lie nearer across have most terms.
   constexpr int most_along = 112;
   const glm::ivec3 most(most_along, most_along, spacing == Spacing::even ? most_along : most_along / 2);
-  size_ = glm::clamp(glm::ivec3(glm::round(steps)) + 1, glm::ivec3(4), most);
+  constexpr int fewest_along = 4;
+  size_ = glm::clamp(glm::ivec3(glm::round(steps)) + 1, glm::ivec3(fewest_along), most);
+  // Rounded, or for a body so flat that the fewest are many, they may be too many together.
+  while (size_.x * size_.y * size_.z > most_nodes) {
+    const int longest = size_.x >= std::max(size_.y, size_.z) ? 0 : size_.y >= size_.z ? 1 : 2;
+    if (size_[longest] == fewest_along) break;
+    --size_[longest];
+  }
   spacing_ = extent / glm::vec3(size_ - 1);
   lower_ = body.lower();
   const std::size_t plane = static_cast<std::size_t>(size_.x) * static_cast<std::size_t>(size_.y);

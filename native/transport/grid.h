@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <glm/vec3.hpp>
+#include <limits>
 #include <vector>
 
 #include "transport/body.h"
@@ -25,8 +26,9 @@ enum class Spacing { even, nearer_across };
 /// it stand for the point of its surface that is nearest to them.
 class Grid {
  public:
-  /// About `nodes` of them in the body's box.
-  Grid(const Body& body, int nodes, Spacing spacing = Spacing::even, const Effort& effort = {});
+  /// About `nodes` spaces between them in the body's box, and no more than `most_nodes` of them.
+  Grid(const Body& body, int nodes, Spacing spacing = Spacing::even, int most_nodes = std::numeric_limits<int>::max(),
+       const Effort& effort = {});
 
   const glm::ivec3& size() const { return size_; }
   const glm::vec3& lower() const { return lower_; }

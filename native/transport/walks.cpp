@@ -25,7 +25,7 @@ Walks::Walks(std::shared_ptr<const Body> body, const Interface& interface, const
     : body_(std::move(body)),
       interface_(interface),
       quality_(quality),
-      grid_(*body_, quality.nodes, quality.spacing, part_of(effort, 0.0, 0.5)),
+      grid_(*body_, quality.nodes, quality.spacing, quality.most_nodes, part_of(effort, 0.0, 0.5)),
       surface_(surface_distances(*body_, grid_, part_of(effort, 0.5, 1.0))) {}
 
 void Walks::trace(const std::vector<double>& extinctions, const Effort& effort) {

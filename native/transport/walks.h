@@ -25,6 +25,7 @@ struct Quality {
   int way_across = 16;    ///< rays from each node, squared
   int terms = 24;         ///< that are stored: 16, 24 or 48 (shaders/models/stored_products.glsl)
   Spacing spacing = Spacing::even;
+  int most_nodes = 10500;  ///< whatever the body's sides are like
 };
 
 class Walks {

@@ -23,10 +23,10 @@ constexpr Quality thin{};
 
 // The terminator of a thick grain is sharp, and what is dark beside it shows the noise of few rays and the lack of
 // products: twice the memory.
-constexpr Quality thick{.light_across = 96, .terms = 48, .spacing = Spacing::nearer_across};
+constexpr Quality thick{.light_across = 96, .terms = 48, .spacing = Spacing::nearer_across, .most_nodes = 8120};
 
 // The light changes within ways that are short beside the grain, and nodes are worth more than products.
-constexpr Quality thickest{.nodes = 10500, .light_across = 96, .terms = 16};
+constexpr Quality thickest{.nodes = 10500, .light_across = 96, .terms = 16, .most_nodes = 12200};
 
 // Of the time that the fine answer takes as well: what its rough one takes, and what tracing its grid does.
 constexpr double coarse_share = 0.04;
@@ -67,9 +67,9 @@ std::string describe_body(const Order& order) {
 }
 
 std::string describe(const Quality& quality) {
-  return fmt::format("nodes: {}, {}\nrays: {} {}\nterms: {}\n", quality.nodes,
-                     quality.spacing == Spacing::even ? "even" : "nearer across", quality.light_across,
-                     quality.way_across, quality.terms);
+  return fmt::format("nodes: {}, {}, {} at most\nrays: {} {}\nterms: {}\n", quality.nodes,
+                     quality.spacing == Spacing::even ? "even" : "nearer across", quality.most_nodes,
+                     quality.light_across, quality.way_across, quality.terms);
 }
 
 std::string describe(const StoredMedium& medium) {

@@ -6,32 +6,29 @@
 
 uniform sampler3D distances;  // from the surface, at nodes of its own; negative inside
 
-const float SURFACE_FINER = 2.0;  // spaces between those in one between the light's, as native/transport/surface.h has it
-
 // Among the nodes that light is known at.
 vec3 to_nodes(vec3 place) { return clamp((place - stored.lower) * stored.nodes_a_unit, vec3(0.0), stored.last_node); }
 
-vec3 last_surface_node() { return SURFACE_FINER * stored.last_node; }
+vec3 to_surface_nodes(vec3 place) { return clamp((place - stored.lower) * stored.surface_nodes_a_unit, vec3(0.0), stored.last_surface_node); }
 
-vec3 to_surface_nodes(vec3 place) { return SURFACE_FINER * to_nodes(place); }
-
-float distance_at_node(vec3 node) { return texture(distances, (node + 0.5) / (last_surface_node() + 1.0)).r; }
+float distance_at_node(vec3 node) { return texture(distances, (node + 0.5) / (stored.last_surface_node + 1.0)).r; }
 
 float distance_at(vec3 place) { return distance_at_node(to_surface_nodes(place)); }
 
 vec3 outwards_at(vec3 place) {
   vec3 node = to_surface_nodes(place);
   vec3 before = max(node - 0.5, vec3(0.0));
-  vec3 after = min(node + 0.5, last_surface_node());
+  vec3 after = min(node + 0.5, stored.last_surface_node);
   vec3 gradient = vec3(distance_at_node(vec3(after.x, node.yz)) - distance_at_node(vec3(before.x, node.yz)),
                        distance_at_node(vec3(node.x, after.y, node.z)) - distance_at_node(vec3(node.x, before.y, node.z)),
                        distance_at_node(vec3(node.xy, after.z)) - distance_at_node(vec3(node.xy, before.z))) *
-                  SURFACE_FINER * stored.nodes_a_unit / (after - before);
+                  stored.surface_nodes_a_unit / (after - before);
   return gradient * inversesqrt(max(dot(gradient, gradient), 1e-12));
 }
 
+// Steps are to be as short however many nodes the surface has.
 float shortest_spacing() {
-  vec3 spacing = 1.0 / (SURFACE_FINER * stored.nodes_a_unit);
+  vec3 spacing = 0.5 / stored.nodes_a_unit;
   return min(spacing.x, min(spacing.y, spacing.z));
 }
 

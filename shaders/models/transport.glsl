@@ -8,8 +8,9 @@
 //   WALKED               light scatters forwards or backwards: what similarity does not tell is found by walks
 //   FACETS               the surface is rough: each sample looks through one of its facets
 //   CONVEX               no line leaves the grain and enters it again
-//   MANY_TERMS           more of them: the grain is not of the thickest
-//   MOST_TERMS           most of them: it is thick, and not of the thickest
+//   MANY_TERMS           more products than the fewest: the grain is not of the thickest
+//   MORE_TERMS           more of them still: it is thick, and not of the thickest, and WALKED
+//   MOST_TERMS           most of them: it is as thick, and not WALKED
 //   GREY                 red, green and blue are the same medium, of which one is stored
 //   SUMMED               the products were summed for each light beforehand (passes/sum_products.comp), and where light is refracted and walked,
 //                        light was followed into the grain (passes/trace_light.comp)

@@ -167,6 +167,19 @@ TEST(StoredTransport, NearlyTellsWhatWalksWereTracedBeside) {
 // Light that is absorbed falls off as fast whether nodes lie a mean free path from one another or half of one: five
 // mean free paths below a surface that is lit evenly, straight lines between nodes far apart would have it 1.074 times
 // as bright as those between near ones.
+// So what is stored of a body never takes more memory than it may.
+TEST(StoredTransport, HasNoMoreNodesThanItMay) {
+  constexpr int most_nodes = 8120;
+  for (const glm::dvec3& sides : {glm::dvec3(1.0), glm::dvec3(1.0, 0.3, 0.3), glm::dvec3(1.0, 0.01, 0.01),
+                                  glm::dvec3(1.0, 1.0, 0.2), glm::dvec3(1.0, 1.0, 0.03), glm::dvec3(1.0, 0.9, 0.01)})
+    for (const Spacing spacing : {Spacing::even, Spacing::nearer_across}) {
+      const Body body(cube(), glm::dmat3(sides.x, 0.0, 0.0, 0.0, sides.y, 0.0, 0.0, 0.0, sides.z));
+      const glm::ivec3 size = Grid(body, 6600, spacing, most_nodes).size();
+      EXPECT_LE(size.x * size.y * size.z, most_nodes) << sides.x << " " << sides.y << " " << sides.z;
+      EXPECT_GT(size.x * size.y * size.z, most_nodes / 4) << sides.x << " " << sides.y << " " << sides.z;
+    }
+}
+
 TEST(StoredTransport, FallsOffAsFastBetweenNodesFarApart) {
   constexpr double sigma_t = 5.0;
   const Body body(scene::unit_sphere(32, 16));

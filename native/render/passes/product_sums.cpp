@@ -2,9 +2,9 @@
 #include "render/passes/product_sums.h"
 
 #include <utility>
+#include <variant>
 
 #include "render/device_layout.h"
-#include "transport/surface.h"
 
 namespace mesograin::render {
 namespace {
@@ -26,9 +26,10 @@ bool asks_for_unscattered(const DeviceMaterial& material) {
   return material.has("WALKED") && material.has("REFRACTION");
 }
 
-/// That light is stored at, of a prototype whose surface is known at these.
-glm::ivec3 light_nodes(const gl::Volume& surface) {
-  return (glm::ivec3(surface.width(), surface.height(), surface.depth()) - 1) / transport::surface_finer + 1;
+/// That light is stored at; (0, 0, 0): none is.
+glm::ivec3 light_nodes(const DeviceMaterial& material) {
+  const models::UniformValue* last = material.uniform("stored.last_node");
+  return last == nullptr ? glm::ivec3(0) : glm::ivec3(std::get<glm::vec3>(*last)) + 1;
 }
 
 int product(const glm::ivec3& size) { return size.x * size.y * size.z; }
@@ -36,9 +37,8 @@ int product(const glm::ivec3& size) { return size.x * size.y * size.z; }
 }  // namespace
 
 bool ProductSums::pay(const DeviceMaterial& material, const std::vector<LightDirection>& lights, double pixels) {
-  const gl::Volume* surface = material.volume("distances");
-  if (surface == nullptr || lights.empty()) return false;
-  const glm::ivec3 nodes = light_nodes(*surface);
+  const glm::ivec3 nodes = light_nodes(material);
+  if (nodes.x == 0 || lights.empty()) return false;
   const bool follows = asks_for_unscattered(material);
   const int depth = follows ? LightTracks::layers(nodes) : nodes.z;
   return (follows ? pixels > pixels_of_rays : nodes_a_pixel * pixels > product(nodes)) &&
@@ -70,7 +70,7 @@ void ProductSums::sum(DeviceCache& cache, const Draw& draw, const std::vector<Li
   if (held && !tracked_) return;
   directions_.emplace(device);
   directions_->bind_storage(layout::DISTANT_LIGHTS_BINDING);
-  const glm::ivec3 nodes = light_nodes(*material.volume("distances"));
+  const glm::ivec3 nodes = light_nodes(material);
   if (tracked_) tracks_.trace(cache, material, nodes, of.grain_to_prototype, lights.size(), together, sample);
   if (held) return;
 
