@@ -18,6 +18,8 @@ const int ENTRY_ANGLES = 12;
 const int ENTRY_COSINES = 4;
 const int ENTRY_AZIMUTHS = 4;
 const int ENTRIES_EACH = 32;
+// Of a sample: each finds all of a light or nothing, which one alone shows as speckles.
+const int ENTRY_LOOKS = 4;
 
 // Of the bins to both sides each as likely as it is near.
 int entry_bin(float share, int count, float random) { return clamp(int(floor(share * float(count) + random - 0.5)), 0, count - 1); }
@@ -30,18 +32,12 @@ void look_where_light_came_in(SurfacePoint point, LightSample light) {
   if (object.x < 0.0 || object.y >= 0.0) return;
   int kind = int(object.x);
   if (heap_light[kind].w == 0.0) return;
-  uvec4 bits = pcg4d(uvec4(uvec2(gl_FragCoord.xy), 3u, uint(light.index)));
-  vec4 random = vec4(pcg4d(bits + uint(sample_index)) >> 8u) * (1.0 / 16777216.0);
   float cosine = dot(point.normal, light.to_light);
+  float angle = angle_between(cosine, 1.0);
   float mu = dot(point.normal, point.to_viewer);
   vec3 light_aside = light.to_light - cosine * point.normal;
   vec3 viewer_aside = point.to_viewer - mu * point.normal;
-  int angle = entry_bin(angle_between(cosine, 1.0), ENTRY_ANGLES, random.x);
-  int azimuth = entry_bin(angle_between(dot(light_aside, viewer_aside), length(light_aside) * length(viewer_aside)), ENTRY_AZIMUTHS, random.y);
-  int bin = (angle * ENTRY_COSINES + entry_bin(mu * mu, ENTRY_COSINES, random.z)) * ENTRY_AZIMUTHS + azimuth;
-  int entry = bin * ENTRIES_EACH + int(low_discrepancy(uint(sample_index), bits.xy).x * float(ENTRIES_EACH));
-  vec4 pair = heap_light[kind + 1 + LOBE_NODES + entry / 2];
-  vec2 offset = entry % 2 == 0 ? pair.xy : pair.zw;
+  float azimuth = angle_between(dot(light_aside, viewer_aside), length(light_aside) * length(viewer_aside));
 
   vec3 tangential = point.normal - cosine * light.to_light;
   float size = length(tangential);
@@ -53,10 +49,22 @@ void look_where_light_came_in(SurfacePoint point, LightSample light) {
   vec3 leaves = point.on_triangle / radius;
   vec3 aside = leaves - dot(leaves, light.to_light) * light.to_light;
   float furthest = max(1.0, length(aside));
-  vec3 place = aside + offset.x * away + offset.y * across;
-  float reach = length(place);
-  if (reach > furthest) place *= furthest / reach;
-  place += sqrt(max(1.0 - dot(place, place), 0.0)) * light.to_light;
-  entered = light_reaches(light.index, radius * place, -1.0);
+
+  uvec4 bits = pcg4d(uvec4(uvec2(gl_FragCoord.xy), 3u, uint(light.index)));
+  entered = 0.0;
+  for (int look = 0; look < ENTRY_LOOKS; ++look) {
+    uint number = uint(sample_index) * uint(ENTRY_LOOKS) + uint(look);
+    vec4 random = vec4(pcg4d(bits + number) >> 8u) * (1.0 / 16777216.0);
+    int bin = entry_bin(angle, ENTRY_ANGLES, random.x) * ENTRY_COSINES + entry_bin(mu * mu, ENTRY_COSINES, random.z);
+    bin = bin * ENTRY_AZIMUTHS + entry_bin(azimuth, ENTRY_AZIMUTHS, random.y);
+    int entry = bin * ENTRIES_EACH + int(low_discrepancy(number, bits.xy).x * float(ENTRIES_EACH));
+    vec4 pair = heap_light[kind + 1 + LOBE_NODES + entry / 2];
+    vec2 offset = entry % 2 == 0 ? pair.xy : pair.zw;
+    vec3 place = aside + offset.x * away + offset.y * across;
+    float reach = length(place);
+    if (reach > furthest) place *= furthest / reach;
+    place += sqrt(max(1.0 - dot(place, place), 0.0)) * light.to_light;
+    entered += light_reaches(light.index, radius * place, -1.0) / float(ENTRY_LOOKS);
+  }
 }
 #endif
