@@ -33,8 +33,9 @@ std::vector<float> under_even_light(const StoredTransport& stored, const Walks& 
   const std::array<float, octahedron_texels> angles = octahedron_solid_angles();
   std::vector<float> sources;
   for (std::size_t node = 0; node < stored.nodes(); ++node) {
-    if (stored.distances[node] >= 0.0F) continue;
+    if (grid.used()[node] < 0) continue;
     const auto used = static_cast<std::size_t>(grid.used()[node]);
+    if (!(grid.depths()[used] > 0.0F)) continue;
     double source = stored.has_unscattered ? 0.0 : exchange.escape[used];
     // What was scattered before is stored over 1 - E_2/2 of the depth (Abramowitz & Stegun 5.1.14).
     const double depth = std::max(sigma_t * static_cast<double>(grid.depths()[used]), 1e-9);
