@@ -254,6 +254,22 @@ std::optional<Hit> PlacedTree::hit_of(std::uint32_t number, const SingleRay& ray
   return Hit{found.ray.tfar, static_cast<std::uint32_t>(group), number, found.hit.primID, found.hit.u, found.hit.v};
 }
 
+bool PlacedTree::may_reach(const glm::vec3& place, float distance) const {
+  // The box stands between three pairs of planes; a flat ground's are one.
+  const auto beside = [&](const glm::vec3& row, const glm::vec3& from, float half) {
+    return std::abs(glm::dot(row, from)) > half + distance * glm::length(row);
+  };
+  for (const PlacedGroup& group : groups_)
+    for (std::uint32_t i = 0; i < group.count; ++i) {
+      const ToMesh to_mesh(group.rows + 3 * std::size_t{i});
+      const glm::vec3 from = place - to_mesh.place;
+      const glm::vec3& half = group.mesh->half();
+      if (!beside(to_mesh.x, from, half.x) && !beside(to_mesh.y, from, half.y) && !beside(to_mesh.z, from, half.z))
+        return true;
+    }
+  return false;
+}
+
 void PlacedTree::find_occluded(Packet& packet) const {
   alignas(32) int valid[rays_in_packet];
   RTCRay8 rays;

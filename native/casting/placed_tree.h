@@ -39,6 +39,9 @@ class PlacedTree {
   /// What a ray meets of one instance, whatever stands before it, from `near` on.
   std::optional<Hit> hit_of(std::uint32_t number, const SingleRay& ray, float near) const;
 
+  /// False only if no instance of this tree has a place so near to another.
+  bool may_reach(const glm::vec3& place, float distance) const;
+
   /// Whether something stands between each origin and what is `farthest` from there; such rays are no longer `cast`.
   void find_occluded(Packet& packet) const;
 

@@ -27,6 +27,8 @@ class Gather {
 
   const Heap& heap() const { return heap_; }
 
+  const Optics& optics(std::uint32_t grain) const { return heap_.grains.kinds[space_.grains()[grain].kind]; }
+
   /// The same light in a heap whose grains and walls are where these are, of other materials or under other lights:
   /// what is seen of a grain answers to them at once.
   std::unique_ptr<const Gather> among(Heap heap) const;
@@ -43,6 +45,8 @@ class Gather {
   /// What is seen of a grain, by where it comes from.
   struct All {
     glm::vec3 others{0.0F};     ///< grains and walls, scattered or straight through it
+    glm::vec3 straight{0.0F};   ///< of these what is seen straight through it
+    glm::vec3 met{1.0F};        ///< of light on the straight way through it, what does not cross
     glm::vec3 scattered{0.0F};  ///< lights and the world, scattered in it
     glm::vec3 world{0.0F};      ///< straight through it
     float film = 0.0F;          ///< the share of a transparent film, which is seen instead; the mean of the channels
@@ -161,6 +165,14 @@ class Gather {
   glm::vec3 left_across_seen(std::uint32_t grain, const std::optional<End>& end) const;
   glm::vec3 left_across_other(std::uint32_t grain, const std::optional<End>& end) const;
   glm::vec3 left_across(const Optics& optics, std::uint32_t grain, const std::optional<End>& end) const;
+  /// Straight to a light from a place in the grain that is seen.
+  struct WayOut {
+    glm::vec3 place;  ///< of the surface
+    glm::vec3 left;   ///< of the light
+  };
+  /// Nothing, where a wall is in the way.
+  std::optional<WayOut> way_out(std::uint32_t grain, const glm::vec3& place, const glm::vec3& direction,
+                                const Facets& facets) const;
   /// And on through others, on the way from a grain's surface to a light.
   glm::vec3 passed_between(std::uint32_t grain, glm::vec3 place, const glm::vec3& to_light, float reach,
                            const Facets& facets) const;

@@ -1,6 +1,7 @@
 // The tree of the instances is theirs, and lives as long as they stand still; that of the draws is made anew.
 #include "render/cast_content.h"
 
+#include <cstddef>
 #include <utility>
 
 namespace mesograin::render {
@@ -37,6 +38,12 @@ std::optional<casting::Hit> CastContent::first_hit(casting::SingleRay ray) const
 
 std::optional<casting::Hit> CastContent::first_hit_of_draws(const casting::SingleRay& ray) const {
   return draws_ != nullptr ? draws_->first_hit(ray) : std::nullopt;
+}
+
+bool CastContent::draws_may_reach(const glm::vec3& place, float distance) const {
+  // Each is asked, which of so many takes longer than rays do.
+  constexpr std::size_t most_asked = 64;
+  return draws_ != nullptr && (rows_.size() > 3 * most_asked || draws_->may_reach(place, distance));
 }
 
 void CastContent::find_occluded(casting::Packet& packet) const {

@@ -28,6 +28,9 @@ class CastContent {
   std::optional<casting::Hit> first_hit(casting::SingleRay ray) const;
   std::optional<casting::Hit> first_hit_of_draws(const casting::SingleRay& ray) const;
 
+  /// False only if no draw has a place so near to this one.
+  bool draws_may_reach(const glm::vec3& place, float distance) const;
+
  private:
   const casting::PlacedTree* instances_;
   std::vector<glm::vec4> rows_;  // of the draws

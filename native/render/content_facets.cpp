@@ -35,6 +35,7 @@ struct ContentFacets::Hit {
 
 ContentFacets::ContentFacets(const CastContent& cast, const Content& content, const Exchange& exchange)
     : cast_(cast), content_(content), roles_(exchange.roles()) {
+  reached_ = std::vector<std::atomic<Reached>>(instances());
   // Grains are counted in the order of the objects.
   for (std::size_t object = 0; object < roles_.size(); ++object)
     if (roles_[object].grain) objects_.push_back(object);
@@ -81,6 +82,17 @@ std::optional<casting::Hit> ContentFacets::own_hit(std::size_t object, const glm
   return cast_.instances()->hit_of(static_cast<std::uint32_t>(object), {origin, direction}, clearance);
 }
 
+bool ContentFacets::may_be_reached_into(std::size_t object) const {
+  Reached reached = reached_[object].load(std::memory_order_relaxed);
+  if (reached == Reached::unknown) {
+    const glm::vec4& ball = content_.receiver(object).ball;
+    const float far = ball.w + clear_of(object, glm::vec3(ball));
+    reached = cast_.draws_may_reach(glm::vec3(ball), far) ? Reached::perhaps : Reached::never;
+    reached_[object].store(reached, std::memory_order_relaxed);
+  }
+  return reached == Reached::perhaps;
+}
+
 std::optional<heap::Meeting> ContentFacets::wall_before(const std::optional<casting::Hit>& own, const glm::vec3& origin,
                                                         const glm::vec3& direction) const {
   casting::SingleRay ray{origin, direction};
@@ -94,6 +106,8 @@ std::optional<heap::End> ContentFacets::end(std::uint32_t grain, const glm::vec3
   const std::size_t object = objects_[grain];
   if (object >= instances()) return Facets::end(grain, origin, direction);
   const std::optional<casting::Hit> own = own_hit(object, origin, direction, clear_of(object, origin));
+  // Most grains stand clear of all walls, which then takes a ray less.
+  if (own && !may_be_reached_into(object)) return heap::End{own->distance, false};
   if (const std::optional<heap::Meeting> wall = wall_before(own, origin, direction))
     return heap::End{glm::distance(origin, wall->place), true};
   return own ? std::optional(heap::End{own->distance, false}) : std::nullopt;
@@ -105,7 +119,8 @@ std::optional<heap::Meeting> ContentFacets::inside(std::uint32_t grain, const gl
   const float clearance = clear_of(object, origin);
   if (object < instances()) {
     const std::optional<casting::Hit> own = own_hit(object, origin, direction, clearance);
-    if (const std::optional<heap::Meeting> wall = wall_before(own, origin, direction)) return wall;
+    if (!own || may_be_reached_into(object))
+      if (const std::optional<heap::Meeting> wall = wall_before(own, origin, direction)) return wall;
     if (!own) return std::nullopt;
     const Hit hit = place_of(*own, origin, direction);
     if (hit.front) return std::nullopt;

@@ -1,6 +1,7 @@
 // How looks into grains go on through a view's content: to a grain's own facets, and to what stands around it.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <glm/vec3.hpp>
@@ -39,6 +40,8 @@ class ContentFacets : public heap::Facets {
   /// Where a ray meets one instance from inside, or from `clearance` on from its surface.
   std::optional<casting::Hit> own_hit(std::size_t object, const glm::vec3& origin, const glm::vec3& direction,
                                       float clearance) const;
+  /// Whether a draw may stand in what an instance fills.
+  bool may_be_reached_into(std::size_t object) const;
   /// The wall that it meets before that.
   std::optional<heap::Meeting> wall_before(const std::optional<casting::Hit>& own, const glm::vec3& origin,
                                            const glm::vec3& direction) const;
@@ -50,6 +53,8 @@ class ContentFacets : public heap::Facets {
   const Content& content_;
   const std::vector<Exchange::Role>& roles_;
   std::vector<std::size_t> objects_;  // their numbers, of the grains
+  enum class Reached : std::uint8_t { unknown, perhaps, never };
+  mutable std::vector<std::atomic<Reached>> reached_;  // of the instances, as they are asked for
 };
 
 }  // namespace mesograin::render

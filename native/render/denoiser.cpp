@@ -1,5 +1,5 @@
 // A cross bilateral filter (Eisemann and Durand, "Flash photography enhancement via intrinsic relighting", 2004) whose
-// guide is noiseless: whose surface it is, and its normal. Rows first, then columns, which costs 2 n instead of n^2
+// guide is noiseless: whose surface it is, and a direction. Rows first, then columns, which costs 2 n instead of n^2
 // neighbours and hardly differs (Pham and van Vliet, "Separable bilateral filtering for fast video preprocessing",
 // 2005).
 #include "render/denoiser.h"
@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "render/cast_work.h"
@@ -24,8 +25,10 @@ constexpr double shrinking = 0.5;
 // A Gaussian narrower than this leaves a pixel 97 % of itself.
 constexpr double least_deviation = 0.35;
 
-// Of the cosine between two normals: 26 degrees apart, pixels tell each other nothing.
-constexpr float least_alike = 0.9F;
+// After two, what a pixel gives and keeps comes to one within a few per cent.
+constexpr int rescalings = 2;
+
+using Pictures = std::vector<std::vector<glm::vec4>*>;
 
 /// A Gaussian's weights at whole pixels, from the middle on.
 std::vector<float> gaussian(double deviation) {
@@ -35,60 +38,111 @@ std::vector<float> gaussian(double deviation) {
   return weights;
 }
 
+/// Of what one pixel's light tells of the other's, apart from how far they are from each other.
+float alike(const Likeness& one, const Likeness& other) {
+  if (one.object != other.object) return 0.0F;
+  const float cosine = glm::dot(one.direction, other.direction);
+  const float share = std::max(cosine - one.least_alike, 0.0F) / (1.0F - one.least_alike);
+  return share * share;
+}
+
 /// Pixels of the picture's rows, or of its columns.
 struct Line {
   std::size_t first;
   std::size_t step;
-  int length;
+  std::size_t length;
+
+  std::size_t pixel(std::size_t i) const { return first + i * step; }
 };
 
-void filter(const Line& line, const std::vector<float>& weights, const std::vector<glm::vec4>& guides,
-            const std::vector<glm::vec4>& from, std::vector<glm::vec4>& to) {
-  const int reach = static_cast<int>(weights.size()) - 1;
-  for (int i = 0; i < line.length; ++i) {
-    const std::size_t here = line.first + static_cast<std::size_t>(i) * line.step;
-    const glm::vec4& guide = guides[here];
-    if (guide.w == 0.0F) continue;
-    glm::vec4 sum(0.0F);
-    float all = 0.0F;
-    for (int j = std::max(i - reach, 0); j <= std::min(i + reach, line.length - 1); ++j) {
-      const std::size_t there = line.first + static_cast<std::size_t>(j) * line.step;
-      const glm::vec4& other = guides[there];
-      if (other.w != guide.w) continue;
-      const float cosine = glm::dot(glm::vec3(guide), glm::vec3(other));
-      const float alike = std::max(cosine - least_alike, 0.0F) / (1.0F - least_alike);
-      const float weight = weights[static_cast<std::size_t>(std::abs(i - j))] * alike * alike;
-      sum += weight * from[there];
-      all += weight;
-    }
-    to[here] = sum / all;
+/// Filters lines one after another. What a pixel takes of another's light that one takes of its: at an edge, where
+/// neighbours are fewer, pixels would else take more from those within than they give, and light would come or go. So
+/// weights are scaled until each pixel's come to one (Milanfar, "Symmetrizing smoothing filters", 2013, section 2.2),
+/// and what is left to that it keeps.
+class LineFilter {
+ public:
+  explicit LineFilter(const std::vector<float>& gaussian) : gaussian_(gaussian) {}
+
+  /// Adds to `pictures`, which hold what `relative` does, to each pixel's share.
+  void run(const Line& line, const std::vector<Likeness>& likenesses, const Pictures& relative,
+           const Pictures& pictures) {
+    weigh(line, likenesses);
+    each_pair([&](std::size_t i, std::size_t j, float weight) {
+      const std::size_t one = line.pixel(i);
+      const std::size_t other = line.pixel(j);
+      const glm::vec4 shared(weight * glm::min(likenesses[one].share, likenesses[other].share), weight);
+      for (std::size_t k = 0; k < relative.size(); ++k) {
+        const glm::vec4 given = shared * ((*relative[k])[other] - (*relative[k])[one]);
+        (*pictures[k])[one] += given;
+        (*pictures[k])[other] -= given;
+      }
+    });
   }
-}
+
+ private:
+  void weigh(const Line& line, const std::vector<Likeness>& likenesses) {
+    weights_.assign(line.length * gaussian_.size(), 0.0F);
+    for (std::size_t i = 0; i < line.length; ++i) {
+      const Likeness& its = likenesses[line.pixel(i)];
+      if (its.object == 0.0F) continue;
+      for (std::size_t apart = 1; apart < std::min(gaussian_.size(), line.length - i); ++apart)
+        weights_[i * gaussian_.size() + apart] = gaussian_[apart] * alike(its, likenesses[line.pixel(i + apart)]);
+    }
+    scales_.assign(line.length, 1.0F);
+    for (int scaled = 0; scaled < rescalings; ++scaled) {
+      sums_ = scales_;
+      for (float& sum : sums_) sum *= sum;
+      each_pair([&](std::size_t i, std::size_t j, float weight) {
+        sums_[i] += weight;
+        sums_[j] += weight;
+      });
+      for (std::size_t i = 0; i < line.length; ++i) scales_[i] /= std::sqrt(sums_[i]);
+    }
+  }
+
+  template <typename Do>
+  void each_pair(const Do& what) const {
+    for (std::size_t i = 0; i < scales_.size(); ++i)
+      for (std::size_t apart = 1; apart < std::min(gaussian_.size(), scales_.size() - i); ++apart)
+        if (const float weight = weights_[i * gaussian_.size() + apart]; weight > 0.0F)
+          what(i, i + apart, scales_[i] * scales_[i + apart] * weight);
+  }
+
+  const std::vector<float>& gaussian_;
+  std::vector<float> weights_;  // of each pixel and those after it
+  std::vector<float> scales_;
+  std::vector<float> sums_;
+};
 
 }  // namespace
 
-bool Denoiser::run(const SeenSurfaces& seen, std::uint32_t index, const std::vector<glm::vec4>& looked_at,
+bool Denoiser::run(const glm::ivec2& size, std::uint32_t index, const std::vector<Likeness>& likenesses,
                    const std::vector<std::vector<glm::vec4>*>& pictures, const GoOn& go_on) {
   const double deviation = first_deviation * std::pow(index + 1.0, -0.5 * shrinking);
   if (deviation < least_deviation) return true;
   const std::vector<float> weights = gaussian(deviation);
-  guides_.resize(seen.normals.size());
-  for (std::size_t i = 0; i < guides_.size(); ++i)
-    guides_[i] = glm::vec4(glm::vec3(seen.normals[i]), looked_at[i].w != 0.0F ? std::abs(seen.normals[i].w) : 0.0F);
-  across_.resize(pictures.size());
-  for (std::size_t k = 0; k < pictures.size(); ++k) across_[k].resize(guides_.size());
-  const auto width = static_cast<std::size_t>(seen.size.x);
-  return cast_rows(seen.size.y, go_on,
-                   [&](int first, int end) {
-                     for (int y = first; y < end; ++y)
-                       for (std::size_t k = 0; k < pictures.size(); ++k)
-                         filter({static_cast<std::size_t>(y) * width, 1, seen.size.x}, weights, guides_, *pictures[k],
-                                across_[k]);
-                   }) &&
-         cast_rows(seen.size.x, go_on, [&](int first, int end) {
-           for (int x = first; x < end; ++x)
-             for (std::size_t k = 0; k < pictures.size(); ++k)
-               filter({static_cast<std::size_t>(x), width, seen.size.y}, weights, guides_, across_[k], *pictures[k]);
+  const auto width = static_cast<std::size_t>(size.x);
+  const auto height = static_cast<std::size_t>(size.y);
+  const auto along = [&](int lines, const auto& line_at) {
+    relative_.resize(pictures.size());
+    Pictures relative;
+    for (std::size_t k = 0; k < pictures.size(); ++k) {
+      relative_[k] = *pictures[k];
+      for (std::size_t i = 0; i < likenesses.size(); ++i) relative_[k][i] /= glm::vec4(likenesses[i].share, 1.0F);
+      relative.push_back(&relative_[k]);
+    }
+    return cast_rows(lines, go_on, [&](int first, int end) {
+      LineFilter filter(weights);
+      for (int i = first; i < end; ++i)
+        filter.run(line_at(static_cast<std::size_t>(i)), likenesses, relative, pictures);
+    });
+  };
+  return along(size.y,
+               [&](std::size_t y) {
+                 return Line{y * width, 1, width};
+               }) &&
+         along(size.x, [&](std::size_t x) {
+           return Line{x, width, height};
          });
 }
 

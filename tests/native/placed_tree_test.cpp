@@ -126,5 +126,28 @@ TEST(PlacedTree, FindsOneInstanceWhateverStandsBeforeIt) {
   }
 }
 
+TEST(PlacedTree, MayReachWhateverItReaches) {
+  // A flat ground, sheared and aslant.
+  const std::vector<glm::vec4> rows{{2.0F, 0.5F, 0.0F, 1.0F}, {-0.5F, 2.0F, 0.3F, -1.0F}, {0.0F, 0.7F, 1.0F, 0.5F}};
+  const glm::vec3 upwards(0.0F, 0.0F, 1.0F);
+  const scene::Mesh square({{-1.0F, -1.0F, 0.0F}, {1.0F, -1.0F, 0.0F}, {1.0F, 1.0F, 0.0F}, {-1.0F, 1.0F, 0.0F}},
+                           std::vector<glm::vec3>(4, upwards), {{0, 1, 2}, {0, 2, 3}});
+  const PlacedTree tree({{std::make_shared<const MeshTree>(square), rows.data(), 1, 0}});
+  const auto placed = [&](const glm::vec3& at) {
+    return glm::vec3(glm::dot(glm::vec3(rows[0]), at) + rows[0].w, glm::dot(glm::vec3(rows[1]), at) + rows[1].w,
+                     glm::dot(glm::vec3(rows[2]), at) + rows[2].w);
+  };
+  const glm::vec3 up = glm::normalize(glm::cross(placed({1.0F, 0.0F, 0.0F}) - placed({0.0F, 0.0F, 0.0F}),
+                                                 placed({0.0F, 1.0F, 0.0F}) - placed({0.0F, 0.0F, 0.0F})));
+  std::mt19937 engine(3);
+  std::uniform_real_distribution<float> inside(-1.0F, 1.0F);
+  for (int i = 0; i < 100; ++i) {
+    const glm::vec3 on = placed({inside(engine), inside(engine), 0.0F});
+    EXPECT_TRUE(tree.may_reach(on + 0.3F * up, 0.301F)) << i;
+    EXPECT_FALSE(tree.may_reach(on - 0.3F * up, 0.299F)) << i;
+  }
+  EXPECT_FALSE(tree.may_reach({50.0F, 0.0F, 0.5F}, 1.0F));
+}
+
 }  // namespace
 }  // namespace mesograin::casting

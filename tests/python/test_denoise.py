@@ -42,6 +42,13 @@ def test_as_much_light_is_there(pictures):
         assert with_it[..., :3].sum() == pytest.approx(without[..., :3].sum(), rel=0.004)
 
 
+@pytest.mark.parametrize("of", [white(), native.Material(model="model_2", eta=1.5, sigma_a=(0.01,) * 3,
+                                                         sigma_s=(0.3, 0.2, 0.1))])
+def test_no_light_comes_or_goes(of):
+    totals = [picture([heap(of)], denoise, 2)[1][..., :3].sum(dtype=float) for denoise in (True, False)]
+    assert totals[0] == pytest.approx(totals[1], rel=1e-5)
+
+
 def test_many_samples_are_not_blurred(pictures):
     other = picture([heap(white())], False, 64, 7)[0]
     assert off(pictures[True][0], pictures[False][0]) < 1.1 * off(other, pictures[False][0])

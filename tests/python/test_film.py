@@ -92,12 +92,12 @@ def of_two(world, exchange):
     return picture(world, arrays=[native.InstanceArray(ROUND, medium("model_2"), places)], exchange=exchange)
 
 
-# One behind the other; their light is followed.
+# One behind the other; their light is followed. What is seen straight through is not blurred: .9 % off, 1.4 with it.
 @pytest.mark.parametrize("exchange", ["heaps", "gathered", "off"])
 def test_grains_of_an_array_are_crossed_one_after_the_other(exchange):
     passed = transmittances(1.25, spheres=2)
     within = inside(1.25)
-    numpy.testing.assert_allclose(of_two(FILM, exchange)[within, 3], 1.0 - passed[within].mean(axis=-1), atol=0.02)
+    numpy.testing.assert_allclose(of_two(FILM, exchange)[within, 3], 1.0 - passed[within].mean(axis=-1), atol=0.01)
 
 
 # Or told by a few numbers, which know roughly how much of the world is seen.

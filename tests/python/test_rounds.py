@@ -34,8 +34,8 @@ def draw(view, until):
     return view.read(), view.samples
 
 
-# Measured, from 512 samples: 2.26 and 4.86 %, where 2.13 and 4.80 are told.
-@pytest.mark.parametrize("denoise, error", [(True, 0.025), (False, ERROR)])
+# Measured, from 512 samples: 1.94 and 4.77 %, where 1.92 and 4.89 are told.
+@pytest.mark.parametrize("denoise, error", [(True, 0.02), (False, ERROR)])
 def test_a_heap_is_drawn_until_its_noise_is_what_was_asked_for(denoise, error):
     other = heaps(denoise, seed=5)
     other.render(128)

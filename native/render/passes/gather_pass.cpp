@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "render/cast_work.h"
@@ -42,6 +43,22 @@ heap::Gather::Through into_clear(const heap::SeenFacet& seen, const PixelRays& r
   return sum;
 }
 
+// Of light that a grain meets on a straight way through it. Divided by less, noise is all that is left.
+constexpr float least_share = 1e-3F;
+
+/// What is scattered in a medium that begins without refraction depends on the place as much as on its bumps: within 45
+/// degrees at first, fewer with each sample, as the blur goes. Else on how the surface turns light: 26 degrees.
+void set_direction(Likeness& likeness, heap::Surface surface, const glm::vec3& normal, const glm::vec3& from_middle,
+                   std::uint32_t index) {
+  constexpr float narrow = 0.1F;
+  likeness.direction = normal;
+  likeness.least_alike = 1.0F - narrow;
+  if (surface != heap::Surface::index_matched) return;
+  likeness.least_alike = 1.0F - std::max(0.3F / std::sqrt(static_cast<float>(index) + 1.0F), narrow);
+  const glm::vec3 between = glm::normalize(from_middle) + normal;
+  if (const float length = glm::length(between); length > 1e-3F) likeness.direction = between / length;
+}
+
 }  // namespace
 
 bool GatherPass::run(const Sample& sample, const ArrayVisibility& arrays, SurfacePass& surfaces) {
@@ -59,6 +76,9 @@ bool GatherPass::run(const Sample& sample, const ArrayVisibility& arrays, Surfac
   lights_.assign(seen.normals.size(), glm::vec4(0.0F));
   scattered_.assign(seen.normals.size(), glm::vec4(0.0F));
   mirrored_.assign(seen.normals.size(), glm::vec4(0.0F));
+  straight_.assign(seen.normals.size(), glm::vec4(0.0F));
+  behind_.assign(seen.normals.size(), glm::vec4(0.0F));
+  likenesses_.assign(seen.normals.size(), Likeness());
   const bool clear = facets && gather->sees_into_any();
   if (clear) highlights_.assign(seen.normals.size(), glm::vec4(0.0F));
   const auto width = static_cast<std::size_t>(sample.size.x);
@@ -101,27 +121,35 @@ bool GatherPass::run(const Sample& sample, const ArrayVisibility& arrays, Surfac
         if (by_facets) found = gather->look_at_all(at, *facets, rays_a_sample, random);
         if (!found)
           found = gather->look_at_all(*grain, glm::vec3(seen.positions[i]), normal, towards, rays_a_sample, random);
-        others_[i] = glm::vec4(found->others, 1.0F);
-        lights_[i] = glm::vec4(found->world, found->film);
+        others_[i] = glm::vec4(found->others - found->straight, 1.0F);
+        straight_[i] = glm::vec4(found->straight, 0.0F);
+        behind_[i] = glm::vec4(found->world, found->film);
+        likenesses_[i].share = glm::max(found->met, least_share);
         scattered_[i] = glm::vec4(found->scattered, 0.0F);
         if (alone)
-          lights_[i] += glm::vec4(
+          lights_[i] = glm::vec4(
               by_facets ? gather->lit_behind(at, *facets, random) : gather->lit_behind(*grain, normal, towards, random),
               0.0F);
       } else if (all) {
         others_[i] = glm::vec4(gather->look(*grain, normal, towards, rays_a_sample, random), 1.0F);
       }
+      if (others_[i].w == 0.0F) continue;
+      likenesses_[i].object = std::abs(facing.w);
+      set_direction(likenesses_[i], gather->optics(*grain).surface, normal, glm::vec3(seen.positions[i]), sample.index);
     }
   });
   if (!whole) return false;
   if (sample.denoises) {
     std::vector<std::vector<glm::vec4>*> noisy{&others_, &lights_, &scattered_};
     if (clear) noisy.push_back(&mirrored_);
-    if (!denoiser_.run(seen, sample.index, others_, noisy, sample.go_on)) return false;
+    if (!denoiser_.run(seen.size, sample.index, likenesses_, noisy, sample.go_on)) return false;
   }
   // They have no noise, and edges.
-  if (clear)
-    for (std::size_t i = 0; i < mirrored_.size(); ++i) mirrored_[i] += highlights_[i];
+  for (std::size_t i = 0; i < others_.size(); ++i) {
+    others_[i] += straight_[i];
+    lights_[i] += behind_[i];
+    if (clear) mirrored_[i] += highlights_[i];
+  }
   upload(device_others_, sample.size, others_);
   upload(device_lights_, sample.size, lights_);
   upload(device_scattered_, sample.size, scattered_);

@@ -31,11 +31,14 @@ class GatherPass {
 
  private:
   Denoiser denoiser_;
+  std::vector<Likeness> likenesses_;
   std::vector<glm::vec4> others_;      // of what grains send; w: 1 where it was looked
   std::vector<glm::vec4> lights_;      // and the world, seen through grains
   std::vector<glm::vec4> scattered_;   // lights, in grains that no model is asked of
   std::vector<glm::vec4> mirrored_;    // and at their surfaces
   std::vector<glm::vec4> highlights_;  // of lights, there
+  std::vector<glm::vec4> straight_;    // of what others send
+  std::vector<glm::vec4> behind_;      // the world and the film, seen straight through
   std::optional<gl::Texture> device_others_;
   std::optional<gl::Texture> device_lights_;
   std::optional<gl::Texture> device_scattered_;
