@@ -43,6 +43,7 @@ NUMBERS = {
     "exposure_stops": "exposure",
     "samples": "samples a pixel",
     "milliseconds": "time, ms",
+    "further_ms": "ms a further sample",
     "exchange_ms": "ms of light between grains",
 }
 """What pages call other numbers of a result, by dotted paths, where that is not their key."""

@@ -37,13 +37,14 @@ DEFINITIONS = {
     ),
     "resolved": f"whether the error is above {curve.RESOLVED:g} of the noise floor; if not, it is at most what stands",
     "milliseconds": (
-        "ours: samples times that of a frame, light between grains not counted; the path tracer's: wall-clock time of"
-        " one render on all cores of the CPU, with the preparation of its scene"
+        "ours: that of a frame of one sample and of every further one, light between grains not counted; the path"
+        " tracer's: wall-clock time of one render on all cores of the CPU, with the preparation of its scene"
     ),
     "frame_ms": (
         "milliseconds of all passes of a frame, one sample a pixel, on the device named; the median of several"
         " frames after a first one that prepared the device"
     ),
+    "further_ms": "the same of a sample that refines such a frame; the median of as many",
     "exchange_ms": "milliseconds that light between grains took to be solved, once before the first sample; 0 if none",
     "noise_floor": "the error that a perfect picture would score, because the converged render is noisy itself",
     "front": "no other point is both faster and nearer to the converged render",
@@ -180,14 +181,15 @@ def _measure_model(request, ours, chosen, taps, book, progress, provenance):
     for name, count in missing.items():
         (images[name],) = ours.refine(count)
         book.picture(name, images[name], {**provenance, "model": model, "samples": count, "taps": taps})
-        progress.update(count / (request.samples[-1] + request.frames))
+        progress.update(count / (request.samples[-1] + 2 * request.frames))
     frame_ms, passes = ours.time_frames(request.frames)
+    further_ms = ours.time_further(request.frames)
     solved = ours.exchanged
     exchange_ms = solved["milliseconds"] if solved else 0.0
     for name, count in missing.items():
         book.add(name, images[name], side="mesograin", model=model, taps=taps, samples=count,
-                 milliseconds=count * frame_ms, frame_ms=frame_ms, exchange_ms=exchange_ms,
-                 frames_timed=request.frames, passes_ms=passes)
+                 milliseconds=frame_ms + (count - 1) * further_ms, frame_ms=frame_ms, further_ms=further_ms,
+                 exchange_ms=exchange_ms, frames_timed=request.frames, passes_ms=passes)
     progress.end()
 
 
@@ -260,7 +262,8 @@ def _fingerprint(request, results, truth):
 
 
 def _csv(points, on_front):
-    columns = ("name", "side", "model", "taps", "samples", "milliseconds", "frame_ms", "error", "resolved")
+    columns = ("name", "side", "model", "taps", "samples", "milliseconds", "frame_ms", "further_ms", "error",
+               "resolved")
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow([*columns, *METRICS, "front"])
@@ -277,7 +280,7 @@ def _steps(request):
     yield "converged render", "traced", 2 * kind.cost * request.reference_samples * million
     for model in request.models:
         for taps in request.taps if CHOICES[model].taps else (None,):
-            frames = request.samples[-1] + request.frames
+            frames = request.samples[-1] + 2 * request.frames
             what = labels.of_model(model) + (f", {taps} taps" if taps else "")
             yield what, f"{model} {taps}", (0.3 + 0.3 * (taps or 0)) * frames * million
     for samples in request.traced_samples:
