@@ -3,6 +3,7 @@
     blender --background --python install_addon.py -- FILE.zip
     blender --background --python install_addon.py -- --remove
 """
+import importlib.util
 import pathlib
 import shutil
 import sys
@@ -24,6 +25,9 @@ def install(path):
     if MODULE not in bpy.context.preferences.addons:
         sys.exit(f"mesograin: Blender {bpy.app.version_string} did not enable the add-on from '{path}'.")
     bpy.ops.wm.save_userpref()
+    if importlib.util.find_spec("numpy") is None:
+        sys.exit("mesograin: the add-on is installed, but needs NumPy, which this Blender's Python lacks; install it "
+                 "(in Debian and Ubuntu: python3-numpy).")
     print(f"Mesograin is installed and enabled in Blender {bpy.app.version_string}.")
     print("To take it out again: ./mesograin install --remove")
 

@@ -228,6 +228,28 @@ def test_what_is_wrong_is_one_sentence(asked, change, sentence):
     assert sentence in session.error and session.task is None
 
 
+def test_no_other_object_is_baked_than_the_button_names(asked):
+    bpy.context.scene.collection.objects.link(bpy.data.objects.new("Pile", None))
+    bpy.context.view_layer.objects.active = bpy.data.objects["Pile"]
+    with pytest.raises(RuntimeError, match="'Pile' has no faces of its own .* there are: 'Sphere'"):
+        bpy.ops.mesograin.bake()
+    bpy.context.view_layer.objects.active = None
+    assert bpy.ops.mesograin.bake() == {"FINISHED"} and session.task.surface.name == "Sphere"
+
+
+def test_time_left_is_that_of_samples(asked, monkeypatch):
+    """What must be known before the first one is not what the others take."""
+    bake = prepare(bpy.context)
+    now = [bake._started + 100.0]
+    monkeypatch.setattr(time, "monotonic", lambda: now[0])
+    assert bake.seconds_left is None
+    bake._advance(0.1)
+    assert bake.seconds_left is None
+    now[0] += 4.0
+    bake._advance(0.3)
+    assert bake.seconds_left == pytest.approx(14.0)
+
+
 def test_another_file_forgets_the_bake(asked):
     bpy.ops.mesograin.bake()
     bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)

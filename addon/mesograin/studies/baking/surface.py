@@ -197,10 +197,27 @@ def choose(depsgraph, name=None):
         name = active.name if active is not None and active.name in names else names[0] if len(names) == 1 else None
     if name in names:
         return name
-    there = ", ".join(f"'{each}'" for each in names) or "none"
     if name is None:
-        raise BakeError(f"Name the object to bake; there are: {there}.")
-    raise BakeError(f"There is no object '{name}' to bake, visible in renders and with faces; there are: {there}.")
+        raise BakeError(f"Name the object to bake; {_there_are(names)}.")
+    raise BakeError(f"There is no object '{name}' to bake, visible in renders and with faces; {_there_are(names)}.")
+
+
+def choose_active(depsgraph):
+    """The active object, as a button's label says it; the only one there is where none is active. Raises BakeError."""
+    active = depsgraph.view_layer_eval.objects.active
+    names = bakeable(depsgraph)
+    if active is None and len(names) == 1:
+        return names[0]
+    if active is None:
+        raise BakeError(f"Select the object to bake; {_there_are(names)}.")
+    if active.name not in names:
+        raise BakeError(f"'{active.name}' has no faces of its own that renders show: select what has; "
+                        f"{_there_are(names)}.")
+    return active.name
+
+
+def _there_are(names):
+    return "there are: " + (", ".join(f"'{name}'" for name in names) or "none")
 
 
 def _instances(scene, name):

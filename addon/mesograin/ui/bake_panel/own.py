@@ -29,6 +29,7 @@ class _Threaded:
         self.finished = False
         self.error = ""
         self.seconds = 0.0
+        self._first = None  # (fraction, when it was so much): what must be known before takes as long as it takes
         self._started = time.monotonic()
         self._thread = threading.Thread(target=self._run, name="mesograin-bake", daemon=True)
 
@@ -51,8 +52,10 @@ class _Threaded:
     @property
     def seconds_left(self):
         """None while nothing is known yet."""
-        passed = time.monotonic() - self._started
-        return passed / self.fraction * (1.0 - self.fraction) if self.fraction > 0.0 else None
+        if self._first is None or self.fraction <= self._first[0]:
+            return None
+        share, then = self._first
+        return (time.monotonic() - then) / (self.fraction - share) * (1.0 - self.fraction)
 
     @property
     def cancelled(self):
@@ -78,6 +81,7 @@ class _Threaded:
         self.seconds = time.monotonic() - self._started
 
     def _advance(self, fraction):
+        self._first = self._first or (fraction, time.monotonic())
         self.fraction = fraction
 
 

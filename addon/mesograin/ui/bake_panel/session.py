@@ -57,7 +57,7 @@ def prepare(context):
     path = output(context.scene)
     surface.require_writable(path)
     with as_rendered.depsgraph(context) as depsgraph:
-        name = surface.choose(depsgraph)
+        name = surface.choose_active(depsgraph)
         size = asked.width, asked.height
         if asked.relightable:
             relit = RelightableBake(depsgraph, name, size, asked.direction_samples, asked.components)
