@@ -19,6 +19,8 @@ from mesograin.studies.match import arguments as match_arguments  # noqa: E402
 from mesograin.studies.sweep import arguments as sweep_arguments  # noqa: E402
 from mesograin.studies.trade import arguments as trade_arguments  # noqa: E402
 
+from pictures import PICTURES  # noqa: E402
+
 PARTS = {
     "lint": "formatting, static analysis, shader validation, shell scripts, what every file must keep to",
     "physics": "the physics library against itself in double precision and against independent oracles",
@@ -291,6 +293,45 @@ class Bench(Command):
         return [place.python, SOURCE / script, place.build, *options]
 
 
+class Pictures(Command):
+    """Those of the documentation."""
+
+    name, sentence = "pictures", "make the documentation's pictures anew"
+    epilog = ("What Cycles renders and photons are traced for stays in the folder and is not made again; without the\n"
+              "folder all is made from nothing. Interrupted, the same command goes on.")
+
+    @property
+    def about(self):
+        lines = (f"  {name:<12}{picture.sentence}" for name, picture in PICTURES.items())
+        return ("Makes the documentation's pictures anew, from blend_files and Blender's own scene, and the lines of\n"
+                "its pages that tell what was measured in them.\n\n" + "\n".join(lines))
+
+    def parser(self):
+        made = super().parser()
+        made.add_argument("pictures", nargs="*", metavar="NAME", help="one or more of the above (default: all)")
+        made.add_argument("--folder", type=pathlib.Path, default=SOURCE / "build/pictures",
+                          help="where what takes long is kept (default: build/pictures)")
+        return made
+
+    def _chosen(self, words):
+        chosen = self.parser().parse_args(words)
+        for name in chosen.pictures:
+            if name not in PICTURES:
+                self.parser().error(f"there is no picture '{name}'; there are {', '.join(PICTURES)}")
+        chosen.pictures = chosen.pictures or list(PICTURES)
+        return chosen
+
+    def check(self, words):
+        chosen = self._chosen(words)
+        return ["blender", "lists report", "product product", *_referee(
+            ["photon"] if "shapes" in chosen.pictures else [])]
+
+    def run(self, words, place):
+        chosen = self._chosen(words)
+        return ["/usr/bin/python3", SOURCE / ".launcher/pictures.py", place.build, place.blender, place.logs,
+                chosen.folder, *chosen.pictures]
+
+
 class Build(Command):
     name, sentence = "build", "build the native module, and nothing else"
     about = ("Builds the native module and the command-line renderer; silent when they are up to date. The module\n"
@@ -362,7 +403,7 @@ RENDER = Render()
 COMMANDS = {command.name: command for command in (
     InBlender("compare", "render every model and Cycles, measure, write a report", "comparison", compare_arguments),
     InBlender("trade", "measure error against time, for every model and for Cycles", "trade", trade_arguments),
-    Sweep(), Animate(), RENDER, Bake(), Match(), Test(), Bench(), Build(), Package(), Install())}
+    Sweep(), Animate(), RENDER, Bake(), Match(), Test(), Bench(), Pictures(), Build(), Package(), Install())}
 
 
 def _referee(words):

@@ -11,7 +11,8 @@ import zipfile
 import pytest
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
-COMMANDS = ("compare", "trade", "sweep", "render", "bake", "match", "test", "bench", "build", "package", "install")
+COMMANDS = ("compare", "trade", "sweep", "render", "bake", "match", "test", "bench", "pictures", "build", "package",
+            "install")
 
 
 def launcher(*arguments, folder=SOURCE, **environment):
