@@ -30,11 +30,12 @@ def set_pass_pixels(render_pass, pixels):
 
 def borrowed_panels():
     """Panels of Blender that serve any engine: those of the built-in one, but for what we draw ourselves, and the slot
-    list and viewport settings of materials and the lens of cameras, which Blender ties to engines by name."""
+    list, preview and viewport settings of materials and the lens of cameras, which Blender ties to engines by name."""
     import bpy
 
     drawn_by_us = {"DATA_PT_light", "DATA_PT_area", "DATA_PT_spot", "DATA_PT_falloff_curve", "DATA_PT_preview"}
-    tied_by_name = {"EEVEE_MATERIAL_PT_context_material", "DATA_PT_camera_dof", "DATA_PT_camera_dof_aperture"}
+    tied_by_name = {"EEVEE_MATERIAL_PT_context_material", "MATERIAL_PT_preview", "DATA_PT_camera_dof",
+                    "DATA_PT_camera_dof_aperture"}
     for panel in bpy.types.Panel.__subclasses__():
         engines = getattr(panel, "COMPAT_ENGINES", None)
         if engines is None:
@@ -43,6 +44,12 @@ def borrowed_panels():
         name = panel.__name__.removeprefix("NODE_")
         if ("BLENDER_RENDER" in engines and name not in drawn_by_us) or panel.__name__ in tied_by_name:
             yield panel
+
+
+def redraw_preview(material):
+    """Has the preview in a material's tab rendered anew: its icon follows every tag, that one a property of Blender's
+    own, whatever is said."""
+    material.preview_render_type = material.preview_render_type
 
 
 def ask_for_layers(image_settings):

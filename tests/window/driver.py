@@ -13,6 +13,9 @@ import bpy
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parent / "blender")]
 
+REFUSED_SECONDS = 5.0
+"""So long Blender may let timers write nothing before a check goes on, and fails by it."""
+
 
 def run_all(window, checks, folder):
     results = {}
@@ -58,6 +61,7 @@ def main():
     addon_utils.enable("mesograin", default_set=True)
     bpy.context.preferences.view.show_splash = False  # which would take the first keys for itself
     import window
+    from mesograin.engine import writing
 
     folder, screen, module, *wanted = sys.argv[sys.argv.index("--") + 1:]
     checks = [(name, function) for name, function in vars(importlib.import_module(module)).items()
@@ -65,7 +69,15 @@ def main():
     folder = pathlib.Path(folder)
     steps = run_all(window.Window(folder, pathlib.Path(screen)), checks, folder)
 
+    refused_since = None
+
     def step():
+        nonlocal refused_since
+        if writing.refused():  # as after a preview, until engine/writing.py has looked
+            refused_since = refused_since or time.monotonic()
+            if time.monotonic() - refused_since < REFUSED_SECONDS:
+                return 0.05
+        refused_since = None
         try:
             return next(steps)
         except StopIteration:

@@ -21,6 +21,7 @@ LAUNCHES = {  # what is checked, in which environment, on a screen of which size
     "pile": ("checks_pile", {}, SMALL, SIMULATED),
     "compare": ("checks_compare", {}, TALL, SIMULATED),
     "bake": ("checks_bake", {}, TALLER, SIMULATED),
+    "preview": ("checks_preview", {}, TALLER, SIMULATED),
     "no_native_module": ("checks_unavailable", {"MESOGRAIN_NATIVE_DIR": EMPTY_FOLDER}, SMALL, SIMULATED),
     "no_device": ("checks_unavailable", {"MESOGRAIN_GL_DEVICE": "nonexistent"}, SMALL, SIMULATED),
 }

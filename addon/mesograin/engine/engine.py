@@ -10,8 +10,8 @@ import numpy as np
 
 from .. import compat, native_module
 from ..durations import duration
-from ..scene import export, lens
-from . import grace, motion, passes, rounds, status, viewport, viewport_text, waiting
+from ..scene import export, lens, meshes
+from . import grace, material_preview, motion, passes, rounds, status, viewport, viewport_text, waiting, writing
 
 # How long a final render may go without showing how far it is.
 SHOW_SECONDS = 0.5
@@ -22,12 +22,13 @@ LOOK_SECONDS = 0.05
 BEHIND_SECONDS = 1.0
 
 _sessions = weakref.WeakSet()
+_changed = 0.0  # when a viewport was last told of a change
 
 
 class MesograinRenderEngine(bpy.types.RenderEngine):
     bl_idname = "MESOGRAIN"
     bl_label = "Mesograin"
-    bl_use_preview = False
+    bl_use_preview = not bpy.app.background  # where Blender itself ends after one, of any engine
     bl_use_eevee_viewport = True  # Material Preview stays what it is
     bl_use_shading_nodes_custom = False
 
@@ -47,6 +48,9 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
     # Final renders
 
     def render(self, depsgraph):
+        if self.is_preview:
+            self._render_preview(depsgraph)
+            return
         try:
             self._render(depsgraph)
         except grace.GivenUp:
@@ -103,6 +107,28 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
             self.report({"INFO"}, f"{came}.")
         status.put(status.RENDER, status.Status(view.samples, region.width, region.height, timings,
                                                 (*warnings, *view.warnings), exchange=exchange, budget=came))
+
+    def _render_preview(self, depsgraph):
+        """Of a material. What is wrong with one is said in its tab, and there is no picture."""
+        with contextlib.suppress(grace.GivenUp, *_sentences()):
+            material_preview.wait_for_calm(lambda: _changed, self.test_break)
+            native = native_module.get()
+            width, height = self.resolution_x, self.resolution_y
+            values = material_preview.staged(export.read_scene(depsgraph, meshes.MeshCache()), depsgraph)
+            view = native.View(width, height, patient=False)
+            self._result(view.start_scene(values.to_native()), view)
+            self._result(view.start_camera(export.camera_from_scene(depsgraph, width, height), width, height), view)
+            result = self.begin_result(0, 0, width, height, layer=depsgraph.view_layer.name)
+            try:
+                for samples in material_preview.rounds(width, height):
+                    if self.test_break():
+                        break
+                    self._result(view.start(samples), view)
+                    self._show(result, view, not depsgraph.scene.render.film_transparent)
+                    self.update_result(result)
+            finally:
+                self.end_result(result)
+        writing.note_render()
 
     def _camera(self, depsgraph, width, height, region, eye):
         """native.Camera of the eye of this name, or of the camera as it is."""
@@ -229,6 +255,8 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
         self.tag_redraw()
 
     def _view_update(self, depsgraph):
+        global _changed
+        _changed = time.monotonic()
         native_module.get()
         if self._session is None or self._session.stopped:
             self._session = viewport.Session()
@@ -239,6 +267,7 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
         values = before and export.with_new_materials(before, depsgraph)
         if values is None:
             values = export.read_scene(depsgraph, self._session.cache)
+            material_preview.note_sizes(values)
         self._session.set_scene(values)
         self._warnings = values.warnings
 

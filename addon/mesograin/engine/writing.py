@@ -11,7 +11,7 @@ from bpy.props import BoolProperty
 
 from .. import compat
 
-LOOK_SECONDS = 0.5
+LOOK_SECONDS = 0.2
 PATIENCE = 1.0  # s for what takes less than a millisecond
 JOBS = ("RENDER", "RENDER_PREVIEW", "OBJECT_BAKE")  # which call engines in threads
 
@@ -83,8 +83,8 @@ def _allowed(_window_manager):
 
 
 @bpy.app.handlers.persistent
-def _note_render(*_arguments):
-    # In the thread of the render, where no timer can be registered.
+def note_render(*_arguments):
+    """To be called where a render ends: in its thread, where no timer can be registered."""
     global _rendered
     _rendered = True
 
@@ -104,7 +104,7 @@ def register():
     bpy.types.WindowManager.mesograin_writing = BoolProperty(
         name="Writing", description="Whether Python may write while this is read", get=_allowed, options={"HIDDEN"})
     for event in (bpy.app.handlers.render_complete, bpy.app.handlers.render_cancel):
-        event.append(_note_render)
+        event.append(note_render)
     bpy.app.timers.register(_look, first_interval=LOOK_SECONDS, persistent=True)
 
 
@@ -112,6 +112,6 @@ def unregister():
     if bpy.app.timers.is_registered(_look):
         bpy.app.timers.unregister(_look)
     for event in (bpy.app.handlers.render_complete, bpy.app.handlers.render_cancel):
-        event.remove(_note_render)
+        event.remove(note_render)
     del bpy.types.WindowManager.mesograin_writing
     bpy.utils.unregister_class(MESOGRAIN_OT_nothing)

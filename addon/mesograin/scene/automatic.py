@@ -28,7 +28,7 @@ def with_model(drawn, tolerance):
 
 def advised(drawn, tolerance):
     """(name, measured error in %) of the model that serves a drawn thing whose model is AUTO. Raises as with_model."""
-    return _advise(drawn.material, _shape(drawn.mesh, drawn.typical()), tolerance)
+    return _advise(drawn.material, shape(drawn.mesh, drawn.typical()), tolerance)
 
 
 @functools.lru_cache(maxsize=256)
@@ -43,8 +43,8 @@ def _with_model(material, model):
     return dataclasses.replace(material, values=tuple({**dict(material.values), "model": model}.items()))
 
 
-def _shape(mesh, to_world):
-    """to_world: 16 numbers, row by row."""
+def shape(mesh, to_world):
+    """(volume, area, whether it is closed) of a native.Mesh. to_world: 16 numbers, row by row."""
     known = _shapes.setdefault(mesh, {})
     linear = tuple(to_world[row * 4 + column] for row in range(3) for column in range(3))
     if linear not in known:

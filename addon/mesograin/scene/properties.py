@@ -2,6 +2,7 @@
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, FloatVectorProperty, IntProperty, PointerProperty
 
+from .. import compat
 from ..schema import models, parameters
 from . import budgets
 
@@ -24,7 +25,10 @@ def choices(name):
 
 # Blender tags nothing when a script sets a value of ours; an update function does, and redraws follow.
 def _tag(properties, _context):
-    properties.id_data.update_tag()
+    datablock = properties.id_data
+    datablock.update_tag()
+    if isinstance(datablock, bpy.types.Material):
+        compat.redraw_preview(datablock)
 
 
 def _property(parameter):

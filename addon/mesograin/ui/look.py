@@ -113,6 +113,11 @@ def _is_on(material, thing):
     return any(slots[number].material == material for number in meshes.used_slots(thing.data, len(slots)))
 
 
+def grain_size(material, thing, millimetres_per_unit):
+    """mm of a bpy.types.Object of this material, in its longest direction; 0 of what is none."""
+    return max(thing.dimensions) * millimetres_per_unit if _is_on(material, thing) else 0.0
+
+
 def hint(material, thing, millimetres_per_unit):
     """A sentence on how thick a bpy.types.Object of this material is for light; empty where there is nothing to say."""
     if not _is_on(material, thing):

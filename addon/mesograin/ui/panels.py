@@ -5,7 +5,7 @@ import bpy
 
 from .. import compat, native_module
 from ..cycles.wording import in_labels
-from ..engine import engine, passes, status
+from ..engine import engine, material_preview, passes, status
 from ..scene import budgets, export, plain_materials
 from ..schema import models, parameters
 from . import conversion, look, named_things, presets
@@ -130,7 +130,11 @@ class MESOGRAIN_PT_material(MesograinPanel, bpy.types.Panel):
         thing = getattr(context, "object", None)
         if thing is None or native_module.problem():
             return
-        hint = look.hint(context.material, thing, context.scene.mesograin.millimetres_per_unit)
+        said = context.material, thing, context.scene.mesograin.millimetres_per_unit
+        size = look.grain_size(*said)
+        if size > 0.0:
+            material_preview.note_size(context.material.name, size)
+        hint = look.hint(*said)
         for sentence in (hint, advised and advised.sentence):
             if sentence:
                 draw_sentence(self.layout, context, sentence, icon="LIGHT")

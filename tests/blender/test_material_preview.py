@@ -1,0 +1,88 @@
+# What of a material's preview can be had without a window: the stage that Blender sets, as it is drawn.
+import types
+
+import bpy
+import pytest
+from mathutils import Matrix
+
+from mesograin.engine import material_preview
+from mesograin.scene import export, meshes
+
+
+@pytest.fixture(autouse=True)
+def no_sizes(monkeypatch):
+    monkeypatch.setattr(material_preview, "_sizes", {})
+
+
+def add(name, data, material, size=1.0):
+    made = bpy.data.objects.new(name, data)
+    made.matrix_world = Matrix.Diagonal((size, size, size, 1.0))
+    made.data.materials.append(material)
+    bpy.context.scene.collection.objects.link(made)
+    return made
+
+
+def cube(side):
+    half = side / 2.0
+    mesh = bpy.data.meshes.new("Cube")
+    mesh.from_pydata([(x, y, z) for x in (-half, half) for y in (-half, half) for z in (-half, half)], [],
+                     [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)])
+    return mesh
+
+
+@pytest.fixture
+def grain():
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
+    made = bpy.data.materials.new("Grain")
+    made.mesograin.model, made.mesograin.sigma_s, made.mesograin.sigma_a = "auto", (2.0, 1.0, 0.5), (0.1, 0.2, 0.4)
+    return made
+
+
+def staged():
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    return material_preview.staged(export.read_scene(depsgraph, meshes.MeshCache()), depsgraph)
+
+
+def said(values):
+    return dict(values.instances[0].material.values)
+
+
+def test_a_grain_is_as_thick_as_it_is_large(grain):
+    add("Ball", cube(0.28), grain)
+    assert said(staged())["sigma_s"] == pytest.approx([each / 0.28 for each in (2.0, 1.0, 0.5)])  # of a millimetre
+    material_preview.note_size("Grain", 7.0)
+    assert said(staged())["sigma_a"] == pytest.approx([25.0 * each for each in (0.1, 0.2, 0.4)])
+
+
+@pytest.mark.parametrize("model, drawn", [("auto", "model_3"), ("transport", "model_3"), ("model_1", "model_1")])
+def test_its_model_is_one_that_is_there_at_once(grain, model, drawn):
+    grain.mesograin.model = model
+    add("Ball", cube(0.28), grain)
+    assert said(staged())["model"] == drawn
+
+
+def test_the_floor_is_seen_where_it_is_no_shadow_catcher(grain):
+    add("Ball", cube(0.28), grain)
+    add("Floor", cube(2.0), bpy.data.materials.new("Floor"))
+    assert [drawn.name for drawn in staged().instances] == ["Ball", "Floor"]
+    bpy.data.materials["Floor"].name = "FloorHidden"
+    assert [drawn.name for drawn in staged().instances] == ["Ball"]
+
+
+def test_sizes_are_those_of_the_scene(grain):
+    add("Grain", cube(1.0), grain, size=3.0)
+    bpy.context.scene.mesograin.millimetres_per_unit = 0.5
+    values = export.read_scene(bpy.context.evaluated_depsgraph_get(), meshes.MeshCache())
+    material_preview.note_sizes(values)
+    assert material_preview._sizes == {"Grain": pytest.approx(1.5 * (6.0 / 3.14159265) ** (1.0 / 3.0))}
+
+
+def test_it_waits_while_an_artist_drags(monkeypatch):
+    clock = types.SimpleNamespace(now=10.0)
+    monkeypatch.setattr(material_preview, "time", types.SimpleNamespace(
+        monotonic=lambda: clock.now, sleep=lambda seconds: setattr(clock, "now", clock.now + seconds)))
+    material_preview.wait_for_calm(lambda: min(clock.now, 12.0), lambda: False)
+    assert clock.now == pytest.approx(12.0 + material_preview.CALM_SECONDS, abs=0.06)
+    clock.now = 10.0
+    material_preview.wait_for_calm(lambda: clock.now, lambda: clock.now > 10.5)
+    assert clock.now == pytest.approx(10.55, abs=0.06)

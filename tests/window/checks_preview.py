@@ -1,0 +1,65 @@
+# The preview in a material's tab and its icon: a grain on the stage that Blender sets, drawn anew when it changes.
+import bpy
+import numpy as np
+from mesograin.engine import material_preview
+
+PANEL = "MATERIAL_PT_preview"
+
+
+def open_panel():
+    """Has Blender's panel begin open."""
+    panel = getattr(bpy.types, PANEL)
+    bpy.utils.unregister_class(panel)
+    panel.bl_options = set()
+    bpy.utils.register_class(panel)
+
+
+def colourful(picture):
+    """Share of the pixels that are yellow; of Blender's own theme hardly any are."""
+    return (picture[..., :2].min(axis=-1) > picture[..., 2] + 0.15).mean()
+
+
+def prepare(window):
+    """The sphere's tab; gives the Properties editor's area and the material."""
+    open_panel()
+    main = max(window._window().screen.areas, key=lambda area: area.width * area.height)
+    main.type = "VIEW_3D"
+    area = yield from window.open("sphere", samples=1)
+    area.spaces.active.shading.type = "SOLID"
+    bpy.context.view_layer.objects.active = bpy.data.objects["Sphere"]
+    area.type = "PROPERTIES"
+    yield from window.seconds(0.5)  # it has its tabs once it was drawn
+    area.spaces.active.context = "MATERIAL"
+    material = bpy.data.materials["Translucent"]
+    material.mesograin.model, material.mesograin.boundary = "model_2", "index_matched"
+    material.mesograin.scale = 1.0
+    return area, material
+
+
+def check_a_material_is_previewed_and_again_when_it_changes(window):
+    area, material = yield from prepare(window)
+    area.tag_redraw()
+    yield from window.until(lambda: not bpy.app.is_job_running("RENDER_PREVIEW"))
+    grey = yield from window.picture(area)
+    size = material_preview._sizes["Translucent"]
+    assert abs(size - 4.8) < 1e-4, f"the sphere is as large as it is in the scene, not {size} mm"
+    material.mesograin.sigma_a = (0.01, 0.02, 2.0)
+    for _ in range(6):  # one after the other: the large one, and the icons
+        yield from window.seconds(1.0)
+        yield from window.until(lambda: not bpy.app.is_job_running("RENDER_PREVIEW"))
+        picture = yield from window.picture(area)
+    assert colourful(picture) > colourful(grey) + 0.01, "the preview shows the grain as it was"
+    icon = np.array(material.preview.icon_pixels_float).reshape(-1, 4)
+    assert len(icon) and icon[:, 3].min() < 0.1, "the icon's floor is to be seen through"
+    seen = icon[icon[:, 3] > 0.9]
+    assert colourful(seen) > 0.5, "the icon is of the same colour"
+
+
+def check_what_is_wrong_leaves_no_preview_and_no_traceback(window):
+    area, material = yield from prepare(window)
+    material.mesograin.boundary = "lambert_refracted"
+    material.mesograin.model = "model_3"
+    material.mesograin["profile"] = 2
+    area.tag_redraw()
+    yield from window.seconds(1.0)
+    yield from window.until(lambda: not bpy.app.is_job_running("RENDER_PREVIEW"))
