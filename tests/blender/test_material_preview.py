@@ -2,6 +2,7 @@
 import types
 
 import bpy
+import numpy as np
 import pytest
 from mathutils import Matrix
 
@@ -12,6 +13,7 @@ from mesograin.scene import export, meshes
 @pytest.fixture(autouse=True)
 def no_sizes(monkeypatch):
     monkeypatch.setattr(material_preview, "_sizes", {})
+    monkeypatch.setattr(material_preview, "_owed", set())
 
 
 def add(name, data, material, size=1.0):
@@ -77,12 +79,48 @@ def test_sizes_are_those_of_the_scene(grain):
     assert material_preview._sizes == {"Grain": pytest.approx(1.5 * (6.0 / 3.14159265) ** (1.0 / 3.0))}
 
 
-def test_it_waits_while_an_artist_drags(monkeypatch):
-    clock = types.SimpleNamespace(now=10.0)
-    monkeypatch.setattr(material_preview, "time", types.SimpleNamespace(
-        monotonic=lambda: clock.now, sleep=lambda seconds: setattr(clock, "now", clock.now + seconds)))
-    material_preview.wait_for_calm(lambda: min(clock.now, 12.0), lambda: False)
-    assert clock.now == pytest.approx(12.0 + material_preview.CALM_SECONDS, abs=0.06)
-    clock.now = 10.0
-    material_preview.wait_for_calm(lambda: clock.now, lambda: clock.now > 10.5)
-    assert clock.now == pytest.approx(10.55, abs=0.06)
+@pytest.fixture
+def clock(monkeypatch):
+    """Time that passes where it is waited for."""
+    made = types.SimpleNamespace(now=10.0, last=lambda now: 0.0)
+
+    def sleep(seconds):
+        made.now += seconds
+        monkeypatch.setattr(material_preview, "_changed", made.last(made.now))
+
+    monkeypatch.setattr(material_preview, "time", types.SimpleNamespace(monotonic=lambda: made.now, sleep=sleep))
+    monkeypatch.setattr(material_preview, "_changed", 10.0)
+    return made
+
+
+def test_it_waits_while_an_artist_drags(clock):
+    clock.last = lambda now: min(now, 12.0)
+    assert material_preview.wait_for_calm(lambda: False)
+    assert clock.now == pytest.approx(12.0 + material_preview.CALM_SECONDS, abs=0.02)
+
+
+def test_it_waits_no_longer_than_it_is_wanted(clock):
+    clock.last = lambda now: now
+    assert not material_preview.wait_for_calm(lambda: clock.now > 10.5)
+    assert clock.now == pytest.approx(10.5, abs=0.02)
+
+
+def test_an_icon_is_as_it_was_until_it_is_calm(clock, grain, monkeypatch):
+    monkeypatch.setattr(material_preview, "_icons", {})
+    assert material_preview.owe_icon("Grain", 32, 16) is None
+    picture = np.ones((16, 32, 4), dtype=np.float32)
+    material_preview.keep_icon("Grain", picture)
+    assert material_preview.owe_icon("Grain", 32, 16) is picture
+    assert material_preview.owe_icon("Grain", 32, 32) is None
+    assert material_preview._pay() == material_preview.CALM_SECONDS and material_preview._owed == {"Grain"}
+    clock.now = 20.0
+    grain.preview_ensure()
+    assert material_preview._pay() is None and not material_preview._owed
+
+
+def test_only_a_grain_waits(grain):
+    bpy.context.scene.collection.objects.link(bpy.data.objects.new("Lamp", bpy.data.lights.new("Lamp", "POINT")))
+    add("Floor", cube(2.0), bpy.data.materials.new("Floor"))
+    assert material_preview.grain_on(bpy.context.evaluated_depsgraph_get()) == ""
+    add("Ball", cube(0.28), grain)
+    assert material_preview.grain_on(bpy.context.evaluated_depsgraph_get()) == "Grain"

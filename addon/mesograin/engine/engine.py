@@ -22,7 +22,6 @@ LOOK_SECONDS = 0.05
 BEHIND_SECONDS = 1.0
 
 _sessions = weakref.WeakSet()
-_changed = 0.0  # when a viewport was last told of a change
 
 
 class MesograinRenderEngine(bpy.types.RenderEngine):
@@ -110,25 +109,51 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
 
     def _render_preview(self, depsgraph):
         """Of a material. What is wrong with one is said in its tab, and there is no picture."""
+        width, height = self.resolution_x, self.resolution_y
+        grain = material_preview.grain_on(depsgraph)
         with contextlib.suppress(grace.GivenUp, *_sentences()):
-            material_preview.wait_for_calm(lambda: _changed, self.test_break)
-            native = native_module.get()
-            width, height = self.resolution_x, self.resolution_y
-            values = material_preview.staged(export.read_scene(depsgraph, meshes.MeshCache()), depsgraph)
-            view = native.View(width, height, patient=False)
-            self._result(view.start_scene(values.to_native()), view)
-            self._result(view.start_camera(export.camera_from_scene(depsgraph, width, height), width, height), view)
+            native_module.get()
             result = self.begin_result(0, 0, width, height, layer=depsgraph.view_layer.name)
             try:
-                for samples in material_preview.rounds(width, height):
-                    if self.test_break():
-                        break
-                    self._result(view.start(samples), view)
-                    self._show(result, view, not depsgraph.scene.render.film_transparent)
-                    self.update_result(result)
+                if not grain or not material_preview.is_icon(width, height):
+                    while material_preview.wait_for_calm(self.test_break) and not self._preview(depsgraph, result):
+                        pass
+                elif material_preview.is_calm():
+                    self._preview(depsgraph, result, grain)
+                else:  # Blender, which redraws icons, waits for one that it ends, and begins with it again
+                    last = material_preview.owe_icon(grain, width, height)
+                    if last is not None:
+                        _set_pass(result, "Combined", last)
             finally:
                 self.end_result(result)
-        writing.note_render()
+        if material_preview.is_calm():
+            writing.note_render()
+
+    def _preview(self, depsgraph, result, icon=""):
+        """Whether it was drawn, or is not wanted any more: it gives way to viewports. icon: the name of the material
+        that it is kept for."""
+        begun = time.monotonic()
+
+        def is_over():
+            return material_preview.changed_since(begun) or self.test_break()
+
+        width, height = self.resolution_x, self.resolution_y
+        values = material_preview.staged(export.read_scene(depsgraph, meshes.MeshCache()), depsgraph)
+        camera = export.camera_from_scene(depsgraph, width, height)
+        view = native_module.get().View(width, height, patient=False)
+        self._result(view.start_scene(values.to_native()), view, given_up=is_over)
+        self._result(view.start_camera(camera, width, height), view, given_up=is_over)
+        for samples in material_preview.rounds(width, height):
+            self._result(view.start(samples), view, given_up=is_over)
+            if is_over():
+                if icon and not self.test_break():
+                    material_preview.owe_icon(icon, width, height)
+                return self.test_break()
+            picture = self._show(result, view, not depsgraph.scene.render.film_transparent)
+            self.update_result(result)
+        if icon:
+            material_preview.keep_icon(icon, picture["pixels"])
+        return True
 
     def _camera(self, depsgraph, width, height, region, eye):
         """native.Camera of the eye of this name, or of the camera as it is."""
@@ -204,13 +229,13 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
 
         self._result(view.start(samples), view, tell)
 
-    def _result(self, task, view, tell=lambda: None):
+    def _result(self, task, view, tell=lambda: None, given_up=None):
         """Of a task of the view. Other views may hold its thread for long: the artist's wish to cancel is seen
-        meanwhile. Raises grace.GivenUp where it cannot be followed soon."""
-        cancelled = None
+        meanwhile, or whatever else given_up() tells. Raises grace.GivenUp where it cannot be followed soon."""
+        cancelled, given_up = None, given_up or self.test_break
         while not task.wait(grace.POLL_SECONDS):
             now = time.perf_counter()
-            if cancelled is None and self.test_break():
+            if cancelled is None and given_up():
                 view.cancel()
                 cancelled = now
             if cancelled is not None and now - cancelled > grace.GRACE_SECONDS:
@@ -255,8 +280,7 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
         self.tag_redraw()
 
     def _view_update(self, depsgraph):
-        global _changed
-        _changed = time.monotonic()
+        material_preview.note_change()
         native_module.get()
         if self._session is None or self._session.stopped:
             self._session = viewport.Session()
@@ -292,6 +316,8 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
         if session is not None and session.has_scene:
             session.set_camera(_viewport_camera(context, depsgraph), region.width, region.height)
             pixels = session.advance(scene.mesograin.viewport_samples)
+            if session.settling or session.seconds_behind > 0.0:
+                material_preview.note_change()
             if pixels is None and self._texture is not None and scene.render.film_transparent != self._transparent:
                 pixels = session.picture()  # at rest nothing new would come
             if pixels is not None:
@@ -454,7 +480,14 @@ def _stop_sessions(*_arguments):
     status.clear()
 
 
-HANDLERS = (("undo_post", _forget_meshes), ("redo_post", _forget_meshes), ("load_pre", _stop_sessions))
+@bpy.app.handlers.persistent
+def _note_change(_scene, depsgraph):
+    if depsgraph.id_type_updated("MATERIAL"):
+        material_preview.note_change()
+
+
+HANDLERS = (("depsgraph_update_post", _note_change), ("undo_post", _forget_meshes), ("redo_post", _forget_meshes),
+            ("load_pre", _stop_sessions))
 
 
 def register():
@@ -470,6 +503,7 @@ def unregister():
         getattr(bpy.app.handlers, event).remove(handler)
     if bpy.app.timers.is_registered(_look):
         bpy.app.timers.unregister(_look)
+    material_preview.stop()
     _stop_sessions()
     for panel in compat.borrowed_panels():
         panel.COMPAT_ENGINES.discard(MesograinRenderEngine.bl_idname)
