@@ -1,6 +1,5 @@
 # The preview in a material's tab and its icon: a grain on the stage that Blender sets, drawn anew when it changes.
 import bpy
-import numpy as np
 from mesograin.engine import material_preview
 
 PANEL = "MATERIAL_PT_preview"
