@@ -91,14 +91,16 @@ def match(at):
 
 
 def comparison(at):
-    return [[LAUNCHER, "compare", "--blender", at.blender, SOURCE / "blend_files/grain.blend", "--cache",
-             at.folder / "cycles", "--out", at.folder / "comparison"]]
+    """The README's."""
+    return [[LAUNCHER, "compare", "--blender", at.blender, SOURCE / "blend_files/heap.blend", "--models", "model_2",
+             "--references", "volume_index_matched", "--size", "480x320", "--samples", "16", "--reference-samples",
+             "32", "--cache", at.folder / "cycles", "--out", at.folder / "comparison"]]
 
 
 PICTURES = {
     "tutorial": Picture("the tutorial's steps", 1, tutorial, "tutorial_*.png"),
-    "comparison": Picture("one grain by every model beside Cycles", 2, comparison, "comparison.png",
-                          "comparison/overview.png"),
+    "comparison": Picture("a heap beside Cycles, and the difference", 6, comparison, "comparison.png",
+                          "comparison/plots/overview.png"),
     "match": Picture("a ball and the coefficients found in it", 1, match, "match.png",
                      "match/match_sphere_model_2.png"),
     "scenes": Picture("scenes of Cycles' nodes by both engines", 3, scenes, "scene_*.jpg"),

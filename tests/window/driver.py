@@ -73,7 +73,8 @@ def main():
 
     def step():
         nonlocal refused_since
-        if writing.refused():  # as after a preview, until engine/writing.py has looked
+        enabled = hasattr(bpy.types, "MESOGRAIN_OT_nothing")
+        if enabled and writing.refused():  # as after a preview, until engine/writing.py has looked
             refused_since = refused_since or time.monotonic()
             if time.monotonic() - refused_since < REFUSED_SECONDS:
                 return 0.05
