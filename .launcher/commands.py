@@ -81,6 +81,13 @@ class Command:
         return Parser(prog=f"./mesograin {self.name}", description=self.about, epilog=self.epilog,
                       formatter_class=argparse.RawDescriptionHelpFormatter)
 
+    def named(self, asked, kind, known):
+        """What was asked for, all that is known if nothing. Ends the process with a sentence if some is not known."""
+        for name in asked:
+            if name not in known:
+                self.parser().error(f"there is no {kind} '{name}'; the {kind}s are {', '.join(known)}")
+        return asked or list(known)
+
     def wants_help(self, words):
         """Whether the words ask for help that is not a program's own."""
         return bool({"--help", "-h"} & set(words[:words.index("--")] if "--" in words else words))
@@ -230,10 +237,7 @@ class Test(Command):
 
     def _chosen(self, words):
         chosen = self.parser().parse_args(words)
-        for part in chosen.parts:
-            if part not in PARTS:
-                self.parser().error(f"there is no part '{part}'; the parts are {', '.join(PARTS)}")
-        chosen.parts = chosen.parts or list(PARTS)
+        chosen.parts = self.named(chosen.parts, "part", PARTS)
         return chosen
 
     def check(self, words):
@@ -314,22 +318,18 @@ class Pictures(Command):
         return made
 
     def _chosen(self, words):
+        """(names of pictures, the folder)."""
         chosen = self.parser().parse_args(words)
-        for name in chosen.pictures:
-            if name not in PICTURES:
-                self.parser().error(f"there is no picture '{name}'; there are {', '.join(PICTURES)}")
-        chosen.pictures = chosen.pictures or list(PICTURES)
-        return chosen
+        return self.named(chosen.pictures, "picture", PICTURES), chosen.folder
 
     def check(self, words):
-        chosen = self._chosen(words)
-        return ["blender", "lists report", "product product", *_referee(
-            ["photon"] if "shapes" in chosen.pictures else [])]
+        names, _ = self._chosen(words)
+        return ["blender", "lists report", "product product", *(["referee"] if "shapes" in names else [])]
 
     def run(self, words, place):
-        chosen = self._chosen(words)
-        return ["/usr/bin/python3", SOURCE / ".launcher/pictures.py", place.build, place.blender, place.logs,
-                chosen.folder, *chosen.pictures]
+        names, folder = self._chosen(words)
+        script = SOURCE / ".launcher/pictures.py"
+        return ["/usr/bin/python3", script, place.build, place.blender, place.logs, folder, *names]
 
 
 class Build(Command):

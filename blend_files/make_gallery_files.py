@@ -87,16 +87,8 @@ def angles(width, height):
 
 def surround(image):
     """Makes a picture of all around, (height, width, 3), row 0 below, the world."""
-    height, width = image.shape[:2]
-    pixels = np.ones((height, width, 4), dtype=np.float32)
-    pixels[..., :3] = image
-    made = bpy.data.images.new("Room", width, height, float_buffer=True)
-    made.pixels.foreach_set(pixels.ravel())
-    made.pack()
     node, tree = background()
-    texture = tree.nodes.new("ShaderNodeTexEnvironment")
-    texture.image = made
-    tree.links.new(texture.outputs["Color"], node.inputs["Color"])
+    parts.surround(tree, node, "Room", image)
 
 
 def soft():
@@ -166,12 +158,7 @@ def pour(heap):
     """The scene of a Heap: a Blender unit is ten radii of a grain."""
     from mesograin.grains import objects, pile
 
-    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
-    bpy.context.preferences.filepaths.save_version = 0
-    scene = bpy.context.scene
-    scene.render.engine = "MESOGRAIN"
-    scene.render.resolution_x, scene.render.resolution_y = SIZE
-    scene.render.resolution_percentage = 100
+    scene = parts.begin(SIZE)
     scene.view_settings.view_transform = "Standard"
     size = 0.1
     scene.mesograin.millimetres_per_unit = heap.radius / size

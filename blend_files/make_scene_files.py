@@ -10,19 +10,12 @@ import numpy as np
 from mathutils import Euler, Matrix, Vector
 
 HERE = pathlib.Path(__file__).resolve().parent
-sys.path[:0] = [str(HERE.parent / "addon")]
+sys.path[:0] = [str(HERE), str(HERE.parent / "addon")]
+
+import parts  # noqa: E402
 
 FOLDER = HERE / "scenes"
 SIZE = (400, 300)
-
-
-def start():
-    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
-    bpy.context.preferences.filepaths.save_version = 0
-    scene = bpy.context.scene
-    scene.render.engine = "MESOGRAIN"
-    scene.render.resolution_x, scene.render.resolution_y = SIZE
-    scene.render.resolution_percentage = 100
 
 
 def put(name, data, place=(0.0, 0.0, 0.0), turn=(0.0, 0.0, 0.0), scale=(1.0, 1.0, 1.0)):
@@ -87,7 +80,7 @@ def world(colour=None):
 
 def mesh_lights():
     """A studio lit by shining rectangles."""
-    start()
+    parts.begin(SIZE)
     shape("plane", checkered((0.6, 0.6, 0.6), (0.3, 0.3, 0.32), 12.0, Roughness=0.7), (0.0, 0.0, 0.0), smooth=False,
           size=12.0)
     shape("monkey", principled("Clay", (0.55, 0.25, 0.12), Roughness=0.6)[0], (-1.3, 0.0, 0.95), (-0.6, 0.0, -0.4))
@@ -103,7 +96,7 @@ def mesh_lights():
 
 def environment():
     """Balls of plaster, plastic and metal under an image of a sky."""
-    start()
+    parts.begin(SIZE)
     width, height = 256, 128
     turn, rise = np.meshgrid(np.linspace(-math.pi, math.pi, width), np.linspace(-0.5 * math.pi, 0.5 * math.pi, height))
     up = np.clip(np.sin(rise), 0.0, 1.0)[..., None]
@@ -111,15 +104,7 @@ def environment():
                    np.array((0.12, 0.1, 0.08)))
     sky = sky + np.exp(-((turn - 0.8) ** 2 + (rise - 0.7) ** 2) / 0.01)[..., None] * np.array((60.0, 50.0, 35.0))
     clouds = 0.15 * (1.0 + np.sin(5.0 * turn + 3.0 * np.sin(4.0 * rise))) * (rise > 0.05)
-    pixels = np.ones((height, width, 4), dtype=np.float32)
-    pixels[..., :3] = sky + clouds[..., None]
-    image = bpy.data.images.new("Sky", width, height, float_buffer=True)
-    image.pixels.foreach_set(pixels.ravel())
-    image.pack()
-    tree, background = world()
-    texture = tree.nodes.new("ShaderNodeTexEnvironment")
-    texture.image = image
-    tree.links.new(texture.outputs["Color"], background.inputs["Color"])
+    parts.surround(*world(), "Sky", sky + clouds[..., None])
     shape("plane", principled("Ground", (0.3, 0.28, 0.25), Roughness=0.9)[0], (0.0, 0.0, 0.0), smooth=False, size=14.0)
     for place, made in (((-2.1, 0.0, 0.9), principled("Plaster", (0.7, 0.7, 0.7), Specular=0.0)[0]),
                         ((0.0, 0.0, 0.9), principled("Plastic", (0.5, 0.05, 0.04), Roughness=0.4)[0]),
@@ -130,7 +115,7 @@ def environment():
 
 def scatter():
     """Two thousand pebbles on a ground with a texture, under a sun and a sky."""
-    start()
+    parts.begin(SIZE)
     ground, node = principled("Ground", (0.4, 0.3, 0.2), Roughness=0.9)
     size = 64
     random = np.random.default_rng(1)

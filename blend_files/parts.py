@@ -4,6 +4,30 @@ import numpy as np
 from mathutils import Matrix
 
 
+def begin(size):
+    """An empty scene of a file that is to be saved, for pictures of this size by Mesograin."""
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
+    bpy.context.preferences.filepaths.save_version = 0
+    scene = bpy.context.scene
+    scene.render.engine = "MESOGRAIN"
+    scene.render.resolution_x, scene.render.resolution_y = size
+    scene.render.resolution_percentage = 100
+    return scene
+
+
+def surround(tree, background, name, picture):
+    """Makes a picture of all around, (height, width, 3), row 0 below, what a world's Background node shines with."""
+    height, width = picture.shape[:2]
+    pixels = np.ones((height, width, 4), dtype=np.float32)
+    pixels[..., :3] = picture
+    image = bpy.data.images.new(name, width, height, float_buffer=True)
+    image.pixels.foreach_set(pixels.ravel())
+    image.pack()
+    texture = tree.nodes.new("ShaderNodeTexEnvironment")
+    texture.image = image
+    tree.links.new(texture.outputs["Color"], background.inputs["Color"])
+
+
 def add_object(name, data, matrix=Matrix()):
     new = bpy.data.objects.new(name, data)
     new.matrix_world = matrix
