@@ -98,15 +98,15 @@ def comparison(at):
 
 
 PICTURES = {
-    "tutorial": Picture("the tutorial's steps", 1, tutorial, "tutorial_*.png"),
-    "comparison": Picture("a heap beside Cycles, and the difference", 6, comparison, "comparison.png",
+    "tutorial": Picture("the tutorial's steps", 2, tutorial, "tutorial_*.png"),
+    "comparison": Picture("a heap beside Cycles, and the difference", 4, comparison, "comparison.png",
                           "comparison/plots/overview.png"),
     "match": Picture("a ball and the coefficients found in it", 1, match, "match.png",
                      "match/match_sphere_model_2.png"),
     "scenes": Picture("scenes of Cycles' nodes by both engines", 3, scenes, "scene_*.jpg"),
-    "crystals": Picture("one grain on a table by both engines", 5, crystals, "crystals.jpg"),
-    "gallery": Picture("heaps by both engines", 8, gallery, "gallery_*.jpg"),
-    "heaps": Picture("a heap without and with light between grains, and by Cycles", 8, heaps, "heaps.png"),
+    "crystals": Picture("one grain on a table by both engines", 3, crystals, "crystals.jpg"),
+    "gallery": Picture("heaps by both engines", 7, gallery, "gallery_*.jpg"),
+    "heaps": Picture("a heap without and with light between grains, and by Cycles", 9, heaps, "heaps.png"),
     "shapes": Picture("seven shapes by photons and by the model", 20, shapes, "shapes.jpg"),
 }
 
