@@ -107,7 +107,7 @@ PICTURES = {
     "crystals": Picture("one grain on a table by both engines", 3, crystals, "crystals.jpg"),
     "gallery": Picture("heaps by both engines", 7, gallery, "gallery_*.jpg"),
     "heaps": Picture("a heap without and with light between grains, and by Cycles", 9, heaps, "heaps.png"),
-    "shapes": Picture("seven shapes by photons and by the model", 20, shapes, "shapes.jpg"),
+    "shapes": Picture("seven shapes by photons and by the model", 3, shapes, "shapes.jpg"),
 }
 
 
