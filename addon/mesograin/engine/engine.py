@@ -478,6 +478,7 @@ def _stop_sessions(*_arguments):
         session.stop()
     _sessions.clear()
     status.clear()
+    material_preview.forget()
 
 
 @bpy.app.handlers.persistent

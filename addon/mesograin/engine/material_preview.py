@@ -89,9 +89,15 @@ def _pay():
     return CALM_SECONDS if time.monotonic() - _changed < 3.0 * CALM_SECONDS else None
 
 
+def forget():
+    """Another file's materials are others, whatever their names."""
+    for known in (_sizes, _icons, _owed):
+        known.clear()
+
+
 def stop():
-    """Nothing is owed any more: the add-on ends."""
-    _owed.clear()
+    """The add-on ends."""
+    forget()
     if bpy.app.timers.is_registered(_pay):
         bpy.app.timers.unregister(_pay)
 
