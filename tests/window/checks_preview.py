@@ -55,6 +55,28 @@ def check_a_material_is_previewed_and_again_when_it_changes(window):
     assert colourful(picture) > colourful(grey) + 0.01, "the preview shows the grain as it was"
 
 
+def covered(material):
+    """Share of the material's icon that the grain covers; 0 of none."""
+    icons = [icon for (name, _, _), icon in material_preview._icons.items() if name == material.name]
+    return max(((icon[..., 3] > 0.5).mean() for icon in icons), default=0.0)
+
+
+def check_a_preview_shows_the_artists_own_grain_as_it_is_turned(window):
+    area, material = yield from prepare(window)
+    yield from window.until(lambda: covered(material) > 0.2)
+    ball = covered(material)
+    sphere = bpy.data.objects["Sphere"]
+    sphere.scale = (0.3, 0.3, 1.0)
+    material.mesograin_preview = material_preview.OWN
+    area.tag_redraw()
+    yield from window.until(lambda: 0.1 * ball < covered(material) < 0.6 * ball)
+    upright = covered(material)
+    sphere.rotation_euler[1] = 1.5707963  # along the stage's line of sight, seen from above
+    yield from window.until(lambda: covered(material) != upright)
+    material.mesograin_preview = "stage"
+    yield from window.until(lambda: covered(material) > 0.9 * ball)
+
+
 def check_what_is_wrong_leaves_no_preview_and_no_traceback(window):
     area, material = yield from prepare(window)
     material.mesograin.boundary = "lambert_refracted"

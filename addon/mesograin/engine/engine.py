@@ -291,7 +291,7 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
         values = before and export.with_new_materials(before, depsgraph)
         if values is None:
             values = export.read_scene(depsgraph, self._session.cache)
-            material_preview.note_sizes(values)
+            material_preview.note_grains(values)
         self._session.set_scene(values)
         self._warnings = values.warnings
 
@@ -345,7 +345,7 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
         height, width, _ = pixels.shape
         if status.put(status.VIEWPORT, status.Status(session.samples, width, height, session.timings,
                                                      warnings, exchange=session.exchange)):
-            _redraw_panels()
+            status.redraw_panels()
 
     def _draw_texture(self, scene, region):
         import gpu
@@ -371,7 +371,7 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
             self._error = complaint.error
             self.tag_redraw()
         if news:
-            _redraw_panels()
+            status.redraw_panels()
 
 
 def _set_pass(result, name, pixels):
@@ -412,14 +412,6 @@ def _redraw_viewports():
     for window in bpy.context.window_manager.windows:
         for area in window.screen.areas:
             if area.type == "VIEW_3D" and area.spaces.active.shading.type == "RENDERED":
-                area.tag_redraw()
-
-
-def _redraw_panels():
-    """The panels that show what the last pictures left; nothing else redraws them after a viewport."""
-    for window in bpy.context.window_manager.windows:
-        for area in window.screen.areas:
-            if area.type == "PROPERTIES":
                 area.tag_redraw()
 
 
@@ -483,7 +475,7 @@ def _stop_sessions(*_arguments):
 
 @bpy.app.handlers.persistent
 def _note_change(_scene, depsgraph):
-    if depsgraph.id_type_updated("MATERIAL"):
+    if depsgraph.id_type_updated("MATERIAL") or (depsgraph.id_type_updated("OBJECT") and material_preview.shows_own()):
         material_preview.note_change()
 
 
@@ -504,7 +496,6 @@ def unregister():
         getattr(bpy.app.handlers, event).remove(handler)
     if bpy.app.timers.is_registered(_look):
         bpy.app.timers.unregister(_look)
-    material_preview.stop()
     _stop_sessions()
     for panel in compat.borrowed_panels():
         panel.COMPAT_ENGINES.discard(MesograinRenderEngine.bl_idname)

@@ -1,6 +1,8 @@
 # What the last picture of each kind was made of and what was wrong with it, for panels to show.
 import dataclasses
 
+import bpy
+
 from . import stated_error
 
 RENDER, VIEWPORT = "render", "viewport"
@@ -75,3 +77,11 @@ def complaints():
 
 def clear():
     _latest.clear()
+
+
+def redraw_panels():
+    """The panels that show it; nothing else redraws them after a viewport."""
+    for window in bpy.context.window_manager.windows:
+        for area in window.screen.areas:
+            if area.type == "PROPERTIES":
+                area.tag_redraw()
