@@ -16,10 +16,10 @@ SIDE = 33
 def layers(native, tmp_path):
     """Renders into an EXR of many layers; {pass: (h, w, channels) float32, row 0 at the top}."""
 
-    def do():
+    def do(depth="32"):
         scene = bpy.context.scene
         compat.ask_for_layers(scene.render.image_settings)
-        scene.render.image_settings.color_depth = "32"
+        scene.render.image_settings.color_depth = depth
         scene.render.filepath = str(tmp_path / "layers.exr")
         bpy.ops.render.render(write_still=True)
         pixels, channels, _ = native.read_exr(str(tmp_path / "layers.exr"))
@@ -169,6 +169,13 @@ def test_mattes_say_their_names_in_the_file(layers, native, tmp_path):
         "Sand", "Körner, gröber", "Sand thing", "Körner, gröber thing"}
     assert sorted(value.split(".")[1] for key, value in found.items() if key.endswith("name")) == [
         "CryptoMaterial", "CryptoObject"]
+
+
+def test_half_floats_keep_mattes(layers, tmp_path):
+    scene_of_two(tmp_path)
+    whole, halves = layers(), layers("16")
+    for name in ("CryptoObject00", "CryptoMaterial00"):
+        np.testing.assert_array_equal(halves[name], whole[name])
 
 
 def test_a_cancelled_render_s_mattes_are_of_the_samples_that_there_was_time_for(layers, tmp_path, monkeypatch):

@@ -95,7 +95,7 @@ def _ranks(view_layer):
 def tell_compositor(engine, scene, view_layer):
     """Has the compositor's Render Layers node show them."""
     for one in of(view_layer):
-        engine.register_pass(scene, view_layer, one.name, len(one.channels), one.channels.upper(), one.kind)
+        engine.register_pass(scene, view_layer, one.name, len(one.channels), one.channels, one.kind)
 
 
 def add(engine, view_layer):
