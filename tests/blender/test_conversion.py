@@ -86,6 +86,41 @@ def test_what_is_lost_is_said(native):
     assert "75%" in lost and "metal" in lost and "Roughness" in lost
 
 
+def test_what_a_principled_material_does_beside_the_walk_is_lost_and_said(native):
+    material, tree, node = principled()
+    names = {socket.name for socket in node.inputs}
+    for choices, value in ((reading.WEIGHTS, 1.0), (("Coat Weight", "Clearcoat"), 1.0),
+                           (("Sheen Weight", "Sheen"), 0.5), (("Alpha",), 0.5), (reading.TRANSMISSION, 0.5),
+                           (("Emission Strength",), 2.0),
+                           (("Emission Color", "Emission"), (1.0, 0.5, 0.2, 1.0))):
+        node.inputs[next(name for name in choices if name in names)].default_value = value
+    tree.links.new(tree.nodes.new("ShaderNodeBump").outputs["Normal"], node.inputs["Normal"])
+    output = tree.get_output_node("CYCLES")
+    tree.links.new(tree.nodes.new("ShaderNodeDisplacement").outputs[0], output.inputs["Displacement"])
+    lost = " ".join(conversion.to_grain(material, 1.0))
+    for what in ("coat", "sheen", "transparency", "transmission", "emission", "bumps", "displacement"):
+        assert what in lost, what
+
+
+WAYS = {"SubsurfaceScattering": "falloff", "BsdfPrincipled": "subsurface_method"}
+
+
+@pytest.mark.parametrize("kind, method", [
+    (kind, item.identifier) for kind, name in WAYS.items()
+    for item in getattr(bpy.types, f"ShaderNode{kind}").bl_rna.properties[name].enum_items])
+def test_every_way_of_subsurface_scattering_is_read_past_a_reroute(native, kind, method):
+    material, tree, output = tree_of("Skin")
+    node, way = tree.nodes.new(f"ShaderNode{kind}"), tree.nodes.new("NodeReroute")
+    tree.links.new(node.outputs[0], way.inputs[0])
+    tree.links.new(way.outputs[0], output.inputs["Surface"])
+    for name in reading.WEIGHTS if kind == "BsdfPrincipled" else ():
+        if name in node.inputs:
+            node.inputs[name].default_value = 1.0
+    setattr(node, WAYS[kind], method)
+    assert conversion.to_grain(material, 1.0) == []
+    assert min(material.mesograin.sigma_s) > 0.0
+
+
 def test_a_principled_volume_in_glass(native):
     material, tree, output = tree_of("Juice")
     glass, volume = tree.nodes.new("ShaderNodeBsdfGlass"), tree.nodes.new("ShaderNodeVolumePrincipled")

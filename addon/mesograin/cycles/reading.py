@@ -7,12 +7,17 @@ import math
 import bpy
 
 from .. import compat
+from ..scene import node_colours
 from ..schema import models
 from . import inversion, nodes
 
 GLASSY = ("BSDF_GLASS", "BSDF_REFRACTION")
 WEIGHTS = ("Subsurface Weight", "Subsurface")
 TRANSMISSION = ("Transmission Weight", "Transmission")
+UNREAD = ((("Coat Weight", "Clearcoat"), 0.0, "coat"), (("Sheen Weight", "Sheen"), 0.0, "sheen"),
+          (("Alpha",), 1.0, "transparency"), (TRANSMISSION, 0.0, "transmission"),
+          (("Specular IOR Level", "Specular"), 0.5, "specular level"))
+"""Of a Principled node over a walk: (names of a socket, the number that changes nothing, what it is)."""
 
 
 class NoGrain(Exception):
@@ -36,17 +41,21 @@ def read(material):
     else:
         raise NoGrain(f"Material '{material.name}' lets no light through: a grain needs a volume, a Subsurface "
                       "Scattering node or a Principled one with a subsurface weight.")
+    if output.inputs["Displacement"].is_linked:
+        lost.append("its displacement")
     values.update(model=models.PREFERRED, scale=1.0)
     return values, list(dict.fromkeys(lost))
 
 
 def _linked(socket):
-    return socket.links[0].from_node if socket.is_linked else None
+    link = node_colours.feeding(socket)
+    return link.from_node if link else None
 
 
 def _value(node, name, lost):
     """A socket's number or its three numbers; what is linked is lost but for plain values."""
-    socket = node.inputs[name]
+    # Blender 5 finds no socket by name that the node does not show, such as the IOR of Christensen and Burley's.
+    socket = next(each for each in node.inputs if each.name == name)
     source = _linked(socket)
     if source is not None and source.type in ("RGB", "VALUE"):
         socket = source.outputs[0]
@@ -133,12 +142,26 @@ def _principled(node, lost):
         radii = _radii(node, "Subsurface Radius", "Subsurface Scale", lost)
     if _value(node, "Metallic", lost) > 0.0:
         lost.append(f"the metal of '{node.name}'")
+    _lose_rest(node, lost)
     g = _value(node, "Subsurface Anisotropy", lost)
     method = node.subsurface_method
     eta = _value(node, "IOR", lost)
     values = _walk(colour, radii, method, 0.0 if method == "BURLEY" else g, eta)
     values.update(boundary="dielectric", eta=eta, roughness=_value(node, "Roughness", lost) ** 2)
     return values
+
+
+def _lose_rest(node, lost):
+    """What a Principled node does beside the walk."""
+    lost += [f"the {what} of '{node.name}'" for names, none, what in UNREAD
+             for socket in node.inputs if socket.name in names and (socket.is_linked or socket.default_value != none)]
+    colour = next(socket for socket in node.inputs if socket.name in ("Emission Color", "Emission"))
+    strength = node.inputs["Emission Strength"]
+    shines = colour.is_linked or max(tuple(colour.default_value)[:3]) > 0.0
+    if shines and (strength.is_linked or strength.default_value > 0.0):
+        lost.append(f"the emission of '{node.name}'")
+    if node.inputs["Normal"].is_linked:
+        lost.append(f"the bumps of '{node.name}'")
 
 
 def _radii(node, radius, scale, lost):
