@@ -109,6 +109,15 @@ def test_smooth_normals_are_the_same_every_time():
     assert len(ours) == 1, f"Blender itself gave {len(blenders)} versions"
 
 
+def test_faces_that_fold_back_on_each_other_have_normals():
+    mesh = bpy.data.meshes.new("Folded")
+    mesh.from_pydata([(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (1.0, 1.0, 0.0)], [], [(0, 1, 2), (2, 1, 0)])
+    mesh.polygons.foreach_set("use_smooth", [True] * 2)
+    compat.calculate_corners(mesh)
+    settled = smooth_normals.settle(mesh, compat.corner_normals(mesh))
+    np.testing.assert_allclose(np.linalg.norm(settled, axis=1), 1.0, atol=1e-4)
+
+
 def test_smooth_and_flat_faces_of_one_mesh(made):
     cube = add_cube(smooth=True)
     cube.data.polygons[0].use_smooth = False

@@ -17,7 +17,20 @@ def settle(mesh, normals):
         return normals
     settled = _of_vertices(mesh)
     same = np.abs(settled - normals).max(axis=1) < SAME
-    return np.where(same[:, None], settled, normals)
+    found = np.where(same[:, None], settled, normals)
+    # Where faces fold back on each other their normals cancel, and Blender 5 has none for the vertex.
+    lost = ~found.any(axis=1)
+    if lost.any():
+        found[lost] = _of_faces(mesh)[lost]
+    return found
+
+
+def _of_faces(mesh):
+    """(loops, 3) float32: for each corner the normal of its face."""
+    first, count, normals = _faces(mesh)
+    found = np.empty((len(mesh.loops), 3), dtype=np.float32)
+    found[np.repeat(first, count) + _numbers(count)] = np.repeat(normals, count, axis=0)
+    return found
 
 
 def _of_vertices(mesh):
@@ -25,9 +38,7 @@ def _of_vertices(mesh):
     there, as Blender defines it."""
     positions = _read(mesh.vertices, "co", (len(mesh.vertices), 3), np.float32).astype(np.float64)
     vertex = _read(mesh.loops, "vertex_index", len(mesh.loops), np.int32)
-    first = _read(mesh.polygons, "loop_start", len(mesh.polygons), np.int32)
-    count = _read(mesh.polygons, "loop_total", len(mesh.polygons), np.int32)
-    face_normals = _read(mesh.polygons, "normal", (len(mesh.polygons), 3), np.float32)
+    first, count, face_normals = _faces(mesh)
 
     sums = np.zeros_like(positions)
     for start in range(0, len(first), CHUNK):
@@ -41,7 +52,7 @@ def _add_faces(sums, positions, vertex, first, count, face_normals):
     """Adds the faces' normals, weighted by their angles there, to the sums of their vertices."""
     # Faces in the order of their corners, so that corners can be counted on.
     face = np.repeat(np.arange(len(first)), count)
-    corner = np.arange(len(face)) - np.repeat(np.cumsum(count) - count, count)
+    corner = _numbers(count)
     loop, size = first[face] + corner, count[face]
     here = positions[vertex[loop]]
     after = positions[vertex[first[face] + (corner + 1) % size]] - here
@@ -52,6 +63,18 @@ def _add_faces(sums, positions, vertex, first, count, face_normals):
     at = vertex[loop]
     for axis in range(3):
         sums[:, axis] += np.bincount(at, angle * face_normals[face, axis], len(positions))
+
+
+def _faces(mesh):
+    """(first loops, numbers of loops, normals)."""
+    size = len(mesh.polygons)
+    return (_read(mesh.polygons, "loop_start", size, np.int32), _read(mesh.polygons, "loop_total", size, np.int32),
+            _read(mesh.polygons, "normal", (size, 3), np.float32))
+
+
+def _numbers(count):
+    """Of the corners of faces of so many, each from 0 on."""
+    return np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count)
 
 
 def _read(collection, attribute, shape, dtype):
