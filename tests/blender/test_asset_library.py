@@ -42,6 +42,14 @@ def test_it_holds_every_grain_and_every_preset_as_the_menus_have_them(library):
             assert (tuple(found) == tuple(expected)) if PARAMETERS[name].kind == "rgb" else found == expected, name
 
 
+def test_its_grains_are_those_that_add_grain_makes(library):
+    for grain in library.objects:
+        corners = np.empty((len(grain.data.vertices), 3), dtype=np.float32)
+        grain.data.vertices.foreach_get("co", corners.ravel())
+        kind = grain.name.lower().replace(" ", "_")
+        np.testing.assert_allclose(corners, kinds.make(kind, segments=16).vertices, atol=1e-5, err_msg=kind)
+
+
 def test_each_has_a_picture_and_a_place_in_the_tree(library):
     lines = (asset_library.FOLDER / "blender_assets.cats.txt").read_text().splitlines()
     folders = {line.split(":")[0]: line.split(":")[1] for line in lines if line.count(":") == 2}
