@@ -180,11 +180,14 @@ def test_an_artist_s_own_preset_is_kept_and_found_again(native, tmp_path, monkey
     grain = thing.active_material.mesograin
     presets.apply(known.BY_IDENTIFIER["rice"], grain)
     grain.g, grain.boundary = 0.25, "index_matched"
+    thing.active_material.mesograin_look.surroundings = "water"
     (tmp_path / "scripts/presets/mesograin/materials").mkdir(parents=True)
     assert bpy.ops.mesograin.add_preset(name="My rice") == {"FINISHED"}
     kept = list(tmp_path.rglob("*.py"))
     assert [path.stem for path in kept] == ["My_rice"]
     presets.apply(known.BY_IDENTIFIER["ice"], grain)
     exec(compile(kept[0].read_text(), str(kept[0]), "exec"), {"bpy": bpy})  # as script.execute_preset does in a window
-    assert (grain.g, grain.boundary, grain.eta) == (pytest.approx(0.25), "index_matched", pytest.approx(1.53))
+    assert (grain.g, grain.boundary, grain.eta) == (pytest.approx(0.25), "index_matched", pytest.approx(1.53 / 1.333))
     assert tuple(grain.sigma_s) == pytest.approx((2.0, 2.0, 2.0))
+    thing.active_material.mesograin_look.surroundings = "air"
+    assert grain.eta == pytest.approx(1.53)

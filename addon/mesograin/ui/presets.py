@@ -69,8 +69,9 @@ class MESOGRAIN_OT_add_preset(AddPresetBase, bpy.types.Operator):
     preset_menu = "MESOGRAIN_MT_own_presets"
     preset_subdir = "mesograin/materials"
     preset_defines = []  # which Blender 4.3 no longer finds in the next line where its Python is 3.13 (PEP 667)
-    preset_values = [f"(getattr(bpy.context, 'material', None) or bpy.context.object.active_material).mesograin.{name}"
-                     for name in PARAMETERS]
+    # What is around goes first: it changes eta, which then becomes what it was.
+    preset_values = [f"(getattr(bpy.context, 'material', None) or bpy.context.object.active_material).{path}"
+                     for path in ("mesograin_look.surroundings", *(f"mesograin.{name}" for name in PARAMETERS))]
 
 
 class MESOGRAIN_MT_own_presets(bpy.types.Menu):
