@@ -141,11 +141,12 @@ def test_a_failing_case_is_recorded_and_the_others_go_on(tmp_path):
 
 
 def test_settings_reach_both_sides_and_leave_the_material_alone(tmp_path, native):
-    material = make_sphere(SUNS, segments=16, rings=8, scale=3.0)
+    material = make_sphere(SUNS, segments=16, rings=8, scale=3.0, model="model_2")
     bpy.context.scene.mesograin.millimetres_per_unit = 2.0
     found = compare(tmp_path, models=("model_1",), size=(16, 16), settings={"sigma_s": (0.5, 0.5, 0.5), "scale": 10.0})
     ours = found["cases"][0]["material"]["Sand"]
     assert (ours["sigma_s"], ours["scale"], ours["boundary"]) == ([1.0] * 3, 10.0, "index_matched")
+    assert found["cases"][0]["own_boundaries"] == ["dielectric"]
     theirs = json.loads(
         native.read_exr(tmp_path / "out" / found["cases"][0]["files"]["reference"])[2][reference.PROVENANCE]
     )

@@ -88,6 +88,7 @@ def write_folder(tmp_path):
             tmp_path,
             write_case(tmp_path, "model_1.volume_index_matched", 1.4 * reference, reference,
                        notes=["Cycles <cannot> do this with volume_dielectric."], boundary="index_matched",
+                       own_boundaries=["dielectric"],
                        reference_title="Cycles volume, index-matched", passes_ms={"light_maps": 2.5},
                        material={"Grain": {"model": "model_1", "boundary": "index_matched", "profile": "half_space",
                                            "specular": False, "sigma_a": [0.1, 0.2, 0.3]}}),
@@ -241,7 +242,8 @@ def test_page_and_figure_call_things_by_their_labels(built):
     assert names > {"index_matched", "model_1", "half_space", "volume_dielectric", "frames_timed", "rse_root_mean"}
     for where, words in (("page", text), ("attributes", told), ("figure", figure)):
         assert {name for name in names if re.search(rf"\b{name}\b", words)} == set(), where
-    assert "boundary Index matched" in text and "(boundary Index matched)" in figure
+    assert "boundary Index matched instead of Dielectric" in text
+    assert "(boundary Index matched instead of Dielectric)" in figure
     assert "specular off" in text and "Model 1 against Cycles volume, index-matched" in text
     assert "here for relative L1: sum |i - r| / sum r" in text
     metrics = [wording.metric(name) for name in numbers["metrics"]]

@@ -10,9 +10,9 @@ import numpy
 from markupsafe import Markup
 
 from ..cycles.wording import in_labels
-from ..schema.labels import of_model
+from ..schema.labels import boundary, of_model
 from . import colours, payload, plots
-from .wording import (boundary, case_title, compared, controls, form, headline, label, mask_steps, metric, parameters,
+from .wording import (case_title, compared, controls, form, headline, label, mask_steps, metric, parameters,
                       significance, terms, until, verdict)
 
 PAGE = Path(__file__).resolve().parent / "page"

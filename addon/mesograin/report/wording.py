@@ -4,7 +4,7 @@
 import math
 
 from ..cycles.wording import LABELS
-from ..schema.labels import of_model
+from ..schema.labels import boundary, of_model
 
 METRICS = {
     "relative_l1": "relative L1",
@@ -86,11 +86,6 @@ def case_title(case):
     part = case.get("part", "whole")
     return f"{of_model(case['model'])} against {case['reference_title']}" + (
         "" if part == "whole" else f", {part} part alone")
-
-
-def boundary(case):
-    """Of a case's grains, by its label; "" where it says none."""
-    return LABELS.get(case["boundary"], case["boundary"])
 
 
 def headline(case):

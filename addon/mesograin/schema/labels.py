@@ -24,6 +24,13 @@ LABELS = {
 """Of models and of what parameters may be."""
 
 
+def boundary(case):
+    """Of a case's grains in a comparison, and of their own that it stands for, by their labels; "" if it says none."""
+    label = LABELS.get(case["boundary"], case["boundary"])
+    own = [of_choice("boundary", name) for name in case.get("own_boundaries", ())]
+    return f"{label} instead of {', '.join(own)}" if own else label
+
+
 def in_labels(sentence, labels):
     """A sentence that was written for a command line, with labels for identifiers. Those that are English words stay,
     and so do names in quotation marks and in paths. labels: {identifier: label}."""

@@ -8,6 +8,7 @@ from ... import native_module
 from ...cycles import beside
 from ...engine import stated_error
 from ...scene import export, lights, meshes
+from ...schema import models
 
 
 SEEDS = 4
@@ -47,6 +48,13 @@ class Ours:
             if values["model"] not in known["model"].split(", "):
                 known["model"] += f", {values['model']}"
         return found
+
+    def replaced(self, name, chosen):
+        """The values of a parameter in whose place, in materials of grains, the case's own choice is drawn."""
+        known = [{**dict(material.values), **self._overrides} for material in self._scene.materials
+                 if material.name not in self._staying]
+        own = [values[name] for values in known if models.CHOICES[values["model"]].translucent]
+        return sorted(set(own) - {chosen[name]}) if name in chosen else []
 
     def _with(self, chosen, direct):
         """What is no grain stays what it is beside grains, in its mean colour, as on the other side; under direct light

@@ -98,6 +98,7 @@ class _Comparison:
             "reference_title": case.kind.title,
             "part": case.part or "whole",
             "boundary": chosen.get("boundary", ""),
+            "own_boundaries": self.ours.replaced("boundary", chosen),
             "material": self._materials(case, chosen),
             "versions": origin.versions(),
             "status": "done",

@@ -1,5 +1,6 @@
 # How a comparison's result is shown in a panel: its numbers, the verdict, a button for each picture.
 from ...durations import duration
+from ...schema import labels
 from ...schema.models import CHOICES
 from ...studies.comparison.significance import NO_DIFFERENCE
 from ...studies.comparison.verdict import verdict
@@ -8,9 +9,10 @@ from . import pictures
 
 
 def draw_title(box, context, entry):
-    """What was compared."""
-    panels.draw_sentence(box, context, f"{CHOICES[entry['model']].label} against {entry['reference_title']}",
-                         icon="NONE")
+    """What was compared, and by which boundary if it is not the materials' own."""
+    replaced = f", boundary {labels.boundary(entry)}" if entry.get("own_boundaries") else ""
+    panels.draw_sentence(
+        box, context, f"{CHOICES[entry['model']].label} against {entry['reference_title']}{replaced}", icon="NONE")
 
 
 def draw(box, context, entry, ours, button, **properties):
