@@ -19,7 +19,7 @@ ROOMS = ("compat", "native_module", "grains.shape", "grains.kinds", "grains.pile
          "scene.textures", "scene.plain_materials", "scene.thick_layer", "scene.export",
          "engine.status", "engine.writing", "engine.motion", "engine.identities", "engine.passes", "engine.viewport",
          "engine.viewport_text", "engine.own_grain", "engine.material_preview", "engine.engine",
-         "cycles.reference_cache", "ui.presets", "ui.look", "ui.conversion", "ui.named_things", "ui.panels",
+         "cycles.reference_cache", "ui.presets", "ui.look", "ui.conversion", "ui.copy_grain", "ui.named_things", "ui.panels",
          "ui.preview", "ui.node_panels", "ui.notes",
          "ui.grain_tools", "ui.grain_colours", "ui.asset_library", "ui.self_test", "ui.preferences",
          *(f"ui.side_task.{name}"
