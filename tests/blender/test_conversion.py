@@ -152,6 +152,91 @@ def test_there_and_back_the_model_stays_if_it_answers_what_the_nodes_say(native,
     export.material_values(material, 1.0).to_native(native)  # which says what it does not answer
 
 
+def mixed(kind, *shaders, share=0.5):
+    """(material, nodes): a mix or a sum of two shaders; the first has the rest of the share."""
+    material, tree, output = tree_of("Skin")
+    both, *made = [tree.nodes.new(f"ShaderNode{name}") for name in (f"{kind}Shader", *shaders)]
+    for socket, node in zip(both.inputs[-2:], made):
+        tree.links.new(node.outputs[0], socket)
+    tree.links.new(both.outputs[0], output.inputs["Surface"])
+    if kind == "Mix":
+        both.inputs[0].default_value = share
+    return material, made
+
+
+@pytest.mark.parametrize("share, said", [(0.25, "75%"), (0.9, "10%"), (1.0, None)])
+@pytest.mark.parametrize("beside", ["BsdfGlossy", "BsdfDiffuse"])
+def test_the_subsurface_part_of_a_mix_is_read_and_what_is_beside_it_said(native, beside, share, said):
+    material, (other, walk) = mixed("Mix", beside, "SubsurfaceScattering", share=share)
+    walk.inputs["Radius"].default_value = (1.0, 0.5, 0.25)
+    lost = conversion.to_grain(material, 1.0)
+    alone, tree, output = tree_of("Alone")
+    same = tree.nodes.new("ShaderNodeSubsurfaceScattering")
+    same.inputs["Radius"].default_value = (1.0, 0.5, 0.25)
+    tree.links.new(same.outputs[0], output.inputs["Surface"])
+    assert conversion.to_grain(alone, 1.0) == []
+    for name in ("sigma_a", "sigma_s"):
+        assert tuple(getattr(material.mesograin, name)) == tuple(getattr(alone.mesograin, name))
+    assert lost == ([f"the {said} of '{other.name}' beside it"] if said else [])
+
+
+def test_of_a_sum_the_subsurface_part_is_read_and_the_other_said(native):
+    material, (_, glossy) = mixed("Add", "SubsurfaceScattering", "BsdfGlossy")
+    assert conversion.to_grain(material, 1.0) == [f"'{glossy.name}' beside it"]
+    assert min(material.mesograin.sigma_s) > 0.0
+
+
+def test_a_mix_that_follows_a_texture_says_that_too(native):
+    material, (_, walk) = mixed("Mix", "BsdfGlossy", "SubsurfaceScattering")
+    tree = material.node_tree
+    [mix] = [node for node in tree.nodes if node.type == "MIX_SHADER"]
+    tree.links.new(tree.nodes.new("ShaderNodeFresnel").outputs[0], mix.inputs[0])
+    lost = " ".join(conversion.to_grain(material, 1.0))
+    assert f"of '{mix.name}'" in lost and "beside it" in lost
+
+
+def test_glass_that_is_mixed_lets_light_into_a_volume(native):
+    material, (glass, other) = mixed("Mix", "BsdfGlass", "BsdfTransparent", share=0.1)
+    glass.inputs["Roughness"].default_value, glass.inputs["IOR"].default_value = 0.0, 1.4
+    tree = material.node_tree
+    volume = tree.nodes.new("ShaderNodeVolumeScatter")
+    tree.links.new(volume.outputs[0], tree.get_output_node("CYCLES").inputs["Volume"])
+    assert f"the 10% of '{other.name}' beside it" in conversion.to_grain(material, 1.0)
+    assert (material.mesograin.boundary, material.mesograin.eta) == ("dielectric", pytest.approx(1.4))
+
+
+def test_mixed_volumes_are_as_thin_as_their_shares(native):
+    material, (scatter, absorption) = mixed("Mix", "VolumeScatter", "VolumeAbsorption", share=0.25)
+    scatter.inputs["Color"].default_value, scatter.inputs["Density"].default_value = (0.5, 1.0, 0.25, 1.0), 4.0
+    absorption.inputs["Color"].default_value, absorption.inputs["Density"].default_value = (0.5, 1.0, 0.0, 1.0), 2.0
+    tree = material.node_tree
+    [mix] = [node for node in tree.nodes if node.type == "MIX_SHADER"]
+    output = tree.get_output_node("CYCLES")
+    tree.links.new(mix.outputs[0], output.inputs["Volume"])
+    tree.links.remove(output.inputs["Surface"].links[0])
+    assert conversion.to_grain(material, 1.0) == []
+    assert tuple(material.mesograin.sigma_s) == pytest.approx((1.5, 3.0, 0.75))
+    assert tuple(material.mesograin.sigma_a) == pytest.approx((0.25, 0.0, 0.5))
+
+
+def test_a_node_that_says_coefficients_is_read_as_it_says(native):
+    if not hasattr(bpy.types, "ShaderNodeVolumeCoefficients"):
+        pytest.skip("this Blender has no such node")
+    material, tree, output = tree_of("Milk")
+    node = tree.nodes.new("ShaderNodeVolumeCoefficients")
+    tree.links.new(node.outputs[0], output.inputs["Volume"])
+    for name, value in (("Absorption", (0.1, 0.2, 0.3)), ("Scatter", (2.0, 3.0, 4.0)), ("Emission", (0.0, 0.0, 0.0))):
+        node.inputs[f"{name} Coefficients"].default_value = value
+    node.inputs["Anisotropy"].default_value = 0.6
+    assert conversion.to_grain(material, 10.0) == []
+    made = material.mesograin
+    assert tuple(made.sigma_a) == pytest.approx((0.01, 0.02, 0.03))
+    assert tuple(made.sigma_s) == pytest.approx((0.2, 0.3, 0.4))
+    assert (made.g, made.boundary) == (pytest.approx(0.6), "index_matched")
+    node.inputs["Emission Coefficients"].default_value = (0.0, 1.0, 0.0)
+    assert conversion.to_grain(material, 10.0) == [f"the emission of '{node.name}'"]
+
+
 @pytest.mark.parametrize("kind, words", [("ShaderNodeBsdfDiffuse", "lets no light through"),
                                          ("ShaderNodeBsdfGlass", "needs a volume")])
 def test_what_is_no_grain_says_so_and_stays(native, kind, words):

@@ -33,14 +33,13 @@ def read(material):
     lost = []
     if volume is not None:
         values = _medium(volume, lost)
-        values.update(_boundary(surface, lost))
-    elif surface is not None and surface.type == "SUBSURFACE_SCATTERING":
-        values = _subsurface(surface, lost)
-    elif surface is not None and surface.type == "BSDF_PRINCIPLED" and _weight(surface, WEIGHTS, lost) > 0.0:
-        values = _principled(surface, lost)
+        values.update(_boundary(surface and _of_mix(surface, _lets_in, lost), lost))
     else:
-        raise NoGrain(f"Material '{material.name}' lets no light through: a grain needs a volume, a Subsurface "
-                      "Scattering node or a Principled one with a subsurface weight.")
+        walk = surface and _of_mix(surface, _walks, lost)
+        if walk is None or not _walks(walk):
+            raise NoGrain(f"Material '{material.name}' lets no light through: a grain needs a volume, a Subsurface "
+                          "Scattering node or a Principled one with a subsurface weight.")
+        values = (_subsurface if walk.type == "SUBSURFACE_SCATTERING" else _principled)(walk, lost)
     if output.inputs["Displacement"].is_linked:
         lost.append("its displacement")
     values.update(model=models.PREFERRED, scale=1.0)
@@ -50,6 +49,40 @@ def read(material):
 def _linked(socket):
     link = node_colours.feeding(socket)
     return link.from_node if link else None
+
+
+def _parts(node, share, lost):
+    """[(share, node)] of what a shader is mixed and added of, at the ends of the tree; what has no share is none."""
+    if node.type not in ("MIX_SHADER", "ADD_SHADER"):
+        return [(share, node)] if share > 0.0 else []
+    shares = (share, share)
+    if node.type == "MIX_SHADER":
+        second = min(max(_value(node, node.inputs[0].name, lost), 0.0), 1.0)
+        shares = (share * (1.0 - second), share * second)
+    fed = zip(shares, map(_linked, node.inputs[-2:]))
+    return [part for each, source in fed if source is not None for part in _parts(source, each, lost)]
+
+
+def _of_mix(surface, serves, lost):
+    """Of what a surface is mixed of, the node with the greatest share of those that serve: what is beside it is lost.
+    The surface itself where none does."""
+    parts = _parts(surface, 1.0, lost)
+    found = max((part for part in parts if serves(part[1])), key=lambda part: part[0], default=None)
+    if found is None:
+        return surface
+    lost += [f"'{node.name}' beside it" if share == 1.0 else f"the {share:.0%} of '{node.name}' beside it"
+             for share, node in parts if node != found[1]]
+    return found[1]
+
+
+def _walks(node):
+    """Whether Cycles walks below the surface of it."""
+    return node.type == "SUBSURFACE_SCATTERING" or (node.type == "BSDF_PRINCIPLED" and _weight(node, WEIGHTS, []) > 0.0)
+
+
+def _lets_in(node):
+    """Whether light goes through it into a volume."""
+    return node.type in GLASSY or (node.type == "BSDF_PRINCIPLED" and _weight(node, TRANSMISSION, []) > 0.0)
 
 
 def _value(node, name, lost):
@@ -78,11 +111,13 @@ def _medium(node, lost):
 
 def _volume(node, lost):
     """(sigma_a, sigma_s, sum over the channels of g sigma_s)."""
-    if node.type == "ADD_SHADER":
-        parts = [_volume(part, lost) for part in map(_linked, node.inputs) if part is not None]
-        return (*(tuple(map(math.fsum, zip(*side))) if parts else (0.0,) * 3
-                  for side in ([part[0] for part in parts], [part[1] for part in parts])),
-                math.fsum(part[2] for part in parts))
+    if node.type in ("MIX_SHADER", "ADD_SHADER"):  # media are there together, each as thin as its share
+        parts = [(share, *_volume(part, lost)) for share, part in _parts(node, 1.0, lost)]
+        absorbed, scattered = (tuple(math.fsum(part[0] * part[side][channel] for part in parts) for channel in range(3))
+                               for side in (1, 2))
+        return absorbed, scattered, math.fsum(part[0] * part[3] for part in parts)
+    if node.type == "VOLUME_COEFFICIENTS":
+        return _coefficients(node, lost)
     if node.type not in ("VOLUME_SCATTER", "VOLUME_ABSORPTION", "PRINCIPLED_VOLUME"):
         raise NoGrain(f"The node '{node.name}' is no medium that a grain can have: use Volume Scatter and Volume"
                       " Absorption.")
@@ -91,9 +126,7 @@ def _volume(node, lost):
     rest = tuple(density * max(1.0 - channel, 0.0) for channel in colour)
     if node.type == "VOLUME_ABSORPTION":
         return rest, (0.0, 0.0, 0.0), 0.0
-    g = _value(node, "Anisotropy", lost)
-    if getattr(node, "phase", "HENYEY_GREENSTEIN") != "HENYEY_GREENSTEIN":
-        lost.append(f"the phase function of '{node.name}', for which Henyey and Greenstein's stands")
+    g = _phase(node, lost)
     if node.type == "VOLUME_SCATTER":
         return (0.0, 0.0, 0.0), scattered, g * sum(scattered)
     # Cycles' Principled Volume absorbs (1 - colour) (1 - sqrt(absorption colour)) of its density.
@@ -104,16 +137,31 @@ def _volume(node, lost):
     return absorbed, scattered, g * sum(scattered)
 
 
+def _coefficients(node, lost):
+    """As _volume, of the node that says them as they are."""
+    absorbed, scattered, emitted = (tuple(max(channel, 0.0) for channel in _value(node, f"{name} Coefficients", lost))
+                                    for name in ("Absorption", "Scatter", "Emission"))
+    if any(emitted):
+        lost.append(f"the emission of '{node.name}'")
+    return absorbed, scattered, _phase(node, lost) * sum(scattered)
+
+
+def _phase(node, lost):
+    """g."""
+    if getattr(node, "phase", "HENYEY_GREENSTEIN") != "HENYEY_GREENSTEIN":
+        lost.append(f"the phase function of '{node.name}', for which Henyey and Greenstein's stands")
+    return _value(node, "Anisotropy", lost)
+
+
 def _boundary(surface, lost):
     """What light meets before it is in a volume."""
     if surface is None:
         return {"boundary": "index_matched"}
-    glassy = surface.type in GLASSY
-    if not glassy and not (surface.type == "BSDF_PRINCIPLED" and _weight(surface, TRANSMISSION, lost) > 0.0):
+    if not _lets_in(surface):
         raise NoGrain(f"The node '{surface.name}' lets no light into the volume: use Glass, or no surface at all.")
     if surface.type == "BSDF_REFRACTION":
         lost.append(f"that '{surface.name}' reflects nothing")
-    if min(_value(surface, "Color" if glassy else "Base Color", lost)) < 1.0:
+    if min(_value(surface, "Color" if surface.type in GLASSY else "Base Color", lost)) < 1.0:
         lost.append(f"the colour of '{surface.name}'")
     return {"boundary": "dielectric", "eta": _value(surface, "IOR", lost),
             "roughness": _value(surface, "Roughness", lost) ** 2}  # GGX's alpha
