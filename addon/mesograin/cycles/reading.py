@@ -42,7 +42,7 @@ def read(material):
         values = (_subsurface if walk.type == "SUBSURFACE_SCATTERING" else _principled)(walk, lost)
     if output.inputs["Displacement"].is_linked:
         lost.append("its displacement")
-    values.update(model=models.PREFERRED, scale=1.0)
+    values.update(model=models.AUTO.name, scale=1.0)
     return values, list(dict.fromkeys(lost))
 
 
