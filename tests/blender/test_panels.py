@@ -19,8 +19,8 @@ from mesograin.ui.side_task import pictures, results
 # a label left of its value gets, and one right of a box there.
 LABEL, BESIDE_BOX = 71, 85
 # On a screen 1920 wide, 333 across: one of two columns in a box; what a choice as wide as the panel has for the name of
-# what was chosen.
-HALF, WHOLE = 115, 180
+# what was chosen, beside its dot.
+HALF, WHOLE = 115, 160
 # On a screen 1280 wide, the width of the Properties editor; there, what Blender leaves of it for what a list is called,
 # and for a number or a switch.
 NARROW, BESIDE_LIST, IN_FIELD = 190, 42, 100
@@ -29,10 +29,11 @@ NARROW, BESIDE_LIST, IN_FIELD = 190, 42, 100
 class Layout:
     """Takes whatever a panel draws. labels: what stands left of values. boxes: what stands right of boxes. menus: their
     names. whole: properties as wide as the panel. split: properties whose names stand left of them. lists: what stands
-    left of lists that are not split. said: texts."""
+    left of lists that are not split. said: texts. dotted: what has a dot to animate it."""
 
     def __init__(self):
         self.labels, self.boxes, self.menus, self.whole, self.split, self.lists, self.said = ([] for _ in range(7))
+        self.dotted, self.use_property_decorate = [], False
         self.use_property_split = False
 
     def __getattr__(self, name):
@@ -49,12 +50,21 @@ class Layout:
         declared = owner.bl_rna.properties[name]
         if self.use_property_split:
             self.split.append(name)
+            if self.use_property_decorate:
+                self.dotted.append(name)
         elif declared.type == "ENUM" and text != "" and not expand and not declared.is_enum_flag:
             self.lists.append(declared.name if text is None else text)
         if text != "":
             (self.boxes if declared.type == "BOOLEAN" else self.labels).append(declared.name if text is None else text)
         if text == "":
             self.whole.append(name)
+
+    def prop_with_menu(self, owner, name, menu, text=None):
+        self.menu(menu)
+        self.prop(owner, name, text=text)
+
+    def prop_decorator(self, _owner, name):
+        self.dotted.append(name)
 
     def menu(self, name, **_):
         self.menus.append(name)
@@ -97,6 +107,16 @@ def test_no_label_of_a_grain_is_cut_off(material, model):
     assert drawn.whole == ["model"] and len(drawn.whole + drawn.labels) >= 2
     assert cut_off(drawn) == {}
     assert width(models.CHOICES[model].label) < WHOLE
+
+
+@pytest.mark.parametrize("model", models.CHOICES)
+def test_whatever_of_a_grain_can_be_animated_has_its_dot(material, model):
+    material.mesograin.model, material.mesograin_look.way = model, "coefficients"
+    drawn = draw(panels.MESOGRAIN_PT_material, material=material)
+    animated = {"model", *models.CHOICES[model].parameters}
+    assert animated - set(drawn.dotted) == set() and len(drawn.dotted) == len(set(drawn.dotted)) + 4 * (
+        "sigma_s" in animated), drawn.dotted  # of sigma_s and sigma_a each channel
+    assert narrow(panels.MESOGRAIN_PT_material, material=material).dotted == []
 
 
 @pytest.mark.parametrize("way", ["coefficients", "look"])

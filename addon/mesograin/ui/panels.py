@@ -86,6 +86,8 @@ class MESOGRAIN_PT_material(MesograinPanel, bpy.types.Panel):
             self._draw_plain(context)
             return
         row.prop(grain, "model", text="")
+        if layout.use_property_split:  # where the others have their dot
+            row.prop_decorator(grain, "model")
         takes = models.CHOICES[grain.model].parameters
         advised = self._advice(context) if "sigma_s" in takes else None
         if "sigma_s" in takes:
@@ -158,9 +160,7 @@ class MESOGRAIN_PT_material(MesograinPanel, bpy.types.Panel):
         column.active = False
         draw_sentence(column, context, units, icon="NONE")
         layout.prop(grain, "g")
-        row = layout.row(heading="Profile")
-        row.menu(MESOGRAIN_MT_profiles.bl_idname, text=_profile_label(grain))
-        row.label(icon="BLANK1")  # where the others have their dot
+        _choose_profile(layout, grain)
 
     def _draw_surface(self, grain, takes):
         if "eta" in takes:
@@ -186,9 +186,13 @@ class MESOGRAIN_MT_profiles(bpy.types.Menu):
             self.layout.prop_enum(grain, "profile", profile)
 
 
-def _profile_label(grain):
-    choices = parameters.PARAMETERS["profile"].choices
-    return next(choice.label for choice in choices if choice.name == grain.profile)
+def _choose_profile(layout, grain):
+    """As `choose`, of those that the model knows."""
+    named = layout.use_property_split
+    if not named:
+        layout = layout.column(align=True)
+        layout.label(text="Profile")
+    layout.prop_with_menu(grain, "profile", menu=MESOGRAIN_MT_profiles.bl_idname, **({} if named else {"text": ""}))
 
 
 class MESOGRAIN_PT_light(MesograinPanel, bpy.types.Panel):
