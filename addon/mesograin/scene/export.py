@@ -502,7 +502,7 @@ class _Reader:
         for sentence in sentences:
             self._warn(sentence)
         if not self._lights and not around.shines:
-            self._warn("The scene has no light and its world is black, so everything is: add a light (Add > Light).")
+            self._warn("With no light and a black world the picture is black: add a light (Add > Light).")
         for sentence in (*left_out.of_scene(scene), *left_out.of_layer(self._layer)):
             self._warn(sentence)
         camera = scene.camera
