@@ -11,7 +11,8 @@ import numpy as np
 from .. import compat, native_module
 from ..durations import duration
 from ..scene import export, lens, meshes
-from . import grace, material_preview, motion, passes, rounds, status, viewport, viewport_text, waiting, writing
+from . import grace, material_preview, motion, passes, rounds, status, telling, viewport, viewport_text, waiting
+from . import writing
 
 # How long a final render may go without showing how far it is.
 SHOW_SECONDS = 0.5
@@ -34,6 +35,7 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
     def __init__(self, *args, **kwargs):
         super().__init__(*args, **kwargs)
         self._session = None
+        self._telling = telling.Telling(lambda text: self.update_stats("", text), bpy.app.background)
         self._texture = None
         self._transparent = False  # whether the texture is
         self._warnings = ()
@@ -181,7 +183,7 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
                         seen = values
                     for now in self._draw_some(view, samples, budget):
                         if now - shown > SHOW_SECONDS:
-                            self.update_stats("", budget.line(now))
+                            self._telling.say(budget.line(now))
                             yield budget.share(view.samples, now)
                             shown = time.perf_counter()
                     if view.samples and (self.test_break() or budget.is_over(time.perf_counter())):
@@ -213,7 +215,7 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
             return
         patience = waiting.Waiting()
         while view.preparing is not None and budget.waits_for_light(time.perf_counter()) and not self.test_break():
-            self.update_stats("", patience.sentence(view.awaited, view.preparing or 0.0, time.perf_counter()))
+            self._telling.say(patience.sentence(view.awaited, view.preparing or 0.0, time.perf_counter()))
             time.sleep(grace.POLL_SECONDS)
             self._result(view.start_news(), view)
         self._result(view.start_news(), view)
@@ -225,7 +227,7 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
         def tell():
             share = view.preparing
             if share is not None:
-                self.update_stats("", patience.sentence(view.awaited, share, time.perf_counter()))
+                self._telling.say(patience.sentence(view.awaited, share, time.perf_counter()))
 
         self._result(view.start(samples), view, tell)
 
