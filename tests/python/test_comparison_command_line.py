@@ -87,6 +87,34 @@ def test_every_metric_has_a_definition():
     assert definitions.definition("no_such_number") is None
 
 
+def test_lines_that_are_printed_say_the_share_of_all_that_is_done(monkeypatch):
+    now, stream = [0.0], io.StringIO()
+    monkeypatch.setattr(progress.time, "monotonic", lambda: now[0])
+    line = progress.Progress(stream, interval=1e9)
+    line.plan([("one", "volume", 10.0), ("two", "volume", 20.0), ("three", "volume", 10.0)])
+    for seconds in (10.0, 20.0, 10.0):
+        line.begin()
+        now[0] += seconds
+        line.end()
+    assert stream.getvalue().splitlines() == ["[1/3] one, 0% of all, about 40 s left",
+                                              "[2/3] two, 25% of all, about 30 s left",
+                                              "[3/3] three, 75% of all, about 10 s left"]
+
+
+def test_a_count_that_is_a_guess_is_told_as_one(monkeypatch):
+    now, stream = [0.0], io.StringIO()
+    monkeypatch.setattr(progress.time, "monotonic", lambda: now[0])
+    line = progress.Progress(stream, interval=1e9)
+    line.plan([(f"picture {number}", "fine", 1.0) for number in (1, 2)], is_guess=True)
+    for number in (1, 2, 3):
+        if not line.steps_left:
+            line.insert([(f"picture {number}", "fine", 1.0)])
+        line.begin()
+        now[0] += 1.0
+        line.end()
+    assert [text.split("]")[0] for text in stream.getvalue().splitlines()] == ["[1 of about 2", "[2", "[3"]
+
+
 def test_time_left_learns_the_pace(monkeypatch):
     now = [0.0]
     monkeypatch.setattr(progress.time, "monotonic", lambda: now[0])

@@ -12,13 +12,15 @@ from ...durations import duration
 @dataclass(frozen=True)
 class Step:
     """The step `number` of `count` is under way. fraction: of this step, 0 to 1. seconds_left: the guess for all
-    steps that are not done."""
+    steps that are not done. share: of all steps' time, that has passed. is_guess: whether count is one."""
 
     number: int
     count: int
     what: str
     fraction: float
     seconds_left: float
+    share: float = 0.0
+    is_guess: bool = False
 
 
 class Cancelled(Exception):
@@ -40,14 +42,17 @@ class Progress:
         self._pace = {}
         self._at = -1
         self._fraction = 0.0
-        self._started = time.monotonic()
+        self._started = self._begun = time.monotonic()
+        self._is_guess = False
         self._shown = 0.0
         self._lock = threading.Lock()
         self._cancelled = False
 
-    def plan(self, steps):
-        """steps: [(what, kind, guessed seconds)], in the order in which `begin` will be called."""
-        self._steps = list(steps)
+    def plan(self, steps, is_guess=False):
+        """steps: [(what, kind, guessed seconds)], in the order in which `begin` will be called. is_guess: whether there
+        may come more or fewer."""
+        self._steps, self._is_guess = list(steps), is_guess
+        self._begun = time.monotonic()
 
     def insert(self, steps):
         """Steps that come before all that are planned, as in `plan`."""
@@ -131,12 +136,15 @@ class Progress:
             return
         self._shown = now
         what = self._steps[self._at][0]
-        self._draw(Step(self._at + 1, len(self._steps), what, self._fraction, self.seconds_left()))
+        passed, left = now - self._begun, self.seconds_left()
+        share = passed / (passed + left) if passed + left > 0.0 else 0.0
+        self._draw(Step(self._at + 1, len(self._steps), what, self._fraction, left, share, self._is_guess))
 
     def _draw(self, step):
-        line = (
-            f"[{step.number}/{step.count}] {step.what} {step.fraction:4.0%}, about {duration(step.seconds_left)} left"
-        )
+        place = f"{step.number}/{step.count}"
+        if step.is_guess:  # of which the last is not known to be the last
+            place = f"{step.number} of about {step.count}" if step.number < step.count else f"{step.number}"
+        line = f"[{place}] {step.what}, {step.share:.0%} of all, about {duration(step.seconds_left)} left"
         if self._in_place:
             self._stream.write(f"\r\033[K{line}")
             self._stream.flush()

@@ -50,7 +50,7 @@ def match(native, scene, picture, asked, progress, command):
     request = search.Request(
         asked.parameters, asked.model or matched.values["model"], asked.exposure == "free",
         keeping.keep(asked.masks, whole, small, factor, mask), asked.out / files.RENDERS)
-    progress.plan(search.steps(request, search.guess(matched)))
+    progress.plan(search.steps(request, search.guess(matched)), is_guess=True)
     found = search.search(native, matched, small, request, progress)
     results = files.describe(
         found, "unit", 1.0, asked.settings(), command=command, scene=scene.name,

@@ -47,7 +47,7 @@ def match(asked, whole, progress, command, memory=None):
             asked.parameters, asked.model or matched.values["model"], asked.exposure == "free",
             keeping.keep(asked.masks, whole, small, factor, of_blender.mask),
             Path(memory or asked.out) / files.RENDERS, asked.corrections, trace)
-        progress.plan(search.steps(request, search.guess(matched)))
+        progress.plan(search.steps(request, search.guess(matched)), is_guess=True)
         found = search.search(native, matched, small, request, progress)
     for warning in found.warnings:
         progress.say(warning)
