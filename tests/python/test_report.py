@@ -181,6 +181,10 @@ def test_plots_are_files_too(built):
         svg = (built / "plots" / f"{name}.svg").read_text()
         assert svg.rstrip().endswith("</svg>") and "var(--" not in svg
         assert (built / "plots" / f"{name}.png").read_bytes()[:4] == b"\x89PNG"
+    for name in ("cost", "model_1.volume_index_matched.profile", "model_1.volume_index_matched.histogram"):
+        said = " ".join(re.sub(r"<[^>]*>", " ", (built / "plots" / f"{name}.svg").read_text()).split())
+        for needed in ("disc.blend, 48 × 48 pixels", "boundary Index matched", "own noise in a pixel", "W m⁻² sr⁻¹"):
+            assert needed in said, (name, needed)
     assert "radiance, W m⁻² sr⁻¹" in (built / "plots/lambert.diffuse.profile.svg").read_text()
     cost = (built / "plots/cost.svg").read_text()
     assert "Cycles Diffuse" in cost and "Model 1" in cost, "Cycles is a point among ours"

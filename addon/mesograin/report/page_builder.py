@@ -12,7 +12,7 @@ from markupsafe import Markup
 from ..cycles.wording import in_labels
 from ..schema.labels import boundary, of_model
 from . import colours, payload, plots
-from .wording import (case_title, compared, controls, form, headline, label, mask_steps, metric, parameters,
+from .wording import (case_terms, case_title, compared, controls, form, headline, label, mask_steps, metric, parameters,
                       significance, terms, until, verdict)
 
 PAGE = Path(__file__).resolve().parent / "page"
@@ -44,7 +44,7 @@ def build(results, cases, folder):
 
     cases: [reading.CasePictures], in the order of results["cases"]."""
     pictures = _Pictures(LIVE_BUDGET)
-    views = [_view(of, results["definitions"], pictures, Path(folder) / PLOTS) for of in cases]
+    views = [_view(of, results, pictures, Path(folder) / PLOTS) for of in cases]
     done = [of for of in cases if of.case["status"] == "done"]
     rows = [(of.case, of.model, of.reference, of.mask) for of in done]
     return render(
@@ -55,7 +55,8 @@ def build(results, cases, folder):
             {"key": key, "title": title, "form": how, "definition": definition(results["definitions"], key)}
             for key, title, how in LEADING
         ],
-        cost=plot(plots.cost([of.case for of in done]), Path(folder) / PLOTS, "cost"),
+        cost=plot(plots.cost([of.case for of in done]), Path(folder) / PLOTS, "cost",
+                  terms(results)),
         overview=_files(plots.overview(rows, terms(results)), Path(folder) / PLOTS, "overview"),
         pictures=pictures.texts,
         script=Markup((PAGE / "report.js").read_text(encoding="utf-8")),
@@ -85,17 +86,18 @@ def render(template, **values):
     return environment.get_template(template).render(**styles, **values)
 
 
-def plot(draw, folder, name):
-    """A plot in the page and in the folder of plots: {"svg": Markup, "files": [path from the page]}; or None."""
+def plot(draw, folder, name, said=()):
+    """A plot in the page and in the folder of plots, there with what is said below it: {"svg": Markup, "files": [path
+    from the page]}; or None."""
     svg = plots.page(draw)
     if not svg:
         return None
-    return {"svg": Markup(svg), "files": _files(draw, folder, name)}
+    return {"svg": Markup(svg), "files": _files(draw, folder, name, said)}
 
 
-def _files(draw, folder, name):
+def _files(draw, folder, name, said=()):
     """Saves a plot; returns its files as the page links them."""
-    return [f"{folder.name}/{file}" for file in plots.save(draw, folder, name)]
+    return [f"{folder.name}/{file}" for file in plots.save(draw, folder, name, said)]
 
 
 class _Pictures:
@@ -117,9 +119,9 @@ class _Pictures:
         return name
 
 
-def _view(of, definitions, pictures, folder):
+def _view(of, results, pictures, folder):
     """What the template needs of one case. of: reading.CasePictures."""
-    case = of.case
+    case, definitions = of.case, results["definitions"]
     view = {"case": case, "done": case["status"] == "done", "parameters": parameters(case["material"]),
             "model": of_model(case["model"]), "title": case_title(case)}
     if not view["done"]:
@@ -141,20 +143,21 @@ def _view(of, definitions, pictures, folder):
         size["threshold"] = case["significance"]["score_threshold"]
     view["live"] = None if None in live.values() else Markup(json.dumps({**size, **live}))
     relative = colours.relative_error(of.model, of.reference)
+    said = case_terms(results, case)
     view["plots"] = [
         (title, made)
         for title, made in (
             (
                 "Radiance along the steepest line",
-                plot(plots.profile(of.model, of.reference, of.noise), folder, f"{case['name']}.profile"),
+                plot(plots.profile(of.model, of.reference, of.noise), folder, f"{case['name']}.profile", said),
             ),
             (
                 "Radiance over the angle to the light",
-                plot(plots.by_angle(case.get("profile")), folder, f"{case['name']}.by_angle"),
+                plot(plots.by_angle(case.get("profile")), folder, f"{case['name']}.by_angle", said),
             ),
             (
                 "Distribution of the relative error",
-                plot(plots.histogram(relative, of.mask), folder, f"{case['name']}.histogram"),
+                plot(plots.histogram(relative, of.mask), folder, f"{case['name']}.histogram", said),
             ),
         )
         if made

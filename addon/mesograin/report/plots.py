@@ -55,12 +55,14 @@ def page(draw):
     return re.sub(r'<svg ([^>]*?)width="[\d.]+pt" height="[\d.]+pt"', r"<svg \1", svg[svg.index("<svg"):], count=1)
 
 
-def save(draw, folder, name):
+def save(draw, folder, name, terms=()):
     """Writes NAME.svg and NAME.png into a folder, each whole or not at all; returns [file name], none if there is
-    nothing to draw. Raises OSError."""
+    nothing to draw. terms: sentences below a figure that is alone there and not on its page. Raises OSError."""
     figure = _drawn(draw, PAPER)
     if figure is None:
         return []
+    if terms:
+        _put_terms(figure, terms)
     folder.mkdir(parents=True, exist_ok=True)
     written = []
     for ending, options in (("svg", {"metadata": {"Date": None}}), ("png", {"dpi": 200})):
@@ -74,6 +76,14 @@ def save(draw, folder, name):
             partial.unlink(missing_ok=True)
         written.append(path.name)
     return written
+
+
+def _put_terms(figure, terms):
+    width, height = figure.get_size_inches()
+    lines = [line for sentence in terms for line in textwrap.wrap(sentence, int(13 * width))]  # letters to an inch
+    figure.set_size_inches(width, height + 0.13 * len(lines))
+    with matplotlib.rc_context(_style(PAPER)):
+        figure.supxlabel("\n".join(lines), fontsize=7, color=PAPER.quiet)
 
 
 def _drawn(draw, palette):

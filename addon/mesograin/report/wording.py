@@ -112,6 +112,15 @@ def terms(results):
     ]
 
 
+def case_terms(results, case):
+    """`terms` for a figure of one case."""
+    against, _ = terms({**results, "cases": [case]})
+    noise = form(case["noise_floor"]["relative_l1"], "percent")
+    return [f"{of_model(case['model'])}: {against}",
+            "Linear radiance, W m⁻² sr⁻¹. The reference's own noise in a pixel, relative L1: "
+            f"{'not known' if noise == '–' else noise}."]
+
+
 def verdict(case):
     """One sentence on how the model fares, as far as the reference's noise lets us see."""
     metrics, floors = case["metrics"], case["noise_floor"]
