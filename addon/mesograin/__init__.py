@@ -12,15 +12,15 @@ bl_info = {
 __version__ = ".".join(str(number) for number in bl_info["version"])
 
 # What there is to register, in the order of its imports: each room knows only those before it.
-ROOMS = ("compat", "native_module", "grains.shape", "grains.kinds", "grains.pile", "grains.objects",
+ROOMS = ("compat", "translations", "native_module", "grains.shape", "grains.kinds", "grains.pile", "grains.objects",
          "scene.smooth_normals", "scene.properties", "scene.meshes", "scene.heaps", "scene.lens", "scene.lights",
          "scene.mesh_lights", "scene.images", "scene.node_colours", "scene.node_patterns", "scene.node_skies",
          "scene.unwrapped", "scene.colours", "scene.overrides", "scene.surroundings",
          "scene.textures", "scene.plain_materials", "scene.thick_layer", "scene.export",
          "engine.status", "engine.writing", "engine.motion", "engine.identities", "engine.passes", "engine.viewport",
          "engine.viewport_text", "engine.own_grain", "engine.material_preview", "engine.engine",
-         "cycles.reference_cache", "ui.presets", "ui.look", "ui.conversion", "ui.copy_grain", "ui.named_things", "ui.panels",
-         "ui.preview", "ui.node_panels", "ui.notes",
+         "cycles.reference_cache", "ui.presets", "ui.look", "ui.conversion", "ui.copy_grain", "ui.named_things",
+         "ui.panels", "ui.preview", "ui.node_panels", "ui.notes",
          "ui.grain_tools", "ui.grain_colours", "ui.asset_library", "ui.self_test", "ui.preferences",
          *(f"ui.side_task.{name}"
            for name in ("settings", "session", "job_session", "pictures", "operators", "panel", "results")),

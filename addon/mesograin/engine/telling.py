@@ -1,4 +1,4 @@
-# How often a final render says how far it is: a window follows it, while of Blender without one each time is a line more.
+# How often a final render says how far it is: a window follows it, while in a log each time is a line more.
 import time
 
 LINE_SECONDS = 10.0

@@ -1,4 +1,4 @@
-# Copy Grain and Paste Grain, beside Blender's own for materials, which copy nodes and viewport settings but no add-on's.
+# Copy Grain and Paste Grain, beside Blender's own for materials, which copy nodes and viewport settings alone.
 import bpy
 
 from .. import compat
@@ -6,7 +6,7 @@ from ..engine import engine
 from ..scene import plain_materials
 from .active_material import active_material, is_own
 
-# The coefficients go last: they are set to the last digit, whatever colours, free paths and what is around made of them.
+# The coefficients go last: set to the last digit, whatever colours, free paths and what is around made of them.
 GROUPS = ("mesograin_look", "mesograin_colours", "mesograin")
 PREVIEW = "mesograin_preview"
 _kept = {}
