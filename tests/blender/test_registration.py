@@ -111,8 +111,8 @@ def test_whatever_an_artist_sets_has_a_tooltip_and_can_be_animated():
               for name in dir(owner) if name.startswith("mesograin")]
     assert len(groups) > 6
     for owner, name in groups:
-        group = getattr(owner, name)
-        for each in group.bl_rna.properties:
+        one = owner.bl_rna.properties[name]
+        for each in one.fixed_type.properties if one.type == "POINTER" else [one]:
             if each.identifier in ("rna_type", "name") or each.is_hidden:
                 continue
             assert each.description, f"{name}.{each.identifier}"
