@@ -13,8 +13,8 @@ def read_before_saving(*_arguments):
 
 
 def _read_groups(material):
-    for name in material.bl_rna.properties.keys():
-        if name.startswith("mesograin"):
+    for name, declared in material.bl_rna.properties.items():
+        if name.startswith("mesograin") and declared.type == "POINTER":
             group = getattr(material, name)
             for each in group.bl_rna.properties.keys():
                 getattr(group, each)
