@@ -80,7 +80,7 @@ def save(draw, folder, name, terms=()):
 
 def _put_terms(figure, terms):
     width, height = figure.get_size_inches()
-    lines = [line for sentence in terms for line in textwrap.wrap(sentence, int(13 * width))]  # letters to an inch
+    lines = [line for sentence in terms for line in textwrap.wrap(sentence, int(16 * width))]  # letters to an inch
     figure.set_size_inches(width, height + 0.13 * len(lines))
     with matplotlib.rc_context(_style(PAPER)):
         figure.supxlabel("\n".join(lines), fontsize=7, color=PAPER.quiet)
