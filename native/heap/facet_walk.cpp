@@ -96,7 +96,7 @@ std::optional<End> Facets::end(std::uint32_t grain, const glm::vec3& origin, con
 }
 
 std::optional<Passage> walk_facets(const Optics& optics, float radius, const SeenFacet& seen, const Facets& facets,
-                                   Scatterings scatterings, Random& random) {
+                                   Scatterings scatterings, Random& random, const AtFacet& at_facet) {
   const glm::vec3 place = seen.place;
   glm::vec3 direction = -seen.towards;
   const float alpha = facets.finish(seen.grain).roughness;
@@ -132,10 +132,28 @@ std::optional<Passage> walk_facets(const Optics& optics, float radius, const See
     const float cosine = glm::dot(facet->normal, passage.direction);
     const glm::vec3 inwards =
         -glm::normalize(facet->normal + std::max(least_cosine - cosine, 0.0F) * passage.direction);
+    if (at_facet) at_facet(passage, inwards);
     if (enters(inwards, alpha, 1.0 / optics.eta, passage.direction, random)) return passage;
+    ++passage.reflected;
     if (!flights.survives()) return std::nullopt;
   }
   return std::nullopt;
+}
+
+double leaving_density(const glm::dvec3& normal, double alpha, double eta, const glm::dvec3& travelling,
+                       const glm::dvec3& beyond) {
+  const double mu = -glm::dot(normal, travelling), mu_beyond = -glm::dot(normal, beyond);
+  if (!(mu > 0.0) || !(mu_beyond > 0.0)) return 0.0;
+  const glm::dvec3 sum = eta * beyond - travelling;
+  const double size = glm::length(sum);
+  const glm::dvec3 facet = (glm::dot(sum, normal) < 0.0 ? -1.0 : 1.0) / size * sum;
+  const double on_facet = -glm::dot(facet, travelling), on_facet_beyond = -glm::dot(facet, beyond);
+  if (!(on_facet > 0.0) || !(on_facet_beyond > 0.0)) return 0.0;
+  const double seen =
+      2.0 * on_facet * physics::ggx_distribution(normal, facet, alpha) / (mu + physics::ggx_smith_root(mu, alpha));
+  const double unshadowed = 2.0 * mu_beyond / (mu_beyond + physics::ggx_smith_root(mu_beyond, alpha));
+  const double facets_a_steradian = eta * eta * on_facet_beyond / (size * size);
+  return (1.0 - physics::fresnel_reflectance(on_facet, eta)) * seen * facets_a_steradian * unshadowed;
 }
 
 }  // namespace mesograin::heap

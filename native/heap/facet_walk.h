@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <glm/vec3.hpp>
 #include <optional>
 
@@ -66,6 +67,7 @@ struct Passage {
   float length = 0.0F;            ///< of its way in the grain
   bool flat = false;              ///< the facet by which it leaves, if it has entered
   glm::vec3 normal{0.0F};         ///< of a cosine lobe in which it leaves; else 0
+  int reflected = 0;              ///< inside, so many times
 };
 
 /// What becomes of a view ray that is scattered.
@@ -74,9 +76,19 @@ enum class Scatterings {
   end,  ///< the walk: its weight has the albedo in it
 };
 
+/// Told of each facet that a view ray meets from inside, before it is known whether it leaves there. `inwards`: the
+/// facet's normal, against the ray.
+using AtFacet = std::function<void(const Passage& arriving, const glm::vec3& inwards)>;
+
 /// Follows a view ray; lengths in `optics` are in `radius`. Where no facet is met, light goes straight on. Nothing,
 /// where all was absorbed or it does not come out.
 std::optional<Passage> walk_facets(const Optics& optics, float radius, const SeenFacet& seen, const Facets& facets,
-                                   Scatterings scatterings, transport::Random& random);
+                                   Scatterings scatterings, transport::Random& random, const AtFacet& at_facet = {});
+
+/// How likely a ray leaves by one microfacet of a rough surface in a direction beyond it, per steradian, as
+/// walk_facets() has it leave (Walter et al. 2007, eq. 15 to 17 and 21; normals as the ray sees them: Heitz 2018, eq. 2
+/// and 3). `normal`: against what is `travelling`; `eta`: beyond the surface over before it, not 1.
+double leaving_density(const glm::dvec3& normal, double alpha, double eta, const glm::dvec3& travelling,
+                       const glm::dvec3& beyond);
 
 }  // namespace mesograin::heap

@@ -41,6 +41,20 @@ constexpr float rough = 0.05F;
 // The same through rough facets of a grain alone, over their alpha: about what two of them spread it by.
 constexpr float spread_of_alpha = 0.6F;
 
+// What rough facets have reflected inside meets a light beyond another one by chance, the more seldom the smoother they
+// are: that one is taken to be rougher by so many times more, less with each sample, up to this alpha.
+constexpr float wider = 3.0F;
+constexpr float roughest = 0.5F;
+
+// What is less of a light is not asked whether it is in the way of others.
+constexpr float least_shown = 1e-4F;
+
+/// Whether a rough surface spreads what crosses it wider than looks would find a light by chance alone.
+bool spreads(float roughness, double eta) {
+  constexpr double least = 0.02;
+  return roughness * std::abs(eta - 1.0) >= least;
+}
+
 /// Of a cone, by the cosine of its half angle.
 float solid_angle(float edge) { return 2.0F * std::numbers::pi_v<float> * (1.0F - edge); }
 
@@ -150,8 +164,18 @@ void Gather::follow_look(SeenFacet seen, const Facets& facets, const Look& how, 
     const Optics& optics = heap_.grains.kinds[grain.kind];
     const bool asks_how_much = first && how.alone;
     const Scatterings scatterings = first ? how.scatterings : Scatterings::end;
-    const std::optional<Passage> passage =
-        walk_facets(asks_how_much ? glass(optics) : optics, grain.radius_of_kind(), seen, facets, scatterings, random);
+    const glm::vec3 absorbed(optics.sigma_t * (1.0 - optics.albedo) / static_cast<double>(grain.radius_of_kind()));
+    // Of what a sun sends through rough facets a look that leaves at random finds little, seldom, in bright specks.
+    const bool asks_lights = asks_how_much && spreads(facets.finish(seen.grain).roughness, optics.eta);
+    AtFacet at_facet;
+    if (asks_lights)
+      at_facet = [&](const Passage& arriving, const glm::vec3& inwards) {
+        sum.lights +=
+            weight * glm::exp(-arriving.length * absorbed) *
+            lights_through(seen.grain, arriving, inwards, 1.0F + wider * how.narrowed * how.narrowed, facets, random);
+      };
+    const std::optional<Passage> passage = walk_facets(asks_how_much ? glass(optics) : optics, grain.radius_of_kind(),
+                                                       seen, facets, scatterings, random, at_facet);
     if (!passage) return;
     if (asks_how_much) crosses = passage->entered;
     glm::vec3& behind = crosses ? sum.lights : sum.others;
@@ -165,11 +189,11 @@ void Gather::follow_look(SeenFacet seen, const Facets& facets, const Look& how, 
       const float way = passage->length / grain.radius_of_kind();
       const glm::vec3 passed = glm::exp(-way * glm::vec3(optics.sigma_t));
       sum.others += glm::vec3(optics.albedo) * (1.0F - passed) * scattered_in(seen).of_others;
-      weight *= glm::exp(-way * glm::vec3(optics.sigma_t * (1.0 - optics.albedo)));
+      weight *= glm::exp(-passage->length * absorbed);
     }
     // What else the grain that is seen makes of the lights is its model's, or highlights().
     const bool straight = passage->entered && !passage->scattered;
-    if (!passage->wall && (!first || straight || (passage->scattered && how.whole))) {
+    if (!passage->wall && (!first || (straight && !asks_lights) || (passage->scattered && how.whole))) {
       const float spread = spread_of(seen.grain, *passage, how, facets);
       glm::vec3 found = lights_along(seen.grain, *passage, spread, facets, random);
       if (!how.alone) found += glare_along(seen.grain, *passage, spread, facets, random);
@@ -181,7 +205,8 @@ void Gather::follow_look(SeenFacet seen, const Facets& facets, const Look& how, 
       const bool shown = !first || straight || (how.whole && (passage->scattered || facets.finish(seen.grain).shown));
       if (!shown) return;
       const bool mirrors = first && !passage->entered;
-      const bool as_it_is = how.alone || (mirrors && facets.finish(seen.grain).roughness < rough);
+      const bool as_it_is =
+          (how.alone && !(asks_lights && straight)) || (mirrors && facets.finish(seen.grain).roughness < rough);
       const glm::vec3 world = world_along(passage->direction, as_it_is);
       (passage->scattered ? sum.scattered : mirrors ? sum.mirrored : sum.lights) += weight * world;
       return;
@@ -265,7 +290,6 @@ glm::vec3 Gather::highlight(const SeenFacet& seen, const Facets& facets, const l
       physics::dielectric_reflection(glm::dvec3(seen.normal), glm::dvec3(to_light), mu_i, glm::dvec3(seen.towards),
                                      mu_o, optics.eta, std::max(alpha, smallest_alpha), finish.correlated);
   const glm::vec3 shown(mu_i * reflected * light.irradiance);
-  constexpr float least_shown = 1e-4F;
   if (!(std::max({shown.r, shown.g, shown.b}) >= least_shown)) return glm::vec3(0.0F);
   return shown *
          passed_towards(seen.grain, seen.place, to_light, static_cast<float>(std::min(light.reach, 1e30)), facets);
@@ -299,6 +323,26 @@ glm::vec3 Gather::lights_along(std::uint32_t grain, const Passage& passage, floa
     const glm::vec3 passed = passed_towards(grain, passage.place, to_light, reach, facets);
     sum += passed * glm::vec3(light.irradiance) / solid_angle(edge);
   }
+  return sum;
+}
+
+glm::vec3 Gather::lights_through(std::uint32_t grain, const Passage& arriving, const glm::vec3& inwards, float rougher,
+                                 const Facets& facets, transport::Random& random) const {
+  const float finish = facets.finish(grain).roughness;
+  const float roughness = arriving.reflected == 0 ? finish : std::max(finish, std::min(rougher * finish, roughest));
+  const double eta = heap_.grains.kinds[space_.grains()[grain].kind].eta;
+  const auto through = [&](const lights::LightDraw& light) {
+    const double density =
+        leaving_density(glm::dvec3(inwards), roughness, 1.0 / eta, glm::dvec3(arriving.direction), light.to_light);
+    const glm::vec3 shown(density * light.irradiance);
+    if (!(std::max({shown.r, shown.g, shown.b}) >= least_shown)) return glm::vec3(0.0F);
+    const auto reach = static_cast<float>(std::min(light.reach, 1e30));
+    return shown * passed_towards(grain, arriving.place, glm::vec3(light.to_light), reach, facets);
+  };
+  glm::vec3 sum(0.0F);
+  for (std::size_t i = 0; i < heap_.lights.size(); ++i)
+    sum += through(draws_[i](heap_.anchor + glm::dvec3(arriving.place), {random.uniform(), random.uniform()}));
+  if (image_) sum += through(glare(random));
   return sum;
 }
 

@@ -131,6 +131,10 @@ class Gather {
   /// `spread`: the least half angle of the cone in which a light is seen.
   glm::vec3 lights_along(std::uint32_t grain, const Passage& passage, float spread, const Facets& facets,
                          transport::Random& random) const;
+  /// What leaves a grain's rough facet, from inside, of the lights beyond it. `inwards`: the facet's normal. `rougher`:
+  /// so many times, as a facet is taken to be that meets what others have reflected.
+  glm::vec3 lights_through(std::uint32_t grain, const Passage& arriving, const glm::vec3& inwards, float rougher,
+                           const Facets& facets, transport::Random& random) const;
   /// The same of what the world's image has of them.
   glm::vec3 glare_along(std::uint32_t grain, const Passage& passage, float spread, const Facets& facets,
                         transport::Random& random) const;

@@ -95,6 +95,66 @@ TEST(FacetWalk, ReflectsAsRoughFacetsDo) {
     }
 }
 
+/// What goes on beyond the surface, in all and near where a smooth one would send it.
+struct Beyond {
+  double all = 0.0;
+  double near = 0.0;
+};
+
+glm::dvec3 refracted(const glm::dvec3& travelling, double relative) {
+  const glm::dvec3 across = glm::dvec3(travelling.x, travelling.y, 0.0) / relative;
+  return {across.x, across.y, -std::sqrt(1.0 - glm::dot(across, across))};
+}
+
+Beyond walked_beyond(double polar, float alpha, double relative) {
+  Optics medium;
+  medium.surface = Surface::dielectric;
+  medium.eta = relative;
+  const glm::dvec3 towards = direction(polar, 0.0);
+  const glm::dvec3 smooth = refracted(-towards, relative);
+  const SeenFacet seen{0, glm::vec3(0.0F), {0.0F, 0.0F, 1.0F}, glm::vec3(towards)};
+  transport::Random random(11, 0);
+  Beyond beyond;
+  for (int i = 0; i < walks; ++i) {
+    const std::optional<Passage> passage = walk_facets(medium, 1.0F, seen, Plane(alpha), Scatterings::end, random);
+    if (!passage->entered) continue;
+    beyond.all += 1.0 / walks;
+    if (glm::dot(glm::dvec3(passage->direction), smooth) > std::cos(0.5 * cone)) beyond.near += 1.0 / walks;
+  }
+  return beyond;
+}
+
+Beyond once_beyond(double polar, double alpha, double relative) {
+  const glm::dvec3 normal(0.0, 0.0, 1.0);
+  const glm::dvec3 travelling = -direction(polar, 0.0);
+  const glm::dvec3 smooth = refracted(travelling, relative);
+  Beyond beyond;
+  constexpr int steps = 1200;
+  const double step = 0.5 * std::numbers::pi / steps;
+  for (int i = 0; i < steps; ++i)
+    for (int j = 0; j < 4 * steps; ++j) {
+      const glm::dvec3 on = -direction((i + 0.5) * step, (j + 0.5) * step);
+      const double share =
+          step * step * std::sin((i + 0.5) * step) * leaving_density(normal, alpha, relative, travelling, on);
+      beyond.all += share;
+      if (glm::dot(on, smooth) > std::cos(0.5 * cone)) beyond.near += share;
+    }
+  return beyond;
+}
+
+// One facet sends less than all do: what others reflect or hide goes on.
+TEST(FacetWalk, LeavesAsLikelyAsIsTold) {
+  for (const double relative : {eta, 1.0 / eta})
+    for (const float alpha : {0.1F, 0.4F})
+      for (const double polar : {0.1, 0.6}) {
+        const Beyond found = walked_beyond(polar, alpha, relative);
+        const Beyond once = once_beyond(polar, alpha, relative);
+        EXPECT_NEAR(found.near, once.near, 0.03 * once.near) << relative << " " << alpha << " " << polar;
+        EXPECT_LE(once.all, found.all + 0.003) << relative << " " << alpha << " " << polar;
+        EXPECT_GE(once.all, 0.9 * found.all) << relative << " " << alpha << " " << polar;
+      }
+}
+
 TEST(FacetWalk, ReflectsAsFresnelHasItWhereItIsSmooth) {
   for (const double polar : {0.2, 1.2}) {
     const Shares found = walked(polar, 0.0F);

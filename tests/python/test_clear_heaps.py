@@ -251,6 +251,24 @@ def alone(world, others=(), mesh=None, material=GLASS, samples=4, lights=(), exc
     return view.read()[..., 1]
 
 
+# Found by chance, in the disc that a look happens to leave for, 64 samples of the sun were white specks: 70 % a pixel.
+@pytest.mark.parametrize("roughness, most", [(0.1, 0.3), (0.15, 0.25)])
+def test_a_sun_behind_a_rough_crystal_is_no_specks(roughness, most):
+    sugar = native.Material(model="model_2", sigma_a=(0.001, 0.001, 0.002), sigma_s=(0.4,) * 3, boundary="dielectric",
+                            eta=1.56, roughness=roughness)
+    view = native.View(80, 80)
+    view.set_scene(native.Scene(instances=[native.Instance(cube(1.0), sugar)], denoise=False,
+                                lights=[native.DirectionalLight((0.3, 0.5, 0.8), (3.0,) * 3, angle=0.0092)]))
+    view.set_camera(native.Camera.look_at((5.0, -4.0, 3.5), (0.0, 0.0, 0.0), (0.0, 0.0, 1.0), 26.0))
+    view.render(64)
+    some = view.read()
+    view.render(960)
+    many = view.read()
+    inside = many[..., 3] > 0.99
+    assert numpy.abs(some - many)[inside].sum() < most * many[inside].sum()
+    assert some[inside].sum() == pytest.approx(many[inside].sum(), rel=0.04)
+
+
 def black_thing(place, scale):
     transform = numpy.diag((*scale, 1.0))
     transform[:3, 3] = place
