@@ -1,213 +1,310 @@
-// Position based dynamics with friction (Macklin, Mueller, Chentanez and Kim, "Unified particle physics for real-time
-// applications", 2014, section 6.1): balls are moved apart along their contact, and what slides there is held back as
-// far as Coulomb's cone lets it. Lengths are in mean radii, a step is the unit of time.
+// Rigid bodies with contact and friction, a step at a time: what touches, or might within the step, may come no nearer
+// than it is apart, and what slides is held back as far as Coulomb's cone lets it (Anitescu and Potra, "Formulating
+// dynamic multi-rigid-body contact problems with friction as solvable linear complementarity problems", 1997), solved
+// by projected Gauss-Seidel, which begins with the last step's pushes. Overlap is taken back in the places themselves
+// (Mueller et al., "Detailed rigid body simulation with extended position based dynamics", 2020). Lengths are in mean
+// radii, a step is the unit of time, a grain of radius 1 that of mass.
 #include "pile/settle.h"
 
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <numeric>
-#include <random>
 
 #include "base/error.h"
-#include "pile/contacts.h"
+#include "pile/touching.h"
 
 namespace mesograin::pile {
 namespace {
 
-constexpr double gravity = 0.04;      // mean radii a step squared
-constexpr double longest_step = 0.5;  // mean radii
-constexpr double kept_of_speed = 0.98;
-constexpr double at_rest = 4e-3;     // mean radii a step, on average
-constexpr double near_enough = 0.5;  // mean radii; who may meet before neighbours are looked for again
-constexpr double loose = 1.05;       // how far balls are apart before they fall
-constexpr int most_steps = 400;      // beyond the fall
-constexpr int iterations = 4;
-constexpr int last_steps = 60;         // under a weight that fades
-constexpr int last_iterations = 1000;  // under none
+constexpr double gravity = 0.04;
+constexpr double kept_of_speed = 0.93;
+constexpr double longest_step = 0.6;
+constexpr double near_enough = 0.3;       // who may meet before neighbours are looked for again
+constexpr double at_rest = 3e-3;          // a step, on average
+constexpr double most_taken_back = 0.15;  // of an overlap, in a step
+constexpr int most_steps = 300;           // beyond the fall
+constexpr int iterations = 5;
+constexpr int fading_steps = 30;  // under a weight that fades
+constexpr int last_steps = 60;    // under none
+constexpr double small_overlap = 0.01;
+
+struct Body {
+  double lightness = 1.0;  // 1 / mass
+  glm::dmat3 ease{0.0};    // of turning: the inverse inertia
+  glm::dvec3 moved{0.0};   // within a step
+  glm::dvec3 turned{0.0};
+};
+
+// A meeting within a step.
+struct Contact {
+  Meeting* meeting;
+  Body* a;
+  Body* b;
+  glm::dvec3 arm_a, arm_b;
+  glm::dvec3 turning_a, turning_b;  // by a push of 1
+  double least;                     // how far they may come nearer, less than 0; or must part
+  double mass;                      // a push for a way
+};
+
+glm::dvec3 way(const Contact& contact) {
+  return contact.a->moved + glm::cross(contact.a->turned, contact.arm_a) - contact.b->moved -
+         glm::cross(contact.b->turned, contact.arm_b);
+}
+
+void push(const Contact& contact, double by) {
+  const glm::dvec3 along = by * contact.meeting->normal;
+  contact.a->moved += contact.a->lightness * along;
+  contact.a->turned += by * contact.turning_a;
+  contact.b->moved -= contact.b->lightness * along;
+  contact.b->turned -= by * contact.turning_b;
+}
+
+void rub(const Contact& contact, const glm::dvec3& by) {
+  contact.a->moved += contact.a->lightness * by;
+  contact.a->turned += contact.a->ease * glm::cross(contact.arm_a, by);
+  contact.b->moved -= contact.b->lightness * by;
+  contact.b->turned -= contact.b->ease * glm::cross(contact.arm_b, by);
+}
+
+// How far a push of 1 along a direction moves the place, along it.
+double lightness_along(const Contact& contact, const glm::dvec3& direction) {
+  const auto of = [&](const Body& body, const glm::dvec3& arm) {
+    const glm::dvec3 about = glm::cross(arm, direction);
+    return body.lightness + glm::dot(about, body.ease * about);
+  };
+  return of(*contact.a, contact.arm_a) + of(*contact.b, contact.arm_b);
+}
+
+void hold_apart(const Contact& contact) {
+  Meeting& meeting = *contact.meeting;
+  const double missing = contact.least - glm::dot(meeting.normal, way(contact));
+  const double wanted = std::max(0.0, meeting.push + missing * contact.mass);
+  if (wanted == meeting.push) return;
+  push(contact, wanted - meeting.push);
+  meeting.push = wanted;
+}
+
+void hold_back(const Contact& contact, double friction) {
+  Meeting& meeting = *contact.meeting;
+  if (meeting.push <= 0.0 && meeting.rub == glm::dvec3(0.0)) return;
+  const glm::dvec3 moved = way(contact);
+  const glm::dvec3 slid = moved - glm::dot(moved, meeting.normal) * meeting.normal;
+  const double length = glm::length(slid);
+  glm::dvec3 wanted = meeting.rub;
+  if (length > 1e-12) wanted -= slid / lightness_along(contact, slid / length);
+  wanted -= glm::dot(wanted, meeting.normal) * meeting.normal;
+  const double most = friction * meeting.push;
+  const double size = glm::length(wanted);
+  if (size > most) wanted *= most / size;
+  rub(contact, wanted - meeting.rub);
+  meeting.rub = wanted;
+}
 
 class Settling {
  public:
-  Settling(const std::vector<double>& radii, const Ground& ground, const Walls& walls, double friction,
-           std::uint64_t seed)
-      : radii_(radii), ground_(ground), walls_(walls), friction_(friction) {
-    unit_ = std::accumulate(radii.begin(), radii.end(), 0.0) / static_cast<double>(radii.size());
-    largest_ = *std::max_element(radii.begin(), radii.end());
-    place(seed);
+  Settling(std::vector<Grain>& grains, const Triangles& surface, double floor, const Walls& walls, double friction)
+      : grains_(grains), touching_(grains, surface, floor, walls), friction_(friction), bodies_(grains.size()) {
+    top_ = 0.0;
+    for (std::size_t i = 0; i < grains.size(); ++i) {
+      const Grain& grain = grains[i];
+      bodies_[i].lightness = 1.0 / (grain.size * grain.size * grain.size);
+      top_ = std::max(top_, grain.middle.z - floor);
+      // Nothing thin may be passed within a step.
+      longest_ = std::min(longest_, grain.size * grain.shape->thickness);
+    }
+    longest_ = std::max(longest_, 0.2);
   }
 
-  Pile run(const Progress& progress) {
-    const int fall = static_cast<int>(top_ / unit_ / longest_step);
-    const auto go_on = [&](double share) {
-      if (!progress(share)) throw Error("The pile was cancelled.");
-    };
+  double run(const std::function<void(double)>& go_on) {
+    const int fall = static_cast<int>(top_ / longest_);
     bool resting = false;
     for (int step = 0; step < fall + most_steps && !resting; ++step) {
-      go_on(0.9 * step / (fall + most_steps));
-      resting = advance(gravity) < at_rest * unit_ && step > fall;
+      go_on(0.85 * step / (fall + most_steps));
+      resting = advance(gravity, kept_of_speed) < at_rest && step > 20;
     }
-    // Weight presses balls into each other: it fades, and then they part.
-    for (int step = 0; step < last_steps; ++step) advance(gravity * (1.0 - static_cast<double>(step) / last_steps));
-    for (int i = 0; i < last_iterations; ++i) {
-      go_on(0.95 + 0.05 * i / last_iterations);
-      look_for_neighbours(0.02);
-      before_ = middles_;
-      if (relax(0.0) < 1e-3) break;
+    // Weight presses grains into each other: it fades, and then they part.
+    for (int step = 0; step < fading_steps; ++step) {
+      go_on(0.85 + 0.05 * step / fading_steps);
+      advance(gravity * (1.0 - (step + 1.0) / fading_steps), 0.5);
     }
-    return {middles_, overlap()};
+    for (int step = 0; step < last_steps && overlap_ > small_overlap; ++step) {
+      go_on(0.9 + 0.1 * step / last_steps);
+      advance(0.0, 0.0);
+    }
+    return overlap();
   }
 
  private:
-  // In loose layers, one above the other.
-  void place(std::uint64_t seed) {
-    std::mt19937_64 random(seed);
-    std::uniform_real_distribution<double> jitter(-(loose - 1.0) * unit_, (loose - 1.0) * unit_);
-    const double spacing = 2.0 * loose * largest_;
-    // Without walls, a column as high as it is wide.
-    const double half = 0.5 * spacing * std::cbrt(static_cast<double>(radii_.size()));
-    const glm::dvec2 room = walls_.any() ? walls_.half - largest_ : glm::dvec2(half);
-    const auto columns = std::max(1, static_cast<int>(2.0 * room.x / spacing) + 1);
-    const auto rows = std::max(1, static_cast<int>(2.0 * room.y / spacing) + 1);
-    const double highest =
-        ground_.heights.empty() ? 0.0 : *std::max_element(ground_.heights.begin(), ground_.heights.end());
-    const auto along = [&](int number, int count, double reach) {
-      return count > 1 ? -reach + 2.0 * reach * number / (count - 1) : 0.0;
-    };
-    std::vector<std::size_t> order(radii_.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::shuffle(order.begin(), order.end(), random);
-    middles_.resize(radii_.size());
-    for (std::size_t i = 0; i < order.size(); ++i) {
-      const auto of_layer = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
-      const int in_layer = static_cast<int>(i % of_layer);
-      const std::size_t layer = i / of_layer;
-      middles_[order[i]] = {along(in_layer % columns, columns, room.x) + jitter(random),
-                            along(in_layer / columns, rows, room.y) + jitter(random),
-                            highest + largest_ + static_cast<double>(layer) * spacing};
-      top_ = std::max(top_, middles_[order[i]].z - highest);
+  // How far a grain goes on average.
+  double advance(double weight, double kept) {
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+      Body& body = bodies_[i];
+      body.moved = kept * body.moved - glm::dvec3(0.0, 0.0, weight);
+      body.turned *= kept;
+      limit(body, grains_[i], longest_);
     }
-    moved_.assign(radii_.size(), glm::dvec3(0.0));
+    look();
+    meet();
+    for (int i = 0; i < iterations; ++i) {
+      for (const Contact& contact : contacts_) {
+        hold_apart(contact);
+        hold_back(contact, friction_);
+      }
+    }
+    for (const Contact& contact : contacts_) hold_apart(contact);
+    return move();
   }
 
-  // Before anything goes farther than this, in mean radii, what may meet is known.
-  void look_for_neighbours(double farthest) {
-    reserve_ -= 2.0 * farthest;
-    if (reserve_ > 0.0) return;
-    find_pairs(middles_, radii_, near_enough * unit_, pairs_);
-    reserve_ = near_enough - 2.0 * farthest;
+  static double limit(Body& body, const Grain& grain, double longest) {
+    const double length = glm::length(body.moved) + glm::length(body.turned) * grain.size * grain.shape->reach;
+    if (length <= longest) return length;
+    body.moved *= longest / length;
+    body.turned *= longest / length;
+    return longest;
   }
 
-  // How far a ball goes on average.
-  double advance(double weight) {
-    before_ = middles_;
-    double farthest = 0.0;
-    for (std::size_t i = 0; i < middles_.size(); ++i) {
-      glm::dvec3 step = kept_of_speed * moved_[i] - glm::dvec3(0.0, 0.0, weight * unit_);
-      const double length = glm::length(step);
-      if (length > longest_step * unit_) step *= longest_step * unit_ / length;
-      farthest = std::max(farthest, glm::length(step) / unit_);
-      middles_[i] += step;
+  // Before anything goes farther than that, what may meet is known.
+  void look() {
+    if (reserve_ > 0.0) {
+      touching_.measure();
+    } else {
+      touching_.look(near_enough + 2.0 * farthest_);
+      reserve_ = near_enough;
     }
-    look_for_neighbours(std::min(farthest, 0.5 * near_enough));
-    for (int i = 0; i < iterations; ++i) relax(friction_);
+  }
+
+  void meet() {
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+      const Grain& grain = grains_[i];
+      if (grain.shape->field.empty()) continue;  // balls do not roll: glass on glass does not roll far either
+      const glm::dmat3& turn = touching_.turns()[i];
+      bodies_[i].ease =
+          turn * ease_of(*grain.shape) * glm::transpose(turn) * (bodies_[i].lightness / (grain.size * grain.size));
+    }
+    contacts_.clear();
+    overlap_ = 0.0;
+    for (Meeting& meeting : touching_.meetings()) {
+      overlap_ = std::max(overlap_, -meeting.gap);
+      if (meeting.gap > 2.0 * farthest_ + 0.1) {
+        meeting.push = 0.0;
+        meeting.rub = glm::dvec3(0.0);
+        continue;
+      }
+      Contact contact{};
+      contact.meeting = &meeting;
+      contact.a = &bodies_[meeting.a];
+      contact.b = meeting.b == nobody ? &ground_ : &bodies_[meeting.b];
+      contact.arm_a = meeting.place - grains_[meeting.a].middle;
+      if (meeting.b != nobody) contact.arm_b = meeting.place - grains_[meeting.b].middle;
+      contact.turning_a = contact.a->ease * glm::cross(contact.arm_a, meeting.normal);
+      contact.turning_b = contact.b->ease * glm::cross(contact.arm_b, meeting.normal);
+      contact.least = std::min(-meeting.gap, most_taken_back);
+      contact.mass = 1.0 / lightness_along(contact, meeting.normal);
+      meeting.rub -= glm::dot(meeting.rub, meeting.normal) * meeting.normal;
+      contacts_.push_back(contact);
+    }
+    for (const Contact& contact : contacts_) {
+      push(contact, contact.meeting->push);
+      rub(contact, contact.meeting->rub);
+    }
+  }
+
+  const glm::dmat3& ease_of(const Shape& shape) {
+    for (const auto& [known, ease] : eases_)
+      if (known == &shape) return ease;
+    return eases_.emplace_back(&shape, glm::inverse(shape.inertia)).second;
+  }
+
+  double move() {
     double sum = 0.0;
-    for (std::size_t i = 0; i < middles_.size(); ++i) {
-      moved_[i] = middles_[i] - before_[i];
-      sum += glm::length(moved_[i]);
+    farthest_ = 0.0;
+    for (std::uint32_t i = 0; i < bodies_.size(); ++i) {
+      Body& body = bodies_[i];
+      if (touching_.passes(i, body.moved)) body.moved = glm::dvec3(0.0);
+      farthest_ = std::max(farthest_, limit(body, grains_[i], longest_));
+      sum += glm::length(body.moved);
+      grains_[i].middle += body.moved;
+      const double angle = glm::length(body.turned);
+      if (angle > 0.0) grains_[i].turn = glm::normalize(glm::angleAxis(angle, body.turned / angle) * grains_[i].turn);
     }
-    return sum / static_cast<double>(middles_.size());
-  }
-
-  // The largest overlap that was met, in mean radii.
-  double relax(double friction) {
-    double largest = 0.0;
-    for (const auto& [i, j] : pairs_) {
-      const glm::dvec3 apart = middles_[i] - middles_[j];
-      const double distance = glm::length(apart);
-      const double overlap = radii_[i] + radii_[j] - distance;
-      if (overlap <= 0.0) continue;
-      largest = std::max(largest, overlap / unit_);
-      const glm::dvec3 normal = distance > 0.0 ? apart / distance : glm::dvec3(0.0, 0.0, 1.0);
-      const glm::dvec3 slid =
-          held_back((middles_[i] - before_[i]) - (middles_[j] - before_[j]), normal, overlap, friction);
-      middles_[i] += 0.5 * (overlap * normal - slid);
-      middles_[j] -= 0.5 * (overlap * normal - slid);
-    }
-    for (std::size_t i = 0; i < middles_.size(); ++i) largest = std::max(largest, hold(i, friction) / unit_);
-    return largest;
-  }
-
-  // Of a sliding, what friction takes back where balls press into each other by `depth`.
-  static glm::dvec3 held_back(const glm::dvec3& moved, const glm::dvec3& normal, double depth, double friction) {
-    const glm::dvec3 slid = moved - glm::dot(moved, normal) * normal;
-    const double length = glm::length(slid);
-    return length > friction * depth ? slid * (friction * depth / length) : slid;
-  }
-
-  // By the ground and the walls; how deep the ball was in them.
-  double hold(std::size_t i, double friction) {
-    glm::dvec3& middle = middles_[i];
-    const double radius = radii_[i];
-    if (walls_.any()) {
-      middle.x = std::clamp(middle.x, -walls_.half.x + radius, walls_.half.x - radius);
-      middle.y = std::clamp(middle.y, -walls_.half.y + radius, walls_.half.y - radius);
-    }
-    if (ground_.heights.empty() && middle.z >= radius) return 0.0;
-    glm::dvec3 normal(0.0, 0.0, 1.0);
-    if (!ground_.heights.empty()) {
-      const double reach = 0.5 * radius;
-      normal.x = ground_.height(middle.x - reach, middle.y) - ground_.height(middle.x + reach, middle.y);
-      normal.y = ground_.height(middle.x, middle.y - reach) - ground_.height(middle.x, middle.y + reach);
-      normal.z = 2.0 * reach;
-      normal = glm::normalize(normal);
-    }
-    const double above = (middle.z - ground_.height(middle.x, middle.y)) * normal.z;
-    const double depth = radius - above;
-    if (depth <= 0.0) return 0.0;
-    middle += depth * normal - held_back(middle - before_[i], normal, depth, friction);
-    return depth;
+    reserve_ -= 2.0 * farthest_;
+    return sum / static_cast<double>(bodies_.size());
   }
 
   double overlap() {
-    find_pairs(middles_, radii_, 0.0, pairs_);
+    touching_.look(0.0);
     double largest = 0.0;
-    for (const auto& [i, j] : pairs_)
-      largest = std::max(
-          largest, (radii_[i] + radii_[j] - glm::distance(middles_[i], middles_[j])) / std::min(radii_[i], radii_[j]));
+    for (const Meeting& meeting : touching_.meetings())
+      if (meeting.b != nobody)
+        largest = std::max(largest, -meeting.gap / std::min(grains_[meeting.a].size, grains_[meeting.b].size));
     return largest;
   }
 
-  const std::vector<double>& radii_;
-  const Ground& ground_;
-  const Walls& walls_;
+  std::vector<Grain>& grains_;
+  Touching touching_;
   double friction_;
-  double unit_ = 1.0;
-  double largest_ = 1.0;
+  std::vector<Body> bodies_;
+  Body ground_{0.0};
+  std::vector<Contact> contacts_;
+  std::vector<std::pair<const Shape*, glm::dmat3>> eases_;
   double top_ = 0.0;
+  double longest_ = longest_step;
+  double farthest_ = longest_step;
   double reserve_ = 0.0;
-  std::vector<glm::dvec3> middles_;
-  std::vector<glm::dvec3> before_;
-  std::vector<glm::dvec3> moved_;
-  Pairs pairs_;
+  double overlap_ = 1.0;
 };
 
-}  // namespace
-
-Pile settle(const std::vector<double>& radii, const Ground& ground, const Walls& walls, double friction,
-            std::uint64_t seed, const Progress& progress) {
-  if (radii.empty()) throw Error("A pile needs at least one grain; got none.");
-  for (const double radius : radii)
+void check(const Grains& grains, const Walls& walls, double friction) {
+  if (grains.radii.empty()) throw Error("A pile needs at least one grain; got none.");
+  for (const double radius : grains.radii)
     if (!(radius > 0.0 && std::isfinite(radius)))
       throw Error("A grain's radius must be greater than 0; got {}.", radius);
   if (!(friction >= 0.0)) throw Error("Friction must be at least 0; got {}.", friction);
-  const double largest = *std::max_element(radii.begin(), radii.end());
+  const double largest = *std::max_element(grains.radii.begin(), grains.radii.end());
   if (walls.any() && !(std::min(walls.half.x, walls.half.y) >= largest))
     throw Error("The walls leave no room: they are {} and {} apart, and the largest grain is {} across.",
                 2.0 * walls.half.x, 2.0 * walls.half.y, 2.0 * largest);
-  if (!ground.heights.empty() && (ground.columns == 0 || ground.heights.size() % ground.columns != 0))
-    throw Error("The ground's heights must fill whole rows; got {} in rows of {}.", ground.heights.size(),
-                ground.columns);
-  return Settling(radii, ground, walls, friction, seed).run(progress);
+  if (!grains.meshes.empty() && grains.shapes.size() != grains.radii.size())
+    throw Error("Each of {} grains needs a shape; got {}.", grains.radii.size(), grains.shapes.size());
+  for (const std::uint32_t shape : grains.shapes)
+    if (shape >= grains.meshes.size())
+      throw Error("A grain's shape must be below {}; got {}.", grains.meshes.size(), shape);
+}
+
+}  // namespace
+
+Pile settle(const Grains& grains, const Ground& ground, const Walls& walls, double friction, std::uint64_t seed,
+            const Progress& progress) {
+  check(grains, walls, friction);
+  const auto go_on = [&](double share) {
+    if (!progress(share)) throw Error("The pile was cancelled.");
+  };
+  const auto count = static_cast<double>(grains.radii.size());
+  const double unit = std::accumulate(grains.radii.begin(), grains.radii.end(), 0.0) / count;
+  std::vector<Shape> shapes;
+  for (const Mesh& mesh : grains.meshes) {
+    go_on(0.0);
+    shapes.push_back(shape_of(mesh));
+  }
+  if (shapes.empty()) shapes.push_back(ball_shape(1.0));
+  Mesh scaled = ground.mesh;
+  for (glm::dvec3& vertex : scaled.vertices) vertex /= unit;
+  const Triangles surface(scaled);
+  std::vector<Grain> placed(grains.radii.size());
+  for (std::size_t i = 0; i < placed.size(); ++i) {
+    placed[i].size = grains.radii[i] / unit;
+    placed[i].shape = &shapes[grains.meshes.empty() ? 0 : grains.shapes[i]];
+  }
+  const Walls held{walls.half / unit};
+  place(placed, surface, ground.floor / unit, held, seed);
+  Pile pile;
+  pile.largest_overlap = Settling(placed, surface, ground.floor / unit, held, friction).run(go_on);
+  for (const Grain& grain : placed) {
+    pile.middles.push_back(unit * grain.middle);
+    pile.turns.push_back(grain.turn);
+  }
+  return pile;
 }
 
 }  // namespace mesograin::pile

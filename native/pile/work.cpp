@@ -5,10 +5,10 @@
 
 namespace mesograin::pile {
 
-Work::Work(std::vector<double> radii, Ground ground, Walls walls, double friction, std::uint64_t seed)
-    : thread_([this, radii = std::move(radii), ground = std::move(ground), walls, friction, seed] {
+Work::Work(Grains grains, Ground ground, Walls walls, double friction, std::uint64_t seed)
+    : thread_([this, grains = std::move(grains), ground = std::move(ground), walls, friction, seed] {
         try {
-          pile_ = settle(radii, ground, walls, friction, seed, [this](double share) {
+          pile_ = settle(grains, ground, walls, friction, seed, [this](double share) {
             share_ = share;
             return !cancelled_;
           });

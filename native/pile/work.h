@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <exception>
 #include <thread>
-#include <vector>
 
 #include "pile/settle.h"
 
@@ -14,7 +13,7 @@ namespace mesograin::pile {
 class Work {
  public:
   /// Begins to settle; the arguments are settle's.
-  Work(std::vector<double> radii, Ground ground, Walls walls, double friction, std::uint64_t seed);
+  Work(Grains grains, Ground ground, Walls walls, double friction, std::uint64_t seed);
 
   /// Ends it.
   ~Work();

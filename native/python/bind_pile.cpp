@@ -18,38 +18,45 @@ namespace py = pybind11;
 namespace mesograin::python {
 namespace {
 
-using Corners = std::pair<std::pair<double, double>, std::pair<double, double>>;
+using Arrays = std::pair<Array<double>, Array<std::uint32_t>>;
 
-pile::Ground to_ground(const std::optional<Array<double>>& heights, const std::optional<Corners>& corners) {
-  pile::Ground ground;
-  if (!heights) return ground;
-  if (heights->ndim() != 2 || heights->shape(0) < 2 || heights->shape(1) < 2 || !corners)
-    throw Error("heights must have shape (rows, columns), at least 2 of each, and come with their corners.");
-  ground.heights.assign(heights->data(), heights->data() + heights->size());
-  ground.columns = static_cast<std::size_t>(heights->shape(1));
-  const auto& [lower, upper] = *corners;
-  ground.lower = {lower.first, lower.second};
-  ground.step = {(upper.first - lower.first) / static_cast<double>(heights->shape(1) - 1),
-                 (upper.second - lower.second) / static_cast<double>(heights->shape(0) - 1)};
-  if (!(ground.step.x > 0.0 && ground.step.y > 0.0))
-    throw Error("The corners of the heights must be the lower and the upper one.");
-  return ground;
+pile::Mesh to_mesh(const Arrays& arrays) {
+  const auto& [vertices, triangles] = arrays;
+  if (vertices.ndim() != 2 || vertices.shape(1) != 3 || triangles.ndim() != 2 || triangles.shape(1) != 3)
+    throw Error("A mesh must be vertices of shape (n, 3) and triangles of shape (t, 3).");
+  pile::Mesh mesh;
+  for (py::ssize_t i = 0; i < vertices.shape(0); ++i)
+    mesh.vertices.emplace_back(vertices.at(i, 0), vertices.at(i, 1), vertices.at(i, 2));
+  for (py::ssize_t i = 0; i < triangles.shape(0); ++i)
+    mesh.triangles.push_back({triangles.at(i, 0), triangles.at(i, 1), triangles.at(i, 2)});
+  return mesh;
 }
 
 py::tuple to_tuple(const pile::Pile& found) {
   Array<double> middles({found.middles.size(), std::size_t{3}});
-  for (std::size_t i = 0; i < found.middles.size(); ++i)
+  Array<double> turns({found.turns.size(), std::size_t{4}});
+  for (std::size_t i = 0; i < found.middles.size(); ++i) {
     for (int axis = 0; axis < 3; ++axis) middles.mutable_at(i, axis) = found.middles[i][axis];
-  return py::make_tuple(middles, found.largest_overlap);
+    const glm::dquat& turn = found.turns[i];
+    const double parts[4] = {turn.w, turn.x, turn.y, turn.z};
+    for (int part = 0; part < 4; ++part) turns.mutable_at(i, part) = parts[part];
+  }
+  return py::make_tuple(middles, turns, found.largest_overlap);
 }
 
-std::unique_ptr<pile::Work> start_settling(std::vector<double> radii,
+std::unique_ptr<pile::Work> start_settling(std::vector<double> radii, std::vector<std::uint32_t> shapes,
+                                           const std::vector<Arrays>& meshes,
                                            const std::optional<std::pair<double, double>>& walls,
-                                           const std::optional<Array<double>>& heights,
-                                           const std::optional<Corners>& corners, double friction, std::uint64_t seed) {
+                                           const std::optional<Arrays>& surface, double floor, double friction,
+                                           std::uint64_t seed) {
+  pile::Grains grains{std::move(radii), std::move(shapes), {}};
+  for (const Arrays& mesh : meshes) grains.meshes.push_back(to_mesh(mesh));
   pile::Walls held;
   if (walls) held.half = {0.5 * walls->first, 0.5 * walls->second};
-  return std::make_unique<pile::Work>(std::move(radii), to_ground(heights, corners), held, friction, seed);
+  pile::Ground ground;
+  if (surface) ground.mesh = to_mesh(*surface);
+  ground.floor = floor;
+  return std::make_unique<pile::Work>(std::move(grains), std::move(ground), held, friction, seed);
 }
 
 py::tuple result_of(pile::Work& work) {
@@ -60,10 +67,10 @@ py::tuple result_of(pile::Work& work) {
   return to_tuple(found);
 }
 
-py::tuple settle(std::vector<double> radii, const std::optional<std::pair<double, double>>& walls,
-                 const std::optional<Array<double>>& heights, const std::optional<Corners>& corners, double friction,
-                 std::uint64_t seed) {
-  return result_of(*start_settling(std::move(radii), walls, heights, corners, friction, seed));
+py::tuple settle(std::vector<double> radii, std::vector<std::uint32_t> shapes, const std::vector<Arrays>& meshes,
+                 const std::optional<std::pair<double, double>>& walls, const std::optional<Arrays>& surface,
+                 double floor, double friction, std::uint64_t seed) {
+  return result_of(*start_settling(std::move(radii), std::move(shapes), meshes, walls, surface, floor, friction, seed));
 }
 
 }  // namespace
@@ -74,16 +81,21 @@ void bind_pile(py::module_& module) {
       .def_property_readonly("done", &pile::Work::done)
       .def("cancel", &pile::Work::cancel, "Ends it soon; result() then raises Error.")
       .def("result", &result_of, "Waits; what settle returns. Raises Error.");
-  module.def("start_settling", &start_settling, py::arg("radii"), py::arg("walls") = py::none(),
-             py::arg("heights") = py::none(), py::arg("corners") = py::none(), py::arg("friction") = 0.5,
-             py::arg("seed") = 0, "As settle, without waiting: a Settling.");
-  module.def(
-      "settle", &settle, py::arg("radii"), py::arg("walls") = py::none(), py::arg("heights") = py::none(),
-      py::arg("corners") = py::none(), py::arg("friction") = 0.5, py::arg("seed") = 0,
-      "((n, 3) float64, largest overlap): where balls of these radii lie after they fell on the ground, z up; the "
-      "overlap in radii of the smaller ball. walls: (x, y), how far apart upright walls around the origin are; "
-      "None lets the pile run out. heights: (rows, columns) float64 of the ground, a row for each y, between "
-      "corners ((x, y), (x, y)); None is the plane z = 0. Raises Error.");
+  const auto define = [&module](const char* name, auto function, const char* text) {
+    module.def(name, function, py::arg("radii"), py::arg("shapes") = std::vector<std::uint32_t>(),
+               py::arg("meshes") = std::vector<Arrays>(), py::arg("walls") = py::none(),
+               py::arg("surface") = py::none(), py::arg("floor") = 0.0, py::arg("friction") = 0.5, py::arg("seed") = 0,
+               text);
+  };
+  define("start_settling", &start_settling, "As settle, without waiting: a Settling.");
+  define(
+      "settle", &settle,
+      "((n, 3) float64, (n, 4) float64, largest overlap): where grains of these radii lie after they fell, z up, and "
+      "how they are turned, as quaternions (w, x, y, z); the overlap in radii of the smaller grain. shapes: which of "
+      "meshes each has, closed and as large as the unit sphere, (vertices, triangles) each; without meshes they are "
+      "balls. walls: (x, y), how far apart upright walls around the origin are; None lets the pile run out. surface: "
+      "(vertices, triangles) of what they fall on or into. floor: the height of the plane below it all. Raises "
+      "Error.");
 }
 
 }  // namespace mesograin::python

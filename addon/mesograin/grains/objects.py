@@ -109,6 +109,7 @@ def shapes_of(kinds_of_shapes, seed=0, segments=12, angularity=0.5, roundness=0.
 def pile_of(kinds_of_shapes, count, size, name="Pile", seed=0, segments=12, angularity=0.5, roundness=0.3, **settling):
     """The object of add_pile of `count` grains. kinds_of_shapes: the kind of each shape that it has, such as three
     times "sand". size: radius of a ball as large as the mean grain. settling: as pile.settle takes it."""
-    placings = pile.settle(count, size, shapes=len(kinds_of_shapes), seed=seed, **settling)
+    fallen = pile.shapes_of(kinds_of_shapes, seed, segments=segments, angularity=angularity, roundness=roundness)
+    placings = pile.settle(fallen, count, size, seed=seed, **settling)
     shapes = shapes_of(kinds_of_shapes, seed, segments, angularity, roundness)
     return add_pile(placings, shapes, name)

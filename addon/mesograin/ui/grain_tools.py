@@ -10,8 +10,6 @@ from ..grains import kinds, objects, pile
 
 KIND_ITEMS = tuple((kind, kind.replace("_", " ").title(), make.__doc__.split(".")[0].replace("\n   ", ""), number)
                    for number, (kind, make) in enumerate(kinds.KINDS.items()))
-# How finely heights of a surface are sampled, along its longer side.
-HEIGHT_SAMPLES = 96
 # Fewer grains than this are there within a blink.
 AT_ONCE = 500
 
@@ -68,7 +66,7 @@ class MESOGRAIN_OT_add_pile(bpy.types.Operator, _Habit):
     place: EnumProperty(name="Place", items=(
         ("HEAP", "Heap", "On the plane of the 3D cursor, as far as it runs out", 0),
         ("BOX", "Box", "Between upright walls around the 3D cursor", 1),
-        ("ACTIVE", "On Active Object", "On the surface of the active mesh, within its bounds, from above", 2)))
+        ("ACTIVE", "On Active Object", "On the surface of the active mesh, or in it if it is open above: a bowl, a jar", 2)))
     box: FloatProperty(name="Box", default=1.0, min=1e-5, subtype="DISTANCE", description="How far the walls are apart")
     settle_walls: BoolProperty(name="Walls", default=True,
                                description="Grains do not fall over the edge of the active object")
@@ -92,8 +90,8 @@ class MESOGRAIN_OT_add_pile(bpy.types.Operator, _Habit):
         _leave_edit_mode(context)
         try:
             _, settling = self._settling(context)
-            self._work = pile.Settling(self.count, self.size, self.variation, self.shapes, self.seed, self.friction,
-                                       settling.get("walls"), settling.get("heights"), settling.get("corners"))
+            self._work = pile.Settling(pile.shapes_of([self.kind] * self.shapes, **self.habit()), self.count, self.size,
+                                       self.variation, self.seed, self.friction, **settling)
         except _sentences() as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
@@ -153,9 +151,8 @@ class MESOGRAIN_OT_add_pile(bpy.types.Operator, _Habit):
             return cursor, {}
         if self.place == "BOX":
             return cursor, {"walls": (self.box, self.box)}
-        place, corners, heights = _surface(context)
-        walls = tuple(upper - lower for lower, upper in zip(*corners)) if self.settle_walls else None
-        return place, {"walls": walls, "heights": heights, "corners": corners}
+        place, span, surface = _surface(context)
+        return place, {"walls": span if self.settle_walls else None, "surface": surface}
 
 
 class _NoSurface(Exception):
@@ -172,30 +169,28 @@ def _sentences():
 
 
 def _surface(context):
-    """(middle, (lower, upper) corners around it, rows of heights over it) of the active mesh, seen from above."""
+    """(the middle below the active mesh, how wide it is along x and y, a pile.Surface of its triangles)."""
     active = context.active_object
     if active is None or active.type != "MESH":
         raise _NoSurface("There is no active mesh that grains could fall on: select one, or choose Heap or Box.")
-    depsgraph = context.evaluated_depsgraph_get()
-    evaluated = active.evaluated_get(depsgraph)
-    bounds = np.array([active.matrix_world @ Vector(corner) for corner in evaluated.bound_box])
-    lower, upper = bounds.min(axis=0), bounds.max(axis=0)
-    span = upper - lower
-    if not min(span[0], span[1]) > 0.0 or not evaluated.data.polygons:
+    evaluated = active.evaluated_get(context.evaluated_depsgraph_get())
+    data = evaluated.to_mesh()
+    data.calc_loop_triangles()
+    vertices = np.empty(3 * len(data.vertices), dtype=np.float32)
+    data.vertices.foreach_get("co", vertices)
+    triangles = np.empty(3 * len(data.loop_triangles), dtype=np.int32)
+    data.loop_triangles.foreach_get("vertices", triangles)
+    evaluated.to_mesh_clear()
+    to_world = np.array(active.matrix_world, dtype=np.float64)
+    vertices = vertices.reshape(-1, 3) @ to_world[:3, :3].T + to_world[:3, 3]
+    triangles = triangles.reshape(-1, 3).astype(np.uint32)
+    used = vertices[triangles.ravel()] if len(triangles) else np.zeros((1, 3))
+    lower, upper = used.min(axis=0), used.max(axis=0)
+    span = (upper - lower)[:2]
+    if not span.min() > 0.0:
         raise _NoSurface(f"Object '{active.name}' has no surface that grains could fall on from above.")
-    columns, rows = (max(2, int(round(HEIGHT_SAMPLES * span[axis] / max(span[:2])))) for axis in (0, 1))
-    to_local = active.matrix_world.inverted_safe()  # a plane may be scaled to nothing along its normal
-    down = (to_local.to_3x3() @ Vector((0.0, 0.0, -1.0))).normalized()
-    heights = []
-    for y in np.linspace(lower[1], upper[1], rows):
-        row = []
-        for x in np.linspace(lower[0], upper[0], columns):
-            hit, place, _normal, _face = evaluated.ray_cast(to_local @ Vector((x, y, upper[2] + span.max())), down)
-            row.append(float((active.matrix_world @ place).z if hit else lower[2]))
-        heights.append(tuple(row))
-    half = 0.5 * span
-    corners = ((-float(half[0]), -float(half[1])), (float(half[0]), float(half[1])))
-    return Vector((0.5 * (lower[0] + upper[0]), 0.5 * (lower[1] + upper[1]), 0.0)), corners, tuple(heights)
+    place = np.append(0.5 * (lower + upper)[:2], 0.0)
+    return Vector(place), tuple(map(float, span)), pile.Surface(vertices - place, triangles)
 
 
 def _leave_edit_mode(context):

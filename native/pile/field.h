@@ -1,0 +1,37 @@
+// How far a place is from a grain's surface: distances on a grid around a closed mesh, less than 0 inside.
+#pragma once
+
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "pile/triangles.h"
+
+namespace mesograin::pile {
+
+class Field {
+ public:
+  struct Value {
+    double distance;
+    glm::dvec3 outwards;  ///< of length 1
+  };
+
+  /// Known up to `margin` from the mesh's bounds, farther away too large.
+  Field(const Triangles& mesh, double margin);
+
+  Value at(const glm::dvec3& place) const;
+
+ private:
+  const float& node(int x, int y, int z) const {
+    return nodes_[static_cast<std::size_t>((z * size_[1] + y) * size_[0] + x)];
+  }
+  float& node(int x, int y, int z) { return nodes_[static_cast<std::size_t>((z * size_[1] + y) * size_[0] + x)]; }
+  void measure(const Triangles& mesh);
+  void tell_inside(const Triangles& mesh);
+
+  glm::dvec3 lower_{0.0};
+  double step_ = 1.0;
+  int size_[3] = {2, 2, 2};
+  std::vector<float> nodes_;
+};
+
+}  // namespace mesograin::pile

@@ -1,0 +1,123 @@
+// A lattice with room for each grain however it is turned.
+#include "pile/start.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <numbers>
+#include <numeric>
+#include <random>
+
+namespace mesograin::pile {
+namespace {
+
+constexpr double loose = 1.05;     // how far grains are apart before they fall
+constexpr double compact = 0.6;    // shortest over longest extent; such grains fall turned anyhow
+constexpr double most_tilt = 0.3;  // radians, of others
+constexpr double too_steep = 4.0;  // a rise over its run; nothing falls right beside such a wall
+constexpr int around = 8;          // places around a spot where the ground is asked for
+
+struct Spot {
+  double x, y;
+};
+
+bool is_compact(const Shape& shape) { return shape.half[2] > compact * shape.half[0]; }
+
+double half_height(const Shape& shape) {
+  if (is_compact(shape)) return shape.reach;
+  return std::min(shape.reach, shape.half[2] * std::cos(most_tilt) + shape.half[0] * std::sin(most_tilt));
+}
+
+template <typename Random>
+glm::dquat drawn_turn(const Shape& shape, Random& random) {
+  std::normal_distribution<double> normal;
+  const double w = normal(random);
+  const double x = normal(random);
+  const double y = normal(random);
+  const double z = normal(random);
+  const glm::dquat any = glm::normalize(glm::dquat(w, x, y, z));
+  if (is_compact(shape)) return any;
+  std::uniform_real_distribution<double> turn(-std::numbers::pi, std::numbers::pi);
+  const double about_up = turn(random);
+  const double towards = turn(random);
+  const double tilt = std::uniform_real_distribution<double>(-most_tilt, most_tilt)(random);
+  const glm::dquat level = glm::quat_cast(glm::transpose(shape.axes));
+  return glm::angleAxis(tilt, glm::dvec3(std::cos(towards), std::sin(towards), 0.0)) *
+         glm::angleAxis(about_up, glm::dvec3(0.0, 0.0, 1.0)) * level;
+}
+
+std::vector<Spot> lattice(const glm::dvec2& room, double spacing) {
+  const auto columns = std::max(1, static_cast<int>(2.0 * room.x / spacing) + 1);
+  const auto rows = std::max(1, static_cast<int>(2.0 * room.y / spacing) + 1);
+  const auto along = [](int number, int count, double reach) {
+    return count > 1 ? -reach + 2.0 * reach * number / (count - 1) : 0.0;
+  };
+  std::vector<Spot> spots;
+  for (int row = 0; row < rows; ++row)
+    for (int column = 0; column < columns; ++column)
+      spots.push_back({along(column, columns, room.x), along(row, rows, room.y)});
+  return spots;
+}
+
+// The height there if a grain that reaches so far falls on the surface and not beside it.
+std::optional<double> height_under(const Triangles& surface, const Spot& spot, double reach) {
+  const auto height = surface.height(spot.x, spot.y);
+  if (!height) return height;
+  for (int i = 0; i < around; ++i) {
+    const double angle = 2.0 * std::numbers::pi * (i + 0.5) / around;
+    const auto beside = surface.height(spot.x + reach * std::cos(angle), spot.y + reach * std::sin(angle));
+    if (!beside || std::abs(*beside - *height) > too_steep * reach) return std::nullopt;
+  }
+  return height;
+}
+
+// Leaves the spots above the surface; all if it is too narrow for any. Returns the highest place below them.
+double leave_those_above(std::vector<Spot>& spots, const Triangles& surface, double reach) {
+  std::vector<Spot> above;
+  double highest = -std::numeric_limits<double>::infinity();
+  for (const Spot& spot : spots) {
+    const auto height = height_under(surface, spot, reach);
+    if (!height) continue;
+    highest = std::max(highest, *height);
+    above.push_back(spot);
+  }
+  if (above.empty()) return surface.upper().z;
+  spots = std::move(above);
+  return highest;
+}
+
+}  // namespace
+
+void place(std::vector<Grain>& grains, const Triangles& surface, double floor, const Walls& walls, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  double reach = 0.0;
+  double half_layer = 0.0;
+  for (const Grain& grain : grains) {
+    reach = std::max(reach, grain.size * grain.shape->reach);
+    half_layer = std::max(half_layer, grain.size * half_height(*grain.shape));
+  }
+  const double spacing = 2.0 * loose * reach;
+  const double layer = 2.0 * loose * half_layer;
+  // Without walls, a column as high as it is wide.
+  glm::dvec2 room(0.5 * std::cbrt(static_cast<double>(grains.size()) * spacing * spacing * layer));
+  if (!surface.empty()) room = 0.5 * glm::dvec2(surface.upper() - surface.lower());
+  if (walls.any()) room = glm::max(walls.half - reach, glm::dvec2(0.0));
+  std::vector<Spot> spots = lattice(room, spacing);
+  double ground = floor;
+  if (!surface.empty()) ground = leave_those_above(spots, surface, reach);
+
+  std::vector<std::size_t> order(grains.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::shuffle(order.begin(), order.end(), random);
+  std::uniform_real_distribution<double> jitter(-(loose - 1.0) * half_layer, (loose - 1.0) * half_layer);
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    Grain& grain = grains[order[i]];
+    const Spot& spot = spots[i % spots.size()];
+    const double x = spot.x + jitter(random);
+    const double y = spot.y + jitter(random);
+    grain.middle = {x, y, ground + half_layer + layer * static_cast<double>(i / spots.size())};
+    grain.turn = drawn_turn(*grain.shape, random);
+  }
+}
+
+}  // namespace mesograin::pile
