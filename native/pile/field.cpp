@@ -11,7 +11,7 @@
 namespace mesograin::pile {
 namespace {
 
-constexpr double most_cells = 44.0;  // along the longest side
+constexpr double most_cells = 36.0;  // along the longest side
 constexpr double least_step = 0.06;  // of a grain as large as the unit sphere
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <limits>
 #include <numeric>
 
 #include "base/error.h"
@@ -20,13 +21,17 @@ namespace {
 constexpr double gravity = 0.04;
 constexpr double kept_of_speed = 0.93;
 constexpr double longest_step = 0.6;
-constexpr double near_enough = 0.3;       // who may meet before neighbours are looked for again
-constexpr double at_rest = 3e-3;          // a step, on average
-constexpr double most_taken_back = 0.15;  // of an overlap, in a step
-constexpr int most_steps = 300;           // beyond the fall
+constexpr double near_enough = 0.06;          // who may meet before neighbours are looked for again
+constexpr double steps_ahead = 3.0;           // and in how many steps as long as the last
+constexpr int most_contacts = 4;              // of one grain with another that count: those that are nearest
+constexpr double at_rest = 3e-3;              // a step, on average
+constexpr double most_taken_back = 0.15;      // of an overlap, in a step
+constexpr std::size_t balls_of_falling = 14;  // of a grain, that are asked for before it rests
+constexpr int most_steps = 200;               // beyond the fall
 constexpr int iterations = 5;
-constexpr int fading_steps = 30;  // under a weight that fades
-constexpr int last_steps = 60;    // under none
+constexpr std::size_t all_balls = std::numeric_limits<std::size_t>::max();
+constexpr int fading_steps = 20;  // under a weight that fades
+constexpr int last_steps = 40;    // under none
 constexpr double small_overlap = 0.01;
 
 struct Body {
@@ -104,7 +109,11 @@ void hold_back(const Contact& contact, double friction) {
 class Settling {
  public:
   Settling(std::vector<Grain>& grains, const Triangles& surface, double floor, const Walls& walls, double friction)
-      : grains_(grains), touching_(grains, surface, floor, walls), friction_(friction), bodies_(grains.size()) {
+      : grains_(grains),
+        touching_(grains, surface, floor, walls),
+        friction_(friction),
+        bodies_(grains.size()),
+        speeds_(grains.size()) {
     top_ = 0.0;
     for (std::size_t i = 0; i < grains.size(); ++i) {
       const Grain& grain = grains[i];
@@ -118,11 +127,14 @@ class Settling {
 
   double run(const std::function<void(double)>& go_on) {
     const int fall = static_cast<int>(top_ / longest_);
+    touching_.set_detail(balls_of_falling);
     bool resting = false;
     for (int step = 0; step < fall + most_steps && !resting; ++step) {
       go_on(0.85 * step / (fall + most_steps));
       resting = advance(gravity, kept_of_speed) < at_rest && step > 20;
     }
+    touching_.set_detail(all_balls);
+    ranges_.clear();
     // Weight presses grains into each other: it fades, and then they part.
     for (int step = 0; step < fading_steps; ++step) {
       go_on(0.85 + 0.05 * step / fading_steps);
@@ -132,17 +144,22 @@ class Settling {
       go_on(0.9 + 0.1 * step / last_steps);
       advance(0.0, 0.0);
     }
+    if (getenv("PILE_DEBUG"))
+      printf("steps %d meetings %zu contacts %zu looks %d\n", steps_, touching_.meetings().size(), contacts_.size(),
+             looks_);
     return overlap();
   }
 
  private:
   // How far a grain goes on average.
+  int steps_ = 0, looks_ = 0;
   double advance(double weight, double kept) {
+    ++steps_;
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
       Body& body = bodies_[i];
       body.moved = kept * body.moved - glm::dvec3(0.0, 0.0, weight);
       body.turned *= kept;
-      limit(body, grains_[i], longest_);
+      speeds_[i] = limit(body, grains_[i], longest_);
     }
     look();
     meet();
@@ -166,12 +183,17 @@ class Settling {
 
   // Before anything goes farther than that, what may meet is known.
   void look() {
-    if (reserve_ > 0.0) {
+    bool known = !ranges_.empty();
+    for (std::size_t i = 0; i < bodies_.size() && known; ++i) known = left_[i] >= speeds_[i];
+    if (known) {
       touching_.measure();
-    } else {
-      touching_.look(near_enough + 2.0 * farthest_);
-      reserve_ = near_enough;
+      return;
     }
+    ranges_.resize(bodies_.size());
+    for (std::size_t i = 0; i < bodies_.size(); ++i) ranges_[i] = near_enough + steps_ahead * speeds_[i];
+    left_ = ranges_;
+    ++looks_;
+    touching_.look(ranges_);
   }
 
   void meet() {
@@ -184,30 +206,53 @@ class Settling {
     }
     contacts_.clear();
     overlap_ = 0.0;
-    for (Meeting& meeting : touching_.meetings()) {
-      overlap_ = std::max(overlap_, -meeting.gap);
-      if (meeting.gap > 2.0 * farthest_ + 0.1) {
-        meeting.push = 0.0;
-        meeting.rub = glm::dvec3(0.0);
-        continue;
+    std::vector<Meeting>& meetings = touching_.meetings();
+    for (std::size_t first = 0, last = 0; first < meetings.size(); first = last) {
+      // Of one grain and another.
+      chosen_.clear();
+      for (last = first;
+           last < meetings.size() && meetings[last].a == meetings[first].a && meetings[last].b == meetings[first].b;
+           ++last) {
+        Meeting& meeting = meetings[last];
+        overlap_ = std::max(overlap_, -meeting.gap);
+        const double other = meeting.b == nobody ? 0.0 : speeds_[meeting.b];
+        if (meeting.gap < speeds_[meeting.a] + other + 0.02)
+          chosen_.push_back(&meeting);
+        else
+          forget(meeting);
       }
-      Contact contact{};
-      contact.meeting = &meeting;
-      contact.a = &bodies_[meeting.a];
-      contact.b = meeting.b == nobody ? &ground_ : &bodies_[meeting.b];
-      contact.arm_a = meeting.place - grains_[meeting.a].middle;
-      if (meeting.b != nobody) contact.arm_b = meeting.place - grains_[meeting.b].middle;
-      contact.turning_a = contact.a->ease * glm::cross(contact.arm_a, meeting.normal);
-      contact.turning_b = contact.b->ease * glm::cross(contact.arm_b, meeting.normal);
-      contact.least = std::min(-meeting.gap, most_taken_back);
-      contact.mass = 1.0 / lightness_along(contact, meeting.normal);
-      meeting.rub -= glm::dot(meeting.rub, meeting.normal) * meeting.normal;
-      contacts_.push_back(contact);
+      if (meetings[first].b != nobody && chosen_.size() > most_contacts) {
+        std::nth_element(chosen_.begin(), chosen_.begin() + most_contacts, chosen_.end(),
+                         [](const Meeting* one, const Meeting* two) { return one->gap < two->gap; });
+        for (std::size_t i = most_contacts; i < chosen_.size(); ++i) forget(*chosen_[i]);
+        chosen_.resize(most_contacts);
+      }
+      for (Meeting* meeting : chosen_) add(*meeting);
     }
     for (const Contact& contact : contacts_) {
       push(contact, contact.meeting->push);
       rub(contact, contact.meeting->rub);
     }
+  }
+
+  static void forget(Meeting& meeting) {
+    meeting.push = 0.0;
+    meeting.rub = glm::dvec3(0.0);
+  }
+
+  void add(Meeting& meeting) {
+    Contact contact{};
+    contact.meeting = &meeting;
+    contact.a = &bodies_[meeting.a];
+    contact.b = meeting.b == nobody ? &ground_ : &bodies_[meeting.b];
+    contact.arm_a = meeting.place - grains_[meeting.a].middle;
+    if (meeting.b != nobody) contact.arm_b = meeting.place - grains_[meeting.b].middle;
+    contact.turning_a = contact.a->ease * glm::cross(contact.arm_a, meeting.normal);
+    contact.turning_b = contact.b->ease * glm::cross(contact.arm_b, meeting.normal);
+    contact.least = std::min(-meeting.gap, most_taken_back);
+    contact.mass = 1.0 / lightness_along(contact, meeting.normal);
+    meeting.rub -= glm::dot(meeting.rub, meeting.normal) * meeting.normal;
+    contacts_.push_back(contact);
   }
 
   const glm::dmat3& ease_of(const Shape& shape) {
@@ -218,22 +263,20 @@ class Settling {
 
   double move() {
     double sum = 0.0;
-    farthest_ = 0.0;
     for (std::uint32_t i = 0; i < bodies_.size(); ++i) {
       Body& body = bodies_[i];
       if (touching_.passes(i, body.moved)) body.moved = glm::dvec3(0.0);
-      farthest_ = std::max(farthest_, limit(body, grains_[i], longest_));
+      left_[i] -= limit(body, grains_[i], longest_);
       sum += glm::length(body.moved);
       grains_[i].middle += body.moved;
       const double angle = glm::length(body.turned);
       if (angle > 0.0) grains_[i].turn = glm::normalize(glm::angleAxis(angle, body.turned / angle) * grains_[i].turn);
     }
-    reserve_ -= 2.0 * farthest_;
     return sum / static_cast<double>(bodies_.size());
   }
 
   double overlap() {
-    touching_.look(0.0);
+    touching_.look(std::vector<double>(bodies_.size(), 0.0));
     double largest = 0.0;
     for (const Meeting& meeting : touching_.meetings())
       if (meeting.b != nobody)
@@ -250,8 +293,10 @@ class Settling {
   std::vector<std::pair<const Shape*, glm::dmat3>> eases_;
   double top_ = 0.0;
   double longest_ = longest_step;
-  double farthest_ = longest_step;
-  double reserve_ = 0.0;
+  std::vector<double> speeds_;  // how far each may go in this step
+  std::vector<double> ranges_;
+  std::vector<double> left_;  // of its range
+  std::vector<Meeting*> chosen_;
   double overlap_ = 1.0;
 };
 

@@ -15,9 +15,9 @@
 namespace mesograin::pile {
 namespace {
 
-constexpr double tolerance = 0.03;  // how far the surface may stand out of the balls
-constexpr std::size_t most_balls = 72;
-constexpr std::size_t most_samples = 1500;
+constexpr double tolerance = 0.05;  // how far the surface may stand out of the balls
+constexpr std::size_t most_balls = 48;
+constexpr std::size_t most_samples = 700;
 
 struct Sample {
   glm::dvec3 place;
@@ -110,10 +110,11 @@ Shape shape_of(const Mesh& mesh) {
   Shape shape;
   shape.reach = 0.0;
   for (const glm::dvec3& vertex : mesh.vertices) shape.reach = std::max(shape.reach, glm::length(vertex));
+  if (shape.reach - triangles.distance(glm::dvec3(0.0)) < tolerance) return ball_shape(shape.reach);
   shape.balls = cover(triangles, samples_of(mesh), shape.reach);
+  if (getenv("PILE_DEBUG")) printf("balls %zu\n", shape.balls.size());
   shape.thickness = 0.0;
   for (const Ball& ball : shape.balls) shape.thickness = std::max(shape.thickness, ball.radius);
-  if (shape.balls.size() == 1) return ball_shape(shape.reach);
   shape.field.emplace_back(triangles, shape.thickness + 0.3);
 
   const glm::dmat3 moments = second_moments(mesh);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <tuple>
 
 #include "pile/parallel.h"
 
@@ -19,29 +20,59 @@ void Touching::turn() {
   for (std::size_t i = 0; i < grains_.size(); ++i) turns_[i] = glm::mat3_cast(grains_[i].turn);
 }
 
-void Touching::look(double range) {
+void Touching::recall() {
+  const auto key = [](const Meeting& meeting) {
+    return std::tie(meeting.a, meeting.b, meeting.triangle, meeting.ball);
+  };
+  std::sort(known_.begin(), known_.end(),
+            [&](const Meeting& one, const Meeting& other) { return key(one) < key(other); });
+  for (Meeting& meeting : meetings_) {
+    const auto before =
+        std::lower_bound(known_.begin(), known_.end(), meeting,
+                         [&](const Meeting& one, const Meeting& other) { return key(one) < key(other); });
+    if (before == known_.end() || key(*before) != key(meeting)) continue;
+    meeting.push = before->push;
+    meeting.rub = before->rub;
+  }
+}
+
+void Touching::look(const std::vector<double>& ranges) {
   turn();
   std::vector<glm::dvec3> middles;
   std::vector<double> reaches;
   for (const Grain& grain : grains_) {
     middles.push_back(grain.middle);
-    reaches.push_back(grain.size * grain.shape->reach);
+    reaches.push_back(grain.size * grain.shape->reach + ranges[middles.size() - 1]);
+  }
+  balls_.clear();
+  first_ball_.clear();
+  for (std::size_t i = 0; i < grains_.size(); ++i) {
+    const Grain& grain = grains_[i];
+    first_ball_.push_back(balls_.size());
+    for (const Ball& ball : grain.shape->balls)
+      balls_.push_back({grain.middle + grain.size * (turns_[i] * ball.middle), grain.size * ball.radius});
   }
   Pairs pairs;
-  find_pairs(middles, reaches, range, pairs);
+  find_pairs(middles, reaches, 0.0, pairs);
   std::vector<std::vector<Meeting>> found(pairs.size() / pairs_at_once + 1);
   in_parallel(found.size(), 4, [&](std::size_t first, std::size_t last) {
     for (std::size_t part = first; part < last; ++part)
       for (std::size_t i = part * pairs_at_once; i < std::min(pairs.size(), (part + 1) * pairs_at_once); ++i) {
         const auto& [a, b] = pairs[i];
+        const double range = ranges[a] + ranges[b];
         of_pair(a, b, range, found[part]);
         if (!grains_[a].shape->field.empty() || !grains_[b].shape->field.empty()) of_pair(b, a, range, found[part]);
       }
   });
+  // A plane's pushes are found anew.
+  known_.clear();
+  for (const Meeting& meeting : meetings_)
+    if (meeting.push > 0.0 && (meeting.b != nobody || meeting.triangle != nobody)) known_.push_back(meeting);
   meetings_.clear();
   triangles_of_.assign(grains_.size(), {});
-  for (std::uint32_t a = 0; a < grains_.size(); ++a) of_ground(a, range, meetings_);
+  for (std::uint32_t a = 0; a < grains_.size(); ++a) of_ground(a, ranges[a], meetings_);
   for (const std::vector<Meeting>& part : found) meetings_.insert(meetings_.end(), part.begin(), part.end());
+  recall();
 }
 
 void Touching::of_pair(std::uint32_t a, std::uint32_t b, double range, std::vector<Meeting>& found) const {
@@ -49,13 +80,15 @@ void Touching::of_pair(std::uint32_t a, std::uint32_t b, double range, std::vect
   const Grain& other = grains_[b];
   // Towards the other's own axes.
   const glm::dmat3 axes = turns_[b] * other.shape->axes;
-  for (std::uint32_t ball = 0; ball < one.shape->balls.size(); ++ball) {
-    const double radius = one.size * one.shape->balls[ball].radius;
-    const glm::dvec3 place = one.middle + one.size * (turns_[a] * one.shape->balls[ball].middle) - other.middle;
-    const double near = other.size * other.shape->reach + radius + range;
+  const double reach = other.size * other.shape->reach;
+  const glm::dvec3 half = other.size * other.shape->half;
+  for (std::uint32_t ball = 0; ball < balls_of(one); ++ball) {
+    const Ball& there = balls_[first_ball_[a] + ball];
+    const glm::dvec3 place = there.middle - other.middle;
+    const double near = reach + there.radius + range;
     if (glm::dot(place, place) > near * near) continue;
-    const glm::dvec3 beyond = glm::abs(place * axes) - other.size * other.shape->half;
-    if (std::max({beyond.x, beyond.y, beyond.z}) > radius + range) continue;
+    const glm::dvec3 beyond = glm::max(glm::abs(place * axes) - half, glm::dvec3(0.0));
+    if (glm::dot(beyond, beyond) > (there.radius + range) * (there.radius + range)) continue;
     Meeting meeting;
     meeting.a = a;
     meeting.b = b;
@@ -70,7 +103,7 @@ void Touching::of_ground(std::uint32_t a, double range, std::vector<Meeting>& fo
   const double reach = grain.size * grain.shape->reach + range;
   const auto add = [&](Meeting meeting) {
     meeting.a = a;
-    for (meeting.ball = 0; meeting.ball < grain.shape->balls.size(); ++meeting.ball) {
+    for (meeting.ball = 0; meeting.ball < balls_of(grain); ++meeting.ball) {
       measure(meeting);
       if (meeting.gap < range) found.push_back(meeting);
     }

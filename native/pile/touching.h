@@ -1,6 +1,7 @@
 // Where grains touch each other and what holds them: which balls may meet what, and where they do now.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
@@ -34,8 +35,11 @@ class Touching {
   Touching(const std::vector<Grain>& grains, const Triangles& surface, double floor, const Walls& walls)
       : grains_(grains), surface_(surface), floor_(floor), walls_(walls) {}
 
-  /// Looks for all meetings whose gaps are less than `range`.
-  void look(double range);
+  /// Looks for all meetings whose gaps are less than the ranges of the two; pushes of those known before are kept.
+  void look(const std::vector<double>& ranges);
+
+  /// How many balls of a grain are asked for from the next look on; the first of a shape's are those that tell most.
+  void set_detail(std::size_t most_balls) { most_balls_ = most_balls; }
 
   /// Measures gaps, normals and places anew.
   void measure();
@@ -51,6 +55,8 @@ class Touching {
 
  private:
   void turn();
+  void recall();
+  std::size_t balls_of(const Grain& grain) const { return std::min(most_balls_, grain.shape->balls.size()); }
   void measure(Meeting& meeting) const;
   void of_pair(std::uint32_t a, std::uint32_t b, double range, std::vector<Meeting>& found) const;
   void of_ground(std::uint32_t a, double range, std::vector<Meeting>& found);
@@ -60,7 +66,11 @@ class Touching {
   double floor_;
   const Walls& walls_;
   std::vector<glm::dmat3> turns_;
+  std::size_t most_balls_ = std::numeric_limits<std::size_t>::max();
+  std::vector<Ball> balls_;  // of all grains, where they are
+  std::vector<std::size_t> first_ball_;
   std::vector<Meeting> meetings_;
+  std::vector<Meeting> known_;
   std::vector<std::vector<std::uint32_t>> triangles_of_;
 };
 
