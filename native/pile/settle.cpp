@@ -29,6 +29,7 @@ constexpr double most_taken_back = 0.15;      // of an overlap, in a step
 constexpr std::size_t balls_of_falling = 14;  // of a grain, that are asked for before it rests
 constexpr int most_steps = 200;               // beyond the fall
 constexpr int iterations = 5;
+constexpr std::size_t balls_at_rest = 64;  // by another grain; the ground asks for all
 constexpr std::size_t all_balls = std::numeric_limits<std::size_t>::max();
 constexpr int fading_steps = 20;  // under a weight that fades
 constexpr int last_steps = 40;    // under none
@@ -127,13 +128,13 @@ class Settling {
 
   double run(const std::function<void(double)>& go_on) {
     const int fall = static_cast<int>(top_ / longest_);
-    touching_.set_detail(balls_of_falling);
+    touching_.set_detail(balls_of_falling, 2 * balls_of_falling);
     bool resting = false;
     for (int step = 0; step < fall + most_steps && !resting; ++step) {
       go_on(0.85 * step / (fall + most_steps));
       resting = advance(gravity, kept_of_speed) < at_rest && step > 20;
     }
-    touching_.set_detail(all_balls);
+    touching_.set_detail(balls_at_rest, all_balls);
     ranges_.clear();
     // Weight presses grains into each other: it fades, and then they part.
     for (int step = 0; step < fading_steps; ++step) {
@@ -199,7 +200,6 @@ class Settling {
   void meet() {
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
       const Grain& grain = grains_[i];
-      if (grain.shape->field.empty()) continue;  // balls do not roll: glass on glass does not roll far either
       const glm::dmat3& turn = touching_.turns()[i];
       bodies_[i].ease =
           turn * ease_of(*grain.shape) * glm::transpose(turn) * (bodies_[i].lightness / (grain.size * grain.size));

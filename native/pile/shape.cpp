@@ -15,8 +15,8 @@
 namespace mesograin::pile {
 namespace {
 
-constexpr double tolerance = 0.05;  // how far the surface may stand out of the balls
-constexpr std::size_t most_balls = 48;
+constexpr double tolerance = 0.04;  // how far the surface may stand out of the balls
+constexpr std::size_t most_balls = 160;
 constexpr std::size_t most_samples = 700;
 
 struct Sample {
@@ -112,7 +112,6 @@ Shape shape_of(const Mesh& mesh) {
   for (const glm::dvec3& vertex : mesh.vertices) shape.reach = std::max(shape.reach, glm::length(vertex));
   if (shape.reach - triangles.distance(glm::dvec3(0.0)) < tolerance) return ball_shape(shape.reach);
   shape.balls = cover(triangles, samples_of(mesh), shape.reach);
-  if (getenv("PILE_DEBUG")) printf("balls %zu\n", shape.balls.size());
   shape.thickness = 0.0;
   for (const Ball& ball : shape.balls) shape.thickness = std::max(shape.thickness, ball.radius);
   shape.field.emplace_back(triangles, shape.thickness + 0.3);

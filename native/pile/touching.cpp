@@ -82,7 +82,8 @@ void Touching::of_pair(std::uint32_t a, std::uint32_t b, double range, std::vect
   const glm::dmat3 axes = turns_[b] * other.shape->axes;
   const double reach = other.size * other.shape->reach;
   const glm::dvec3 half = other.size * other.shape->half;
-  for (std::uint32_t ball = 0; ball < balls_of(one); ++ball) {
+  const std::size_t most = std::min(by_grains_, one.shape->balls.size());
+  for (std::uint32_t ball = 0; ball < most; ++ball) {
     const Ball& there = balls_[first_ball_[a] + ball];
     const glm::dvec3 place = there.middle - other.middle;
     const double near = reach + there.radius + range;
@@ -103,7 +104,7 @@ void Touching::of_ground(std::uint32_t a, double range, std::vector<Meeting>& fo
   const double reach = grain.size * grain.shape->reach + range;
   const auto add = [&](Meeting meeting) {
     meeting.a = a;
-    for (meeting.ball = 0; meeting.ball < balls_of(grain); ++meeting.ball) {
+    for (meeting.ball = 0; meeting.ball < std::min(by_ground_, grain.shape->balls.size()); ++meeting.ball) {
       measure(meeting);
       if (meeting.gap < range) found.push_back(meeting);
     }

@@ -1,7 +1,6 @@
 // Where grains touch each other and what holds them: which balls may meet what, and where they do now.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
@@ -38,8 +37,12 @@ class Touching {
   /// Looks for all meetings whose gaps are less than the ranges of the two; pushes of those known before are kept.
   void look(const std::vector<double>& ranges);
 
-  /// How many balls of a grain are asked for from the next look on; the first of a shape's are those that tell most.
-  void set_detail(std::size_t most_balls) { most_balls_ = most_balls; }
+  /// How many balls of a grain are asked for from the next look on, by another grain and by the ground; the first of a
+  /// shape's are those that tell most.
+  void set_detail(std::size_t by_grains, std::size_t by_ground) {
+    by_grains_ = by_grains;
+    by_ground_ = by_ground;
+  }
 
   /// Measures gaps, normals and places anew.
   void measure();
@@ -56,7 +59,6 @@ class Touching {
  private:
   void turn();
   void recall();
-  std::size_t balls_of(const Grain& grain) const { return std::min(most_balls_, grain.shape->balls.size()); }
   void measure(Meeting& meeting) const;
   void of_pair(std::uint32_t a, std::uint32_t b, double range, std::vector<Meeting>& found) const;
   void of_ground(std::uint32_t a, double range, std::vector<Meeting>& found);
@@ -66,7 +68,8 @@ class Touching {
   double floor_;
   const Walls& walls_;
   std::vector<glm::dmat3> turns_;
-  std::size_t most_balls_ = std::numeric_limits<std::size_t>::max();
+  std::size_t by_grains_ = std::numeric_limits<std::size_t>::max();
+  std::size_t by_ground_ = by_grains_;
   std::vector<Ball> balls_;  // of all grains, where they are
   std::vector<std::size_t> first_ball_;
   std::vector<Meeting> meetings_;
