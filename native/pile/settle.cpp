@@ -21,8 +21,9 @@ namespace {
 constexpr double gravity = 0.04;
 constexpr double kept_of_speed = 0.93;
 constexpr double longest_step = 0.6;
-constexpr double near_enough = 0.06;          // who may meet before neighbours are looked for again
-constexpr double steps_ahead = 3.0;           // and in how many steps as long as the last
+constexpr double near_enough = 0.15;  // who may meet before neighbours are looked for again
+constexpr int most_ahead = 8;         // steps, for which a grain looks for others
+constexpr double farthest_ahead = 0.8;
 constexpr int most_contacts = 4;              // of one grain with another that count: those that are nearest
 constexpr double at_rest = 3e-3;              // a step, on average
 constexpr double most_taken_back = 0.15;      // of an overlap, in a step
@@ -114,7 +115,8 @@ class Settling {
         touching_(grains, surface, floor, walls),
         friction_(friction),
         bodies_(grains.size()),
-        speeds_(grains.size()) {
+        speeds_(grains.size()),
+        outlooks_(grains.size()) {
     top_ = 0.0;
     for (std::size_t i = 0; i < grains.size(); ++i) {
       const Grain& grain = grains[i];
@@ -135,7 +137,7 @@ class Settling {
       resting = advance(gravity, kept_of_speed) < at_rest && step > 20;
     }
     touching_.set_detail(balls_at_rest, all_balls);
-    ranges_.clear();
+    outlooks_.assign(bodies_.size(), {});
     // Weight presses grains into each other: it fades, and then they part.
     for (int step = 0; step < fading_steps; ++step) {
       go_on(0.85 + 0.05 * step / fading_steps);
@@ -145,17 +147,12 @@ class Settling {
       go_on(0.9 + 0.1 * step / last_steps);
       advance(0.0, 0.0);
     }
-    if (getenv("PILE_DEBUG"))
-      printf("steps %d meetings %zu contacts %zu looks %d\n", steps_, touching_.meetings().size(), contacts_.size(),
-             looks_);
     return overlap();
   }
 
  private:
   // How far a grain goes on average.
-  int steps_ = 0, looks_ = 0;
   double advance(double weight, double kept) {
-    ++steps_;
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
       Body& body = bodies_[i];
       body.moved = kept * body.moved - glm::dvec3(0.0, 0.0, weight);
@@ -182,19 +179,26 @@ class Settling {
     return longest;
   }
 
-  // Before anything goes farther than that, what may meet is known.
+  // As long as a grain strays no farther from the way it went when it looked, what it may meet is known.
   void look() {
-    bool known = !ranges_.empty();
-    for (std::size_t i = 0; i < bodies_.size() && known; ++i) known = left_[i] >= speeds_[i];
-    if (known) {
-      touching_.measure();
-      return;
+    bool known = true;
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+      const Body& body = bodies_[i];
+      Outlook& outlook = outlooks_[i];
+      outlook.old =
+          --outlook.steps_known < 0 || glm::length(outlook.strayed + body.moved - outlook.way) > outlook.slack;
+      if (!outlook.old) continue;
+      known = false;
+      const double length = glm::length(body.moved);
+      const int steps =
+          length * most_ahead > farthest_ahead ? std::max(1, static_cast<int>(farthest_ahead / length)) : most_ahead;
+      const double turning = glm::length(body.turned) * grains_[i].size * grains_[i].shape->reach;
+      outlook = {body.moved, glm::dvec3(0.0), near_enough + steps * turning, steps, steps - 1, true};
     }
-    ranges_.resize(bodies_.size());
-    for (std::size_t i = 0; i < bodies_.size(); ++i) ranges_[i] = near_enough + steps_ahead * speeds_[i];
-    left_ = ranges_;
-    ++looks_;
-    touching_.look(ranges_);
+    if (known)
+      touching_.measure();
+    else
+      touching_.look(outlooks_);
   }
 
   void meet() {
@@ -266,7 +270,8 @@ class Settling {
     for (std::uint32_t i = 0; i < bodies_.size(); ++i) {
       Body& body = bodies_[i];
       if (touching_.passes(i, body.moved)) body.moved = glm::dvec3(0.0);
-      left_[i] -= limit(body, grains_[i], longest_);
+      limit(body, grains_[i], longest_);
+      outlooks_[i].strayed += body.moved - outlooks_[i].way;
       sum += glm::length(body.moved);
       grains_[i].middle += body.moved;
       const double angle = glm::length(body.turned);
@@ -276,7 +281,7 @@ class Settling {
   }
 
   double overlap() {
-    touching_.look(std::vector<double>(bodies_.size(), 0.0));
+    touching_.look(std::vector<Outlook>(bodies_.size()));
     double largest = 0.0;
     for (const Meeting& meeting : touching_.meetings())
       if (meeting.b != nobody)
@@ -294,8 +299,7 @@ class Settling {
   double top_ = 0.0;
   double longest_ = longest_step;
   std::vector<double> speeds_;  // how far each may go in this step
-  std::vector<double> ranges_;
-  std::vector<double> left_;  // of its range
+  std::vector<Outlook> outlooks_;
   std::vector<Meeting*> chosen_;
   double overlap_ = 1.0;
 };

@@ -12,6 +12,7 @@ namespace mesograin::pile {
 namespace {
 
 constexpr double loose = 1.05;     // how far grains are apart before they fall
+constexpr double narrow = 0.3;     // half a free column's width, over the side of a cube as large
 constexpr double compact = 0.6;    // shortest over longest extent; such grains fall turned anyhow
 constexpr double most_tilt = 0.3;  // radians, of others
 constexpr double too_steep = 4.0;  // a rise over its run; nothing falls right beside such a wall
@@ -98,8 +99,8 @@ void place(std::vector<Grain>& grains, const Triangles& surface, double floor, c
   }
   const double spacing = 2.0 * loose * reach;
   const double layer = 2.0 * loose * half_layer;
-  // Without walls, a column as high as it is wide.
-  glm::dvec2 room(0.5 * std::cbrt(static_cast<double>(grains.size()) * spacing * spacing * layer));
+  // Without walls, a column higher than wide: what falls from a wide one is a flat heap.
+  glm::dvec2 room(narrow * std::cbrt(static_cast<double>(grains.size()) * spacing * spacing * layer));
   if (!surface.empty()) room = 0.5 * glm::dvec2(surface.upper() - surface.lower());
   if (walls.any()) room = glm::max(walls.half - reach, glm::dvec2(0.0));
   std::vector<Spot> spots = lattice(room, spacing);

@@ -20,13 +20,14 @@ void Touching::turn() {
   for (std::size_t i = 0; i < grains_.size(); ++i) turns_[i] = glm::mat3_cast(grains_[i].turn);
 }
 
-void Touching::recall() {
+void Touching::recall(std::size_t first) {
   const auto key = [](const Meeting& meeting) {
     return std::tie(meeting.a, meeting.b, meeting.triangle, meeting.ball);
   };
   std::sort(known_.begin(), known_.end(),
             [&](const Meeting& one, const Meeting& other) { return key(one) < key(other); });
-  for (Meeting& meeting : meetings_) {
+  for (std::size_t i = first; i < meetings_.size(); ++i) {
+    Meeting& meeting = meetings_[i];
     const auto before =
         std::lower_bound(known_.begin(), known_.end(), meeting,
                          [&](const Meeting& one, const Meeting& other) { return key(one) < key(other); });
@@ -36,21 +37,27 @@ void Touching::recall() {
   }
 }
 
-void Touching::look(const std::vector<double>& ranges) {
+void Touching::look(const std::vector<Outlook>& outlooks) {
   turn();
+  // Those that fall together come no nearer to each other.
+  glm::dvec3 common(0.0);
+  for (const Outlook& outlook : outlooks) common += outlook.way / static_cast<double>(outlooks.size());
   std::vector<glm::dvec3> middles;
   std::vector<double> reaches;
   for (const Grain& grain : grains_) {
     middles.push_back(grain.middle);
-    reaches.push_back(grain.size * grain.shape->reach + ranges[middles.size() - 1]);
+    reaches.push_back(grain.size * grain.shape->reach + outlooks[middles.size() - 1].slack +
+                      outlooks[middles.size() - 1].steps * glm::length(outlooks[middles.size() - 1].way - common));
   }
   balls_.clear();
   first_ball_.clear();
   for (std::size_t i = 0; i < grains_.size(); ++i) {
     const Grain& grain = grains_[i];
     first_ball_.push_back(balls_.size());
-    for (const Ball& ball : grain.shape->balls)
+    for (std::size_t k = 0; k < std::min(by_grains_, grain.shape->balls.size()); ++k) {
+      const Ball& ball = grain.shape->balls[k];
       balls_.push_back({grain.middle + grain.size * (turns_[i] * ball.middle), grain.size * ball.radius});
+    }
   }
   Pairs pairs;
   find_pairs(middles, reaches, 0.0, pairs);
@@ -59,20 +66,38 @@ void Touching::look(const std::vector<double>& ranges) {
     for (std::size_t part = first; part < last; ++part)
       for (std::size_t i = part * pairs_at_once; i < std::min(pairs.size(), (part + 1) * pairs_at_once); ++i) {
         const auto& [a, b] = pairs[i];
-        const double range = ranges[a] + ranges[b];
+        if (!outlooks[a].old && !outlooks[b].old) continue;
+        const double range =
+            outlooks[a].slack + outlooks[b].slack +
+            std::min(outlooks[a].steps, outlooks[b].steps) * glm::length(outlooks[a].way - outlooks[b].way);
+        if (glm::distance(grains_[a].middle, grains_[b].middle) >
+            grains_[a].size * grains_[a].shape->reach + grains_[b].size * grains_[b].shape->reach + range)
+          continue;
         of_pair(a, b, range, found[part]);
         if (!grains_[a].shape->field.empty() || !grains_[b].shape->field.empty()) of_pair(b, a, range, found[part]);
       }
   });
   // A plane's pushes are found anew.
   known_.clear();
+  const auto is_old = [&](const Meeting& meeting) {
+    return outlooks[meeting.a].old || (meeting.b != nobody && outlooks[meeting.b].old);
+  };
   for (const Meeting& meeting : meetings_)
-    if (meeting.push > 0.0 && (meeting.b != nobody || meeting.triangle != nobody)) known_.push_back(meeting);
-  meetings_.clear();
-  triangles_of_.assign(grains_.size(), {});
-  for (std::uint32_t a = 0; a < grains_.size(); ++a) of_ground(a, ranges[a], meetings_);
+    if (is_old(meeting) && meeting.push > 0.0 && (meeting.b != nobody || meeting.triangle != nobody))
+      known_.push_back(meeting);
+  std::erase_if(meetings_, is_old);
+  const std::size_t kept = meetings_.size();
+  in_parallel(kept, 4096, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) measure(meetings_[i]);
+  });
+  triangles_of_.resize(grains_.size());
+  for (std::uint32_t a = 0; a < grains_.size(); ++a) {
+    if (!outlooks[a].old) continue;
+    triangles_of_[a].clear();
+    of_ground(a, outlooks[a].slack + outlooks[a].steps * glm::length(outlooks[a].way), meetings_);
+  }
   for (const std::vector<Meeting>& part : found) meetings_.insert(meetings_.end(), part.begin(), part.end());
-  recall();
+  recall(kept);
 }
 
 void Touching::of_pair(std::uint32_t a, std::uint32_t b, double range, std::vector<Meeting>& found) const {

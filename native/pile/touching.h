@@ -29,13 +29,23 @@ struct Meeting {
   glm::dvec3 rub{0.0};       ///< across it
 };
 
+/// What a grain counted on when it looked for others.
+struct Outlook {
+  glm::dvec3 way{0.0};  ///< in a step
+  glm::dvec3 strayed{0.0};
+  double slack = 0.0;   ///< how far it may stray
+  int steps = 0;        ///< that it is good for
+  int steps_known = 0;  ///< of these, that are left
+  bool old = true;
+};
+
 class Touching {
  public:
   Touching(const std::vector<Grain>& grains, const Triangles& surface, double floor, const Walls& walls)
       : grains_(grains), surface_(surface), floor_(floor), walls_(walls) {}
 
-  /// Looks for all meetings whose gaps are less than the ranges of the two; pushes of those known before are kept.
-  void look(const std::vector<double>& ranges);
+  /// Looks anew for what grains may meet whose outlooks are old, pushes of those known before are kept.
+  void look(const std::vector<Outlook>& outlooks);
 
   /// How many balls of a grain are asked for from the next look on, by another grain and by the ground; the first of a
   /// shape's are those that tell most.
@@ -58,7 +68,7 @@ class Touching {
 
  private:
   void turn();
-  void recall();
+  void recall(std::size_t first);
   void measure(Meeting& meeting) const;
   void of_pair(std::uint32_t a, std::uint32_t b, double range, std::vector<Meeting>& found) const;
   void of_ground(std::uint32_t a, double range, std::vector<Meeting>& found);
