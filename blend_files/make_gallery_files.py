@@ -156,7 +156,7 @@ def grain_material(preset, changes, millimetres_per_unit):
 
 def pour(heap):
     """The scene of a Heap: a Blender unit is ten radii of a grain."""
-    from mesograin.grains import objects, pile
+    from mesograin.grains import kinds, objects, pile
 
     scene = parts.begin(SIZE)
     scene.view_settings.view_transform = "Standard"
@@ -170,7 +170,9 @@ def pour(heap):
         known[key] = known.get(key) or grain_material(preset, changes, scene.mesograin.millimetres_per_unit)
         data.materials.append(known[key])
         shapes.append(bpy.data.objects.new(data.name, data))
-    placings = pile.settle(heap.count, size, shapes=len(shapes), seed=1)
+    fallen = [kinds.make(kind, seed=number, segments=heap.segments, roundness=heap.roundness)
+              for number, (kind, _preset, _changes) in enumerate(heap.grains)]
+    placings = pile.settle(fallen, heap.count, size, seed=1)
     scene.collection.objects.link(objects.add_pile(placings, shapes, "Heap"))
     parts.add_ground(40.0, parts.plain_material("Ground", heap.ground))
     heap.light()

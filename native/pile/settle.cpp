@@ -21,20 +21,20 @@ namespace {
 constexpr double gravity = 0.04;
 constexpr double kept_of_speed = 0.93;
 constexpr double longest_step = 0.6;
-constexpr double near_enough = 0.15;  // who may meet before neighbours are looked for again
-constexpr int most_ahead = 8;         // steps, for which a grain looks for others
-constexpr double farthest_ahead = 0.8;
+constexpr double near_enough = 0.1;  // who may meet before neighbours are looked for again
+constexpr int most_ahead = 6;        // steps, for which a grain looks for others
+constexpr double farthest_ahead = 0.6;
 constexpr int most_contacts = 4;              // of one grain with another that count: those that are nearest
-constexpr double at_rest = 3e-3;              // a step, on average
+constexpr double at_rest = 6e-3;              // a step, on average
 constexpr double most_taken_back = 0.15;      // of an overlap, in a step
-constexpr std::size_t balls_of_falling = 14;  // of a grain, that are asked for before it rests
-constexpr int most_steps = 200;               // beyond the fall
-constexpr int iterations = 5;
+constexpr std::size_t balls_of_falling = 10;  // of a grain, that are asked for before it rests
+constexpr int most_steps = 120;               // beyond the fall
+constexpr int iterations = 4;
 constexpr std::size_t balls_at_rest = 64;  // by another grain; the ground asks for all
 constexpr std::size_t all_balls = std::numeric_limits<std::size_t>::max();
 constexpr int fading_steps = 20;  // under a weight that fades
-constexpr int last_steps = 40;    // under none
-constexpr double small_overlap = 0.01;
+constexpr int last_steps = 60;    // under none
+constexpr double small_overlap = 0.005;
 
 struct Body {
   double lightness = 1.0;  // 1 / mass

@@ -12,7 +12,7 @@ namespace mesograin::pile {
 namespace {
 
 constexpr double loose = 1.05;     // how far grains are apart before they fall
-constexpr double narrow = 0.3;     // half a free column's width, over the side of a cube as large
+constexpr double narrow = 0.45;    // half a free column's width, over the side of a cube as large
 constexpr double compact = 0.6;    // shortest over longest extent; such grains fall turned anyhow
 constexpr double most_tilt = 0.3;  // radians, of others
 constexpr double too_steep = 4.0;  // a rise over its run; nothing falls right beside such a wall
@@ -94,8 +94,9 @@ void place(std::vector<Grain>& grains, const Triangles& surface, double floor, c
   double reach = 0.0;
   double half_layer = 0.0;
   for (const Grain& grain : grains) {
-    reach = std::max(reach, grain.size * grain.shape->reach);
-    half_layer = std::max(half_layer, grain.size * half_height(*grain.shape));
+    const double room = is_compact(*grain.shape) ? 0.85 : 1.0;  // corners seldom meet, and are moved apart at once
+    reach = std::max(reach, room * grain.size * grain.shape->reach);
+    half_layer = std::max(half_layer, room * grain.size * half_height(*grain.shape));
   }
   const double spacing = 2.0 * loose * reach;
   const double layer = 2.0 * loose * half_layer;

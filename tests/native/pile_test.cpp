@@ -2,12 +2,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <random>
+#include <utility>
+#include <vector>
 
 #include "expect_error.h"
 #include "pile/contacts.h"
+#include "pile/field.h"
 #include "pile/settle.h"
 
 namespace mesograin::pile {
@@ -25,17 +29,48 @@ std::vector<double> some_radii(std::size_t count, double unit) {
 
 const Progress silent = [](double) { return true; };
 
+Grains balls(std::vector<double> radii) { return {std::move(radii), {}, {}}; }
+
+// Rectangles, each by four corners one after the other.
+Mesh rectangles(const std::vector<std::array<glm::dvec3, 4>>& all) {
+  Mesh mesh;
+  for (const auto& corners : all) {
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    mesh.vertices.insert(mesh.vertices.end(), corners.begin(), corners.end());
+    mesh.triangles.push_back({first, first + 1, first + 2});
+    mesh.triangles.push_back({first, first + 2, first + 3});
+  }
+  return mesh;
+}
+
+// Closed; each side twice as long as `half`.
+Mesh block(const glm::dvec3& half) {
+  std::vector<std::array<glm::dvec3, 4>> sides;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double sign : {-1.0, 1.0}) {
+      std::array<glm::dvec3, 4> side;
+      const double turns[4][2] = {{-1.0, -1.0}, {1.0, -1.0}, {1.0, 1.0}, {-1.0, 1.0}};
+      for (int i = 0; i < 4; ++i) {
+        side[i][axis] = sign * half[axis];
+        side[i][(axis + 1) % 3] = turns[i][0] * half[(axis + 1) % 3];
+        side[i][(axis + 2) % 3] = sign * turns[i][1] * half[(axis + 2) % 3];
+      }
+      sides.push_back(side);
+    }
+  return rectangles(sides);
+}
+
 TEST(Pile, FillsABoxAsDenselyAsBallsLie) {
   const std::vector<double> radii = some_radii(600, 0.05);
   const Walls walls{glm::dvec2(0.4)};
-  const Pile pile = settle(radii, {}, walls, 0.5, 1, silent);
+  const Pile pile = settle(balls(radii), {}, walls, 0.5, 1, silent);
   EXPECT_LT(pile.largest_overlap, 0.02);
   double volume = 0.0;
   double height = 0.0;
   for (std::size_t i = 0; i < radii.size(); ++i) {
     const glm::dvec3& middle = pile.middles[i];
     EXPECT_GE(middle.z, radii[i] * 0.98);
-    EXPECT_LE(std::max(std::abs(middle.x), std::abs(middle.y)) + radii[i], 0.4 + 1e-9);
+    EXPECT_LE(std::max(std::abs(middle.x), std::abs(middle.y)) + radii[i], 0.4 + 0.02 * 0.05);
     const double ball = 4.0 / 3.0 * 3.14159265358979 * radii[i] * radii[i] * radii[i];
     volume += ball;
     height += 2.0 * middle.z * ball;
@@ -48,8 +83,8 @@ TEST(Pile, FillsABoxAsDenselyAsBallsLie) {
 
 TEST(Pile, WithoutWallsItIsAHeapThatHolds) {
   const std::vector<double> radii = some_radii(600, 1.0);
-  const Pile rough = settle(radii, {}, {}, 0.6, 1, silent);
-  const Pile smooth = settle(radii, {}, {}, 0.0, 1, silent);
+  const Pile rough = settle(balls(radii), {}, {}, 0.6, 1, silent);
+  const Pile smooth = settle(balls(radii), {}, {}, 0.0, 1, silent);
   EXPECT_LT(rough.largest_overlap, 0.02);
   const auto height = [](const Pile& pile) {
     double sum = 0.0;
@@ -61,22 +96,64 @@ TEST(Pile, WithoutWallsItIsAHeapThatHolds) {
 }
 
 TEST(Pile, LiesOnTheGroundThatIsThere) {
-  // A trough along y.
-  Ground ground{{4.0, 0.0, 4.0, 4.0, 0.0, 4.0}, 3, {-8.0, -8.0}, {8.0, 16.0}};
+  // A trough along y, seen from either side.
+  const glm::dvec3 far(0.0, 16.0, 0.0);
+  const glm::dvec3 left(-8.0, -8.0, 4.0);
+  const glm::dvec3 bottom(0.0, -8.0, 0.0);
+  const glm::dvec3 right(8.0, -8.0, 4.0);
+  const Ground ground{
+      rectangles({{left, bottom, bottom + far, left + far}, {bottom, bottom + far, right + far, right}}), -10.0};
   const std::vector<double> radii = some_radii(60, 0.5);
-  const Pile pile = settle(radii, ground, {glm::dvec2(8.0)}, 0.2, 1, silent);
+  const Pile pile = settle(balls(radii), ground, {glm::dvec2(8.0)}, 0.2, 1, silent);
   double away = 0.0;
   for (std::size_t i = 0; i < radii.size(); ++i) {
-    EXPECT_GE(pile.middles[i].z, ground.height(pile.middles[i].x, pile.middles[i].y));
+    EXPECT_GE(pile.middles[i].z, 0.5 * std::abs(pile.middles[i].x));
     away += std::abs(pile.middles[i].x) / static_cast<double>(radii.size());
   }
   EXPECT_LT(away, 3.0) << "they rolled to its bottom";
 }
 
+TEST(Pile, StaysInAVesselThatIsOpenAbove) {
+  Mesh vessel = block({4.0, 4.0, 6.0});
+  // Its lid is the last side, two triangles.
+  vessel.triangles.resize(10);
+  const Pile pile = settle(balls(some_radii(150, 0.5)), {vessel, -6.0}, {}, 0.4, 1, silent);
+  for (const glm::dvec3& middle : pile.middles) {
+    EXPECT_LT(std::max(std::abs(middle.x), std::abs(middle.y)), 3.65);
+    EXPECT_GT(middle.z, -5.65);
+  }
+}
+
+TEST(Pile, BlocksLieOnTheirSides) {
+  const glm::dvec3 half(1.2, 0.8, 0.5);
+  const Grains grains{std::vector<double>(40, 1.0), std::vector<std::uint32_t>(40, 0), {block(half)}};
+  const Pile pile = settle(grains, {}, {}, 0.6, 2, silent);
+  EXPECT_LT(pile.largest_overlap, 0.05);
+  int flat = 0;
+  for (std::size_t i = 0; i < pile.middles.size(); ++i) {
+    double lowest = pile.middles[i].z;
+    for (int corner = 0; corner < 8; ++corner) {
+      const glm::dvec3 signs(corner % 2 * 2 - 1, corner / 2 % 2 * 2 - 1, corner / 4 * 2 - 1);
+      lowest = std::min(lowest, pile.middles[i].z + (pile.turns[i] * (signs * half)).z);
+    }
+    EXPECT_GT(lowest, -0.05);
+    if (lowest < 0.1 && std::abs((pile.turns[i] * glm::dvec3(0.0, 0.0, 1.0)).z) > 0.95) ++flat;
+  }
+  EXPECT_GT(flat, 10);
+}
+
+TEST(Pile, DistancesOfAMeshAreLessThanZeroInside) {
+  const Field field(Triangles(block({1.0, 0.7, 0.5})), 0.5);
+  EXPECT_NEAR(field.at({0.0, 0.0, 0.0}).distance, -0.5, 0.05);
+  EXPECT_NEAR(field.at({1.2, 0.1, 0.1}).distance, 0.2, 0.01);
+  EXPECT_NEAR(field.at({0.1, 0.95, 0.1}).outwards.y, 1.0, 0.01);
+  EXPECT_NEAR(field.at({1.3, 1.1, 0.0}).distance, 0.5, 0.02);
+}
+
 TEST(Pile, TheSameSeedIsTheSamePile) {
   const std::vector<double> radii = some_radii(50, 1.0);
-  EXPECT_EQ(settle(radii, {}, {}, 0.5, 3, silent).middles, settle(radii, {}, {}, 0.5, 3, silent).middles);
-  EXPECT_NE(settle(radii, {}, {}, 0.5, 3, silent).middles, settle(radii, {}, {}, 0.5, 4, silent).middles);
+  EXPECT_EQ(settle(balls(radii), {}, {}, 0.5, 3, silent).middles, settle(balls(radii), {}, {}, 0.5, 3, silent).middles);
+  EXPECT_NE(settle(balls(radii), {}, {}, 0.5, 3, silent).middles, settle(balls(radii), {}, {}, 0.5, 4, silent).middles);
 }
 
 TEST(Pile, EveryPairThatTouchesIsFoundOnce) {
@@ -97,11 +174,11 @@ TEST(Pile, EveryPairThatTouchesIsFoundOnce) {
 }
 
 TEST(Pile, MistakesAreSaidInASentence) {
-  expect_error([] { settle({}, {}, {}, 0.5, 0, silent); }, "at least one grain");
-  expect_error([] { settle({1.0, -1.0}, {}, {}, 0.5, 0, silent); }, "must be greater than 0; got -1");
-  expect_error([] { settle({1.0}, {}, {glm::dvec2(0.5)}, 0.5, 0, silent); }, "leave no room");
-  expect_error([] { settle({1.0}, {}, {}, -0.5, 0, silent); }, "Friction must be at least 0");
-  expect_error([] { settle({1.0, 1.0}, {}, {}, 0.5, 0, [](double) { return false; }); }, "was cancelled");
+  expect_error([] { settle(balls({}), {}, {}, 0.5, 0, silent); }, "at least one grain");
+  expect_error([] { settle(balls({1.0, -1.0}), {}, {}, 0.5, 0, silent); }, "must be greater than 0; got -1");
+  expect_error([] { settle(balls({1.0}), {}, {glm::dvec2(0.5)}, 0.5, 0, silent); }, "leave no room");
+  expect_error([] { settle(balls({1.0}), {}, {}, -0.5, 0, silent); }, "Friction must be at least 0");
+  expect_error([] { settle(balls({1.0, 1.0}), {}, {}, 0.5, 0, [](double) { return false; }); }, "was cancelled");
 }
 
 }  // namespace
