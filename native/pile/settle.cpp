@@ -147,6 +147,7 @@ class Settling {
       go_on(0.9 + 0.1 * step / last_steps);
       advance(0.0, 0.0);
     }
+    go_on(1.0);
     return overlap();
   }
 

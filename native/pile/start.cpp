@@ -3,10 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <limits>
 #include <numbers>
 #include <numeric>
+#include <optional>
 #include <random>
+#include <utility>
 
 namespace mesograin::pile {
 namespace {
@@ -16,6 +20,7 @@ constexpr double narrow = 0.45;    // half a free column's width, over the side 
 constexpr double compact = 0.6;    // shortest over longest extent; such grains fall turned anyhow
 constexpr double most_tilt = 0.3;  // radians, of others
 constexpr double too_steep = 4.0;  // a rise over its run; nothing falls right beside such a wall
+constexpr double well_away = 1.8;  // from an edge of what they fall on, in their reach
 constexpr int around = 8;          // places around a spot where the ground is asked for
 
 struct Spot {
@@ -72,19 +77,23 @@ std::optional<double> height_under(const Triangles& surface, const Spot& spot, d
   return height;
 }
 
-// Leaves the spots above the surface; all if it is too narrow for any. Returns the highest place below them.
+// Leaves the spots above the surface, those well away from its edges if there are any, and all if it is too narrow for
+// any: nothing shall fall on a vessel's rim. Returns the highest place below them.
 double leave_those_above(std::vector<Spot>& spots, const Triangles& surface, double reach) {
-  std::vector<Spot> above;
-  double highest = -std::numeric_limits<double>::infinity();
-  for (const Spot& spot : spots) {
-    const auto height = height_under(surface, spot, reach);
-    if (!height) continue;
-    highest = std::max(highest, *height);
-    above.push_back(spot);
+  for (const double from_edges : {well_away * reach, reach}) {
+    std::vector<Spot> above;
+    double highest = -std::numeric_limits<double>::infinity();
+    for (const Spot& spot : spots) {
+      const auto height = height_under(surface, spot, from_edges);
+      if (!height) continue;
+      highest = std::max(highest, *height);
+      above.push_back(spot);
+    }
+    if (above.empty()) continue;
+    spots = std::move(above);
+    return highest;
   }
-  if (above.empty()) return surface.upper().z;
-  spots = std::move(above);
-  return highest;
+  return surface.upper().z;
 }
 
 }  // namespace
