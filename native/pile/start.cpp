@@ -126,7 +126,8 @@ void place(std::vector<Grain>& grains, const Triangles& surface, double floor, c
     const Spot& spot = spots[i % spots.size()];
     const double x = spot.x + jitter(random);
     const double y = spot.y + jitter(random);
-    grain.middle = {x, y, ground + half_layer + layer * static_cast<double>(i / spots.size())};
+    const std::size_t below = i / spots.size();
+    grain.middle = {x, y, ground + half_layer + layer * static_cast<double>(below)};
     grain.turn = drawn_turn(*grain.shape, random);
   }
 }

@@ -66,7 +66,7 @@ class MESOGRAIN_OT_add_pile(bpy.types.Operator, _Habit):
     place: EnumProperty(name="Place", items=(
         ("HEAP", "Heap", "On the plane of the 3D cursor, as far as it runs out", 0),
         ("BOX", "Box", "Between upright walls around the 3D cursor", 1),
-        ("ACTIVE", "On Active Object", "On the surface of the active mesh, or in it if it is open above: a bowl, a jar", 2)))
+        ("ACTIVE", "On Active Object", "On the surface of the active mesh, or in it: a bowl, a jar", 2)))
     box: FloatProperty(name="Box", default=1.0, min=1e-5, subtype="DISTANCE", description="How far the walls are apart")
     settle_walls: BoolProperty(name="Walls", default=True,
                                description="Grains do not fall over the edge of the active object")
