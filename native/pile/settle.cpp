@@ -30,11 +30,11 @@ constexpr double most_taken_back = 0.15;      // of an overlap, in a step
 constexpr std::size_t balls_of_falling = 10;  // of a grain, that are asked for before it rests
 constexpr int most_steps = 120;               // beyond the fall
 constexpr int iterations = 4;
-constexpr std::size_t balls_at_rest = 64;  // by another grain; the ground asks for all
+constexpr std::size_t balls_at_rest = 72;  // by another grain; the ground asks for all
 constexpr std::size_t all_balls = std::numeric_limits<std::size_t>::max();
-constexpr int fading_steps = 20;  // under a weight that fades
-constexpr int last_steps = 60;    // under none
-constexpr double small_overlap = 0.005;
+constexpr int fading_steps = 12;  // under a weight that fades
+constexpr int last_steps = 80;    // under none
+constexpr double small_overlap = 0.015;
 
 struct Body {
   double lightness = 1.0;  // 1 / mass

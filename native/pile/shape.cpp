@@ -15,8 +15,8 @@
 namespace mesograin::pile {
 namespace {
 
-constexpr double tolerance = 0.04;  // how far the surface may stand out of the balls
-constexpr std::size_t most_balls = 160;
+constexpr double tolerance = 0.025;  // how far the surface may stand out of the balls
+constexpr std::size_t most_balls = 220;
 constexpr std::size_t most_samples = 700;
 
 struct Sample {
