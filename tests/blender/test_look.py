@@ -172,6 +172,8 @@ def test_every_preset_can_be_applied(native):
 
 
 def test_an_artist_s_own_preset_is_kept_and_found_again(native, tmp_path, monkeypatch):
+    # Which Blender calls after the preset that was chosen last.
+    monkeypatch.setattr(presets.MESOGRAIN_MT_own_presets, "bl_label", presets.MESOGRAIN_MT_own_presets.bl_label)
     monkeypatch.setattr(bpy.utils, "user_resource",
                         lambda kind, path="", create=False: str(tmp_path / kind.lower() / path))
     bpy.ops.mesh.primitive_uv_sphere_add()
