@@ -15,8 +15,10 @@
 namespace mesograin::pile {
 namespace {
 
-constexpr double loose = 1.05;     // how far grains are apart before they fall
-constexpr double narrow = 0.45;    // half a free column's width, over the side of a cube as large
+constexpr double loose = 1.05;   // how far grains are apart before they fall
+constexpr double narrow = 0.32;  // half a free column's width, over the side of a cube as large; of few grains
+constexpr double wide = 0.45;    // of so many that a higher column would take long to fall
+constexpr double many = 5000.0;
 constexpr double compact = 0.6;    // shortest over longest extent; such grains fall turned anyhow
 constexpr double most_tilt = 0.3;  // radians, of others
 constexpr double too_steep = 4.0;  // a rise over its run; nothing falls right beside such a wall
@@ -65,6 +67,18 @@ std::vector<Spot> lattice(const glm::dvec2& room, double spacing) {
   return spots;
 }
 
+// The same within the circle of as much area: a heap is round.
+std::vector<Spot> round_lattice(const glm::dvec2& half, double spacing) {
+  const glm::dvec2 room = 2.0 * std::numbers::inv_sqrtpi * half;
+  std::vector<Spot> spots = lattice(room, spacing);
+  const auto outside = [&](const Spot& spot) {
+    constexpr double within = 1.0 + 1e-9;
+    return glm::length(glm::dvec2(spot.x, spot.y) / room) > within;
+  };
+  spots.erase(std::remove_if(spots.begin(), spots.end(), outside), spots.end());
+  return spots.empty() ? std::vector<Spot>{{0.0, 0.0}} : spots;
+}
+
 // The height there if a grain that reaches so far falls on the surface and not beside it.
 std::optional<double> height_under(const Triangles& surface, const Spot& spot, double reach) {
   const auto height = surface.height(spot.x, spot.y);
@@ -110,10 +124,12 @@ void place(std::vector<Grain>& grains, const Triangles& surface, double floor, c
   const double spacing = 2.0 * loose * reach;
   const double layer = 2.0 * loose * half_layer;
   // Without walls, a column higher than wide: what falls from a wide one is a flat heap.
-  glm::dvec2 room(narrow * std::cbrt(static_cast<double>(grains.size()) * spacing * spacing * layer));
+  const auto count = static_cast<double>(grains.size());
+  glm::dvec2 room(glm::mix(narrow, wide, std::min(count / many, 1.0)) * std::cbrt(count * spacing * spacing * layer));
   if (!surface.empty()) room = 0.5 * glm::dvec2(surface.upper() - surface.lower());
   if (walls.any()) room = glm::max(walls.half - reach, glm::dvec2(0.0));
-  std::vector<Spot> spots = lattice(room, spacing);
+  const bool heap = surface.empty() && !walls.any();
+  std::vector<Spot> spots = heap ? round_lattice(room, spacing) : lattice(room, spacing);
   double ground = floor;
   if (!surface.empty()) ground = leave_those_above(spots, surface, reach);
 
