@@ -21,10 +21,12 @@ class Field {
   Value at(const glm::dvec3& place) const;
 
  private:
-  const float& node(int x, int y, int z) const {
-    return nodes_[static_cast<std::size_t>((z * size_[1] + y) * size_[0] + x)];
+  std::size_t number(int x, int y, int z) const {
+    const auto row = static_cast<std::size_t>(z) * static_cast<std::size_t>(size_[1]) + static_cast<std::size_t>(y);
+    return row * static_cast<std::size_t>(size_[0]) + static_cast<std::size_t>(x);
   }
-  float& node(int x, int y, int z) { return nodes_[static_cast<std::size_t>((z * size_[1] + y) * size_[0] + x)]; }
+  const float& node(int x, int y, int z) const { return nodes_[number(x, y, z)]; }
+  float& node(int x, int y, int z) { return nodes_[number(x, y, z)]; }
   void measure(const Triangles& mesh);
   void tell_inside(const Triangles& mesh);
 
