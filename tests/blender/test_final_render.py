@@ -1,4 +1,5 @@
 # F12 shows what the native module renders, pixel for pixel.
+import gc
 import random
 
 import addon_utils
@@ -56,6 +57,24 @@ def test_blend_files_render_as_the_native_module_does(native, render, blend_file
     latest = status.get(status.RENDER)
     assert (latest.samples, latest.width, latest.height, latest.warnings) == (4, 400, 400, ())
     assert latest.passes
+
+
+def test_an_engine_ends_with_its_render(render, blend_files):
+    """Not when Python next looks for cycles: a closed viewport would draw on until then."""
+    def engines():
+        return [found for found in gc.get_objects() if type(found) is engine.MesograinRenderEngine]
+
+    bpy.ops.wm.open_mainfile(filepath=str(blend_files / "sphere.blend"))
+    scene = bpy.context.scene
+    scene.mesograin.samples, scene.render.resolution_percentage = 1, 4
+    gc.collect()
+    before = engines()  # of which the class's own definition is one
+    gc.disable()
+    try:
+        render()
+        assert len(engines()) == len(before)
+    finally:
+        gc.enable()
 
 
 def test_transport_is_drawn(native, render, blend_files):

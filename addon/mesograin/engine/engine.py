@@ -35,7 +35,7 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
     def __init__(self, *args, **kwargs):
         super().__init__(*args, **kwargs)
         self._session = None
-        self._telling = telling.Telling(lambda text: self.update_stats("", text), bpy.app.background)
+        self._telling = telling.Telling(bpy.app.background)
         self._texture = None
         self._transparent = False  # whether the texture is
         self._warnings = ()
@@ -183,7 +183,7 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
                         seen = values
                     for now in self._draw_some(view, samples, budget):
                         if now - shown > SHOW_SECONDS:
-                            self._telling.say(budget.line(now))
+                            self._tell(budget.line(now))
                             yield budget.share(view.samples, now)
                             shown = time.perf_counter()
                     if view.samples and (self.test_break() or budget.is_over(time.perf_counter())):
@@ -215,10 +215,14 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
             return
         patience = waiting.Waiting()
         while view.preparing is not None and budget.waits_for_light(time.perf_counter()) and not self.test_break():
-            self._telling.say(patience.sentence(view.awaited, view.preparing or 0.0, time.perf_counter()))
+            self._tell(patience.sentence(view.awaited, view.preparing or 0.0, time.perf_counter()))
             time.sleep(grace.POLL_SECONDS)
             self._result(view.start_news(), view)
         self._result(view.start_news(), view)
+
+    def _tell(self, text):
+        if self._telling.is_due():
+            self.update_stats("", text)
 
     def _draw(self, view, samples):
         """Until they are drawn, or cancelled by the artist."""
@@ -227,7 +231,7 @@ class MesograinRenderEngine(bpy.types.RenderEngine):
         def tell():
             share = view.preparing
             if share is not None:
-                self._telling.say(patience.sentence(view.awaited, share, time.perf_counter()))
+                self._tell(patience.sentence(view.awaited, share, time.perf_counter()))
 
         self._result(view.start(samples), view, tell)
 

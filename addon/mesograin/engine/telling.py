@@ -6,15 +6,16 @@ LINE_SECONDS = 10.0
 
 
 class Telling:
-    """tell: what takes a text, as RenderEngine.update_stats its second; in_log: whether each ends in a log."""
+    """in_log: whether each line ends in a log."""
 
-    def __init__(self, tell, in_log):
-        self._tell, self._pause = tell, LINE_SECONDS if in_log else 0.0
+    def __init__(self, in_log):
+        self._pause = LINE_SECONDS if in_log else 0.0
         self._told = None
 
-    def say(self, text):
-        """Unless it is too soon after the last one."""
+    def is_due(self):
+        """Whether to say something now; if so, it counts as said."""
         now = time.perf_counter()
-        if self._told is None or now - self._told >= self._pause:
-            self._told = now
-            self._tell(text)
+        if self._told is not None and now - self._told < self._pause:
+            return False
+        self._told = now
+        return True
