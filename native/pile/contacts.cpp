@@ -1,65 +1,46 @@
-// Balls are sorted into the cells of a grid that is hashed, so that a wide pile costs no more than a deep one.
+// Balls are sorted into the cells of a grid that is hashed, so that a wide pile costs no more than a deep one; the few
+// that are wide into one of their own, so that they widen no others' cells.
 #include "pile/contacts.h"
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
-#include <glm/geometric.hpp>
+#include <utility>
 
 namespace mesograin::pile {
 namespace {
 
-struct Cell {
-  std::int32_t x, y, z;
-};
-
-// Optimized spatial hashing for collision detection of deformable objects, Teschner et al. 2003, section 4.2.
-std::size_t hashed(const Cell& cell, std::size_t mask) {
-  return ((static_cast<std::uint32_t>(cell.x) * 73856093U) ^ (static_cast<std::uint32_t>(cell.y) * 19349663U) ^
-          (static_cast<std::uint32_t>(cell.z) * 83492791U)) &
-         mask;
-}
-
-Cell cell_of(const glm::dvec3& middle, double size) {
-  return {static_cast<std::int32_t>(std::floor(middle.x / size)),
-          static_cast<std::int32_t>(std::floor(middle.y / size)),
-          static_cast<std::int32_t>(std::floor(middle.z / size))};
-}
+constexpr double not_wide = 0.95;  // of all balls
 
 }  // namespace
 
-void find_pairs(std::span<const glm::dvec3> middles, std::span<const double> radii, double margin, Pairs& pairs) {
-  pairs.clear();
-  const std::size_t count = middles.size();
-  if (count == 0) return;
-  const double size = 2.0 * *std::max_element(radii.begin(), radii.end()) + margin;
-  const std::size_t mask = std::bit_ceil(2 * count) - 1;
-  std::vector<std::uint32_t> first(mask + 2, 0);
-  std::vector<std::uint32_t> sorted(count);
-  for (const glm::dvec3& middle : middles) ++first[hashed(cell_of(middle, size), mask) + 1];
-  for (std::size_t i = 1; i < first.size(); ++i) first[i] += first[i - 1];
-  std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
-  for (std::uint32_t i = 0; i < count; ++i) sorted[next[hashed(cell_of(middles[i], size), mask)]++] = i;
+Neighbours::Neighbours(std::span<const glm::dvec3> middles, std::span<const double> radii)
+    : middles_(middles), radii_(radii) {
+  if (radii.empty()) return;
+  std::vector<double> sorted(radii.begin(), radii.end());
+  const auto limit = sorted.begin() + static_cast<std::ptrdiff_t>(not_wide * static_cast<double>(sorted.size() - 1));
+  std::nth_element(sorted.begin(), limit, sorted.end());
+  std::vector<std::uint32_t> usual;
+  std::vector<std::uint32_t> wide;
+  for (std::uint32_t i = 0; i < radii.size(); ++i) (radii[i] <= *limit ? usual : wide).push_back(i);
+  add_grid(usual);
+  if (!wide.empty()) add_grid(wide);
+}
 
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const Cell centre = cell_of(middles[i], size);
-    // Two of the 27 cells may share a hash; each of its balls is then met once.
-    std::size_t seen[27];
-    std::size_t seen_count = 0;
-    for (int neighbour = 0; neighbour < 27; ++neighbour) {
-      const Cell cell{centre.x + neighbour % 3 - 1, centre.y + neighbour / 3 % 3 - 1, centre.z + neighbour / 9 - 1};
-      const std::size_t hash = hashed(cell, mask);
-      if (std::find(seen, seen + seen_count, hash) != seen + seen_count) continue;
-      seen[seen_count++] = hash;
-      for (std::uint32_t place = first[hash]; place < first[hash + 1]; ++place) {
-        const std::uint32_t j = sorted[place];
-        if (j <= i) continue;
-        const glm::dvec3 apart = middles[i] - middles[j];
-        const double reach = radii[i] + radii[j] + margin;
-        if (glm::dot(apart, apart) < reach * reach) pairs.emplace_back(i, j);
-      }
-    }
+void Neighbours::add_grid(const std::vector<std::uint32_t>& numbers) {
+  Grid grid{0.0, std::bit_ceil(2 * numbers.size()) - 1, {}, std::vector<Ball>(numbers.size())};
+  for (const std::uint32_t i : numbers) grid.largest = std::max(grid.largest, radii_[i]);
+  grid.first.assign(grid.mask + 2, 0);
+  std::vector<Cell> cells;
+  cells.reserve(numbers.size());
+  for (const std::uint32_t i : numbers) {
+    cells.push_back(cell_of(middles_[i], 2.0 * grid.largest));
+    ++grid.first[hashed(cells.back(), grid.mask) + 1];
   }
+  for (std::size_t i = 1; i < grid.first.size(); ++i) grid.first[i] += grid.first[i - 1];
+  std::vector<std::uint32_t> next(grid.first.begin(), grid.first.end() - 1);
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+    grid.balls[next[hashed(cells[i], grid.mask)]++] = {middles_[numbers[i]], radii_[numbers[i]], cells[i], numbers[i]};
+  grids_.push_back(std::move(grid));
 }
 
 }  // namespace mesograin::pile

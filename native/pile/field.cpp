@@ -71,30 +71,44 @@ void Field::tell_inside(const Triangles& mesh) {
     }
 }
 
-Field::Value Field::at(const glm::dvec3& place) const {
-  const glm::dvec3 last = glm::dvec3(size_[0] - 1, size_[1] - 1, size_[2] - 1) - 1e-6;
-  const glm::dvec3 wanted = (place - lower_) / step_;
-  const glm::dvec3 u = glm::clamp(wanted, glm::dvec3(0.0), last);
-  const int x = static_cast<int>(u.x);
-  const int y = static_cast<int>(u.y);
-  const int z = static_cast<int>(u.z);
-  const glm::dvec3 t = u - glm::dvec3(x, y, z);
-  const float* corner = &node(x, y, z);
+Field::Cell Field::cell(const glm::vec3& place) const {
+  const glm::vec3 last = glm::vec3(size_[0] - 1, size_[1] - 1, size_[2] - 1) - 1e-4F;
+  const glm::vec3 wanted = (place - glm::vec3(lower_)) * static_cast<float>(1.0 / step_);
+  const glm::vec3 within = glm::clamp(wanted, glm::vec3(0.0F), last);
+  const int x = static_cast<int>(within.x);
+  const int y = static_cast<int>(within.y);
+  const int z = static_cast<int>(within.z);
+  const float beyond = wanted == within ? 0.0F : static_cast<float>(step_) * glm::length(wanted - within);
+  return {&nodes_[number(x, y, z)], within - glm::vec3(x, y, z), beyond};
+}
+
+float Field::distance(const glm::vec3& place) const {
+  const auto [corner, t, beyond] = cell(place);
   const std::size_t up = size_[0];
-  const std::size_t on = static_cast<std::size_t>(size_[0]) * size_[1];
-  const auto mix = [](double a, double b, double s) { return a + s * (b - a); };
+  const std::size_t on = up * static_cast<std::size_t>(size_[1]);
+  const auto row = [along = t.x](const float* from) { return from[0] + along * (from[1] - from[0]); };
+  const float below = row(corner) + t.y * (row(corner + up) - row(corner));
+  const float above = row(corner + on) + t.y * (row(corner + on + up) - row(corner + on));
+  return below + t.z * (above - below) + beyond;
+}
+
+Field::Value Field::at(const glm::vec3& place) const {
+  const auto [corner, t, beyond] = cell(place);
+  const std::size_t up = size_[0];
+  const std::size_t on = up * static_cast<std::size_t>(size_[1]);
+  const auto mix = [](float a, float b, float s) { return a + s * (b - a); };
   // Along x at the cell's four edges, and how it grows there.
-  const double edges[4] = {mix(corner[0], corner[1], t.x), mix(corner[up], corner[up + 1], t.x),
-                           mix(corner[on], corner[on + 1], t.x), mix(corner[on + up], corner[on + up + 1], t.x)};
-  const double rise[4] = {corner[1] - corner[0], corner[up + 1] - corner[up], corner[on + 1] - corner[on],
-                          corner[on + up + 1] - corner[on + up]};
-  const double below = mix(edges[0], edges[1], t.y);
-  const double above = mix(edges[2], edges[3], t.y);
-  glm::dvec3 outwards(mix(mix(rise[0], rise[1], t.y), mix(rise[2], rise[3], t.y), t.z),
-                      mix(edges[1] - edges[0], edges[3] - edges[2], t.z), above - below);
-  const double length = glm::length(outwards);
-  outwards = length > 1e-9 ? outwards / length : glm::dvec3(0.0, 0.0, 1.0);
-  return {mix(below, above, t.z) + step_ * glm::length(wanted - u), outwards};
+  const float edges[4] = {mix(corner[0], corner[1], t.x), mix(corner[up], corner[up + 1], t.x),
+                          mix(corner[on], corner[on + 1], t.x), mix(corner[on + up], corner[on + up + 1], t.x)};
+  const float rise[4] = {corner[1] - corner[0], corner[up + 1] - corner[up], corner[on + 1] - corner[on],
+                         corner[on + up + 1] - corner[on + up]};
+  const float below = mix(edges[0], edges[1], t.y);
+  const float above = mix(edges[2], edges[3], t.y);
+  glm::vec3 outwards(mix(mix(rise[0], rise[1], t.y), mix(rise[2], rise[3], t.y), t.z),
+                     mix(edges[1] - edges[0], edges[3] - edges[2], t.z), above - below);
+  const float length = glm::length(outwards);
+  outwards = length > 1e-9F ? outwards / length : glm::vec3(0.0F, 0.0F, 1.0F);
+  return {mix(below, above, t.z) + beyond, outwards};
 }
 
 }  // namespace mesograin::pile

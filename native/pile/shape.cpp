@@ -24,6 +24,11 @@ struct Sample {
   glm::dvec3 outwards;
 };
 
+struct Inner {
+  glm::dvec3 middle;
+  double radius;
+};
+
 std::vector<Sample> samples_of(const Mesh& mesh) {
   std::vector<Sample> samples(mesh.vertices.size());
   for (std::size_t i = 0; i < samples.size(); ++i) samples[i] = {mesh.vertices[i], glm::dvec3(0.0)};
@@ -39,7 +44,7 @@ std::vector<Sample> samples_of(const Mesh& mesh) {
   return some;
 }
 
-Ball largest_inside(const Triangles& triangles, const Sample& sample, double reach) {
+Inner largest_inside(const Triangles& triangles, const Sample& sample, double reach) {
   double radius = reach;
   for (int i = 0; i < 30; ++i) {
     const glm::dvec3 middle = sample.place - radius * sample.outwards;
@@ -55,18 +60,18 @@ Ball largest_inside(const Triangles& triangles, const Sample& sample, double rea
 }
 
 std::vector<Ball> cover(const Triangles& triangles, const std::vector<Sample>& samples, double reach) {
-  std::vector<Ball> candidates;
+  std::vector<Inner> candidates;
   candidates.reserve(samples.size());
   for (const Sample& sample : samples) candidates.push_back(largest_inside(triangles, sample, reach));
   std::vector<double> standing_out(samples.size(), std::numeric_limits<double>::infinity());
   std::vector<Ball> chosen;
   auto next =
       static_cast<std::size_t>(std::max_element(candidates.begin(), candidates.end(),
-                                                [](const Ball& a, const Ball& b) { return a.radius < b.radius; }) -
+                                                [](const Inner& a, const Inner& b) { return a.radius < b.radius; }) -
                                candidates.begin());
   while (chosen.size() < most_balls) {
-    const Ball& ball = candidates[next];
-    chosen.push_back(ball);
+    const Inner& ball = candidates[next];
+    chosen.push_back({glm::vec3(ball.middle), static_cast<float>(ball.radius)});
     for (std::size_t i = 0; i < samples.size(); ++i)
       standing_out[i] = std::min(standing_out[i], glm::distance(samples[i].place, ball.middle) - ball.radius);
     standing_out[next] = 0.0;
@@ -98,7 +103,8 @@ glm::dmat3 second_moments(const Mesh& mesh) {
 
 Shape ball_shape(double radius) {
   Shape shape;
-  shape.balls = {{glm::dvec3(0.0), radius}};
+  shape.balls = {{glm::vec3(0.0F), static_cast<float>(radius)}};
+  shape.support = Support(radius);
   shape.half = glm::dvec3(radius);
   shape.reach = shape.thickness = radius;
   return shape;
@@ -113,7 +119,8 @@ Shape shape_of(const Mesh& mesh) {
   if (shape.reach - triangles.distance(glm::dvec3(0.0)) < tolerance) return ball_shape(shape.reach);
   shape.balls = cover(triangles, samples_of(mesh), shape.reach);
   shape.thickness = 0.0;
-  for (const Ball& ball : shape.balls) shape.thickness = std::max(shape.thickness, ball.radius);
+  for (const Ball& ball : shape.balls) shape.thickness = std::max(shape.thickness, static_cast<double>(ball.radius));
+  shape.support = Support(mesh.vertices);
   shape.field.emplace_back(triangles, shape.thickness + 0.3);
 
   const glm::dmat3 moments = second_moments(mesh);

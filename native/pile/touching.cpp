@@ -4,202 +4,257 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 #include <tuple>
 
+#include "pile/contacts.h"
 #include "pile/parallel.h"
 
 namespace mesograin::pile {
 namespace {
 
-constexpr std::size_t pairs_at_once = 256;
+constexpr std::size_t grains_at_once = 64;
+constexpr std::size_t most_of_pair = 8;  // balls of a grain that another may meet until it looks again, the nearest
+
+bool nearer(const Meeting& one, const Meeting& other) {
+  return std::tie(one.gap, one.ball) < std::tie(other.gap, other.ball);
+}
 
 }  // namespace
 
+Touching::Touching(const std::vector<Grain>& grains, const Triangles& surface, double floor, const Walls& walls)
+    : grains_(grains), surface_(surface), planes_{{{0.0, 0.0, 1.0}, floor}}, gone_(grains.size()) {
+  if (!walls.any()) return;
+  for (const double sign : {1.0, -1.0}) {
+    planes_.push_back({{sign, 0.0, 0.0}, -walls.half.x});
+    planes_.push_back({{0.0, sign, 0.0}, -walls.half.y});
+  }
+}
+
 void Touching::turn() {
   turns_.resize(grains_.size());
-  for (std::size_t i = 0; i < grains_.size(); ++i) turns_[i] = glm::mat3_cast(grains_[i].turn);
+  in_parallel(grains_.size(), 4096, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) turns_[i] = glm::mat3(glm::mat3_cast(grains_[i].turn));
+  });
 }
 
 void Touching::recall(std::size_t first) {
-  const auto key = [](const Meeting& meeting) {
-    return std::tie(meeting.a, meeting.b, meeting.triangle, meeting.ball);
-  };
-  std::sort(known_.begin(), known_.end(),
-            [&](const Meeting& one, const Meeting& other) { return key(one) < key(other); });
-  for (std::size_t i = first; i < meetings_.size(); ++i) {
-    Meeting& meeting = meetings_[i];
-    const auto before =
-        std::lower_bound(known_.begin(), known_.end(), meeting,
-                         [&](const Meeting& one, const Meeting& other) { return key(one) < key(other); });
-    if (before == known_.end() || key(*before) != key(meeting)) continue;
-    meeting.push = before->push;
-    meeting.rub = before->rub;
-  }
+  const auto key = [](const Meeting& meeting) { return std::tie(meeting.a, meeting.b, meeting.side, meeting.ball); };
+  const auto before = [&](const Meeting& one, const Meeting& other) { return key(one) < key(other); };
+  std::sort(known_.begin(), known_.end(), before);
+  in_parallel(meetings_.size() - first, 4096, [&](std::size_t from, std::size_t to) {
+    for (std::size_t i = first + from; i < first + to; ++i) {
+      Meeting& meeting = meetings_[i];
+      const auto same = std::lower_bound(known_.begin(), known_.end(), meeting, before);
+      if (same == known_.end() || key(*same) != key(meeting)) continue;
+      meeting.push = same->push;
+      meeting.rub = same->rub;
+    }
+  });
 }
 
-void Touching::look(const std::vector<Outlook>& outlooks) {
-  turn();
+void Touching::find(const std::vector<Outlook>& outlooks) {
+  const std::size_t count = grains_.size();
   // Those that fall together come no nearer to each other.
   glm::dvec3 common(0.0);
-  for (const Outlook& outlook : outlooks) common += outlook.way / static_cast<double>(outlooks.size());
-  std::vector<glm::dvec3> middles;
-  std::vector<double> reaches;
-  for (const Grain& grain : grains_) {
-    middles.push_back(grain.middle);
-    reaches.push_back(grain.size * grain.shape->reach + outlooks[middles.size() - 1].slack +
-                      outlooks[middles.size() - 1].steps * glm::length(outlooks[middles.size() - 1].way - common));
-  }
-  balls_.clear();
-  first_ball_.clear();
-  for (std::size_t i = 0; i < grains_.size(); ++i) {
+  for (const Outlook& outlook : outlooks) common += outlook.way / static_cast<double>(count);
+  std::vector<glm::dvec3> middles(count);
+  std::vector<double> reaches(count);
+  for (std::size_t i = 0; i < count; ++i) {
     const Grain& grain = grains_[i];
-    first_ball_.push_back(balls_.size());
-    for (std::size_t k = 0; k < std::min(by_grains_, grain.shape->balls.size()); ++k) {
-      const Ball& ball = grain.shape->balls[k];
-      balls_.push_back({grain.middle + grain.size * (turns_[i] * ball.middle), grain.size * ball.radius});
-    }
+    const Outlook& outlook = outlooks[i];
+    middles[i] = grain.middle;
+    // What rests is asked for by what moves, which is good for so many steps at most.
+    const int steps = std::min(outlook.steps, most_ahead);
+    reaches[i] = grain.size * grain.shape->reach + outlook.slack + steps * glm::length(outlook.way - common);
   }
-  Pairs pairs;
-  find_pairs(middles, reaches, 0.0, pairs);
-  std::vector<std::vector<Meeting>> found(pairs.size() / pairs_at_once + 1);
-  in_parallel(found.size(), 4, [&](std::size_t first, std::size_t last) {
-    for (std::size_t part = first; part < last; ++part)
-      for (std::size_t i = part * pairs_at_once; i < std::min(pairs.size(), (part + 1) * pairs_at_once); ++i) {
-        const auto& [a, b] = pairs[i];
-        if (!outlooks[a].old && !outlooks[b].old) continue;
-        const double range =
-            outlooks[a].slack + outlooks[b].slack +
-            std::min(outlooks[a].steps, outlooks[b].steps) * glm::length(outlooks[a].way - outlooks[b].way);
-        if (glm::distance(grains_[a].middle, grains_[b].middle) >
-            grains_[a].size * grains_[a].shape->reach + grains_[b].size * grains_[b].shape->reach + range)
-          continue;
-        of_pair(a, b, range, found[part]);
-        if (!grains_[a].shape->field.empty() || !grains_[b].shape->field.empty()) of_pair(b, a, range, found[part]);
+  const Neighbours neighbours(middles, reaches);
+  found_.resize(count / grains_at_once + 1);
+  in_parallel(found_.size(), 2, [&](std::size_t first, std::size_t last) {
+    for (std::size_t part = first; part < last; ++part) {
+      found_[part].clear();
+      for (std::size_t i = part * grains_at_once; i < std::min(count, (part + 1) * grains_at_once); ++i) {
+        if (!outlooks[i].old) continue;
+        const auto a = static_cast<std::uint32_t>(i);
+        neighbours.visit(a, [&](std::uint32_t b) {
+          if (outlooks[b].old && b < a) return;
+          const double range =
+              outlooks[a].slack + outlooks[b].slack +
+              std::min(outlooks[a].steps, outlooks[b].steps) * glm::length(outlooks[a].way - outlooks[b].way);
+          if (apart(a, b, range)) return;
+          of_pair(a, b, range, found_[part]);
+          if (!grains_[a].shape->field.empty() || !grains_[b].shape->field.empty()) of_pair(b, a, range, found_[part]);
+        });
       }
+    }
   });
-  // A plane's pushes are found anew.
-  known_.clear();
+}
+
+void Touching::look(const std::vector<Outlook>& outlooks, std::span<const float> speeds) {
+  turn();
+  find(outlooks);
   const auto is_old = [&](const Meeting& meeting) {
     return outlooks[meeting.a].old || (meeting.b != nobody && outlooks[meeting.b].old);
   };
-  for (const Meeting& meeting : meetings_)
-    if (is_old(meeting) && meeting.push > 0.0 && (meeting.b != nobody || meeting.triangle != nobody))
-      known_.push_back(meeting);
-  std::erase_if(meetings_, is_old);
-  const std::size_t kept = meetings_.size();
-  in_parallel(kept, 4096, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) measure(meetings_[i]);
+  known_.clear();
+  std::erase_if(meetings_, [&](const Meeting& meeting) {
+    const bool old = is_old(meeting);
+    if (old && meeting.push > 0.0F) known_.push_back(meeting);
+    return old;
   });
+  const std::size_t kept = meetings_.size();
+  measure_first(kept, speeds);
   triangles_of_.resize(grains_.size());
   for (std::uint32_t a = 0; a < grains_.size(); ++a) {
     if (!outlooks[a].old) continue;
     triangles_of_[a].clear();
     of_ground(a, outlooks[a].slack + outlooks[a].steps * glm::length(outlooks[a].way), meetings_);
   }
-  for (const std::vector<Meeting>& part : found) meetings_.insert(meetings_.end(), part.begin(), part.end());
+  for (const std::vector<Meeting>& part : found_) meetings_.insert(meetings_.end(), part.begin(), part.end());
   recall(kept);
+}
+
+// Between planes across the line of their middles, each of which only touches a grain.
+bool Touching::apart(std::uint32_t a, std::uint32_t b, double range) const {
+  const Grain& one = grains_[a];
+  const Grain& other = grains_[b];
+  const glm::vec3 away(one.middle - other.middle);
+  const float distance = glm::length(away);
+  if (!(distance > 0.0F)) return false;
+  const glm::vec3 along = away / distance;
+  const double between = static_cast<double>(distance) - one.size * one.shape->support(-along * turns_[a]) -
+                         other.size * other.shape->support(along * turns_[b]);
+  return between > range;
 }
 
 void Touching::of_pair(std::uint32_t a, std::uint32_t b, double range, std::vector<Meeting>& found) const {
   const Grain& one = grains_[a];
   const Grain& other = grains_[b];
-  // Towards the other's own axes.
-  const glm::dmat3 axes = turns_[b] * other.shape->axes;
-  const double reach = other.size * other.shape->reach;
-  const glm::dvec3 half = other.size * other.shape->half;
+  // As the other grain sees them, which is as large as the unit sphere.
+  const auto unit = static_cast<float>(1.0 / other.size);
+  const auto size = static_cast<float>(one.size) * unit;
+  const float most_gap = static_cast<float>(range) * unit;
+  const glm::mat3 turn = size * (glm::transpose(turns_[b]) * turns_[a]);
+  const glm::vec3 middle = unit * (glm::vec3(one.middle - other.middle) * turns_[b]);
+  const float distance = glm::length(middle);
+  const glm::vec3 along = distance > 0.0F ? middle / distance : glm::vec3(0.0F, 0.0F, 1.0F);
+  // A plane that touches the other grain, and its own axes: what is beyond these need not be asked for.
+  const float beyond = distance - other.shape->support(along) - most_gap;
+  const glm::vec3 towards = along * turn;
+  const glm::mat3 axes(other.shape->axes);
+  const glm::vec3 half(other.shape->half);
   const std::size_t most = std::min(by_grains_, one.shape->balls.size());
+  const std::size_t before = found.size();
   for (std::uint32_t ball = 0; ball < most; ++ball) {
-    const Ball& there = balls_[first_ball_[a] + ball];
-    const glm::dvec3 place = there.middle - other.middle;
-    const double near = reach + there.radius + range;
-    if (glm::dot(place, place) > near * near) continue;
-    const glm::dvec3 beyond = glm::max(glm::abs(place * axes) - half, glm::dvec3(0.0));
-    if (glm::dot(beyond, beyond) > (there.radius + range) * (there.radius + range)) continue;
+    const Ball& there = one.shape->balls[ball];
+    const float radius = size * there.radius;
+    if (beyond + glm::dot(towards, there.middle) > radius) continue;
+    const glm::vec3 place = middle + turn * there.middle;
+    const glm::vec3 outside = glm::max(glm::abs(place * axes) - half, glm::vec3(0.0F));
+    const float near = radius + most_gap;
+    if (glm::dot(outside, outside) > near * near) continue;
+    if (!other.shape->field.empty() && other.shape->field.front().distance(place) > near) continue;
     Meeting meeting;
     meeting.a = a;
     meeting.b = b;
     meeting.ball = ball;
     measure(meeting);
-    if (meeting.gap < range) found.push_back(meeting);
+    if (meeting.gap < static_cast<float>(range)) found.push_back(meeting);
   }
+  if (found.size() - before <= most_of_pair) return;
+  const auto first = found.begin() + static_cast<std::ptrdiff_t>(before);
+  std::nth_element(first, first + most_of_pair, found.end(), nearer);
+  found.resize(before + most_of_pair);
 }
 
 void Touching::of_ground(std::uint32_t a, double range, std::vector<Meeting>& found) {
   const Grain& grain = grains_[a];
   const double reach = grain.size * grain.shape->reach + range;
-  const auto add = [&](Meeting meeting) {
+  const auto add = [&](std::size_t side) {
+    Meeting meeting;
     meeting.a = a;
+    meeting.side = static_cast<std::uint32_t>(side);
     for (meeting.ball = 0; meeting.ball < std::min(by_ground_, grain.shape->balls.size()); ++meeting.ball) {
       measure(meeting);
-      if (meeting.gap < range) found.push_back(meeting);
+      if (meeting.gap < static_cast<float>(range)) found.push_back(meeting);
     }
   };
-  const auto plane = [&](const glm::dvec3& normal, double from_origin) {
-    if (glm::dot(normal, grain.middle) - from_origin > reach) return;
-    Meeting meeting;
-    meeting.normal = normal;
-    meeting.from_origin = from_origin;
-    add(meeting);
-  };
-  plane({0.0, 0.0, 1.0}, floor_);
-  if (walls_.any()) {
-    plane({1.0, 0.0, 0.0}, -walls_.half.x);
-    plane({-1.0, 0.0, 0.0}, -walls_.half.x);
-    plane({0.0, 1.0, 0.0}, -walls_.half.y);
-    plane({0.0, -1.0, 0.0}, -walls_.half.y);
-  }
+  for (std::size_t i = 0; i < planes_.size(); ++i)
+    if (glm::dot(planes_[i].normal, grain.middle) - planes_[i].from_origin <= reach) add(surface_.size() + i);
   surface_.near(grain.middle, reach, triangles_of_[a]);
-  for (const std::uint32_t triangle : triangles_of_[a]) {
-    Meeting meeting;
-    meeting.triangle = triangle;
-    add(meeting);
-  }
+  for (const std::uint32_t triangle : triangles_of_[a]) add(triangle);
 }
 
-void Touching::measure() {
+void Touching::measure(std::span<const float> speeds) {
   turn();
-  in_parallel(meetings_.size(), 4096, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) measure(meetings_[i]);
+  measure_first(meetings_.size(), speeds);
+}
+
+void Touching::measure_first(std::size_t count, std::span<const float> speeds) {
+  in_parallel(count, 4096, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      Meeting& meeting = meetings_[i];
+      if (meeting.b != nobody) {
+        const auto nearer = static_cast<float>(gone_[meeting.a] + gone_[meeting.b]) - meeting.gone;
+        if (nearer == 0.0F || meeting.gap - nearer > near_in_step(speeds[meeting.a], speeds[meeting.b])) continue;
+      }
+      measure(meeting);
+    }
   });
 }
 
 void Touching::measure(Meeting& meeting) const {
+  if (meeting.b == nobody) return measure_side(meeting);
+  const Grain& grain = grains_[meeting.a];
+  const Grain& other = grains_[meeting.b];
+  const Ball& ball = grain.shape->balls[meeting.ball];
+  const auto size = static_cast<float>(grain.size);
+  const auto other_size = static_cast<float>(other.size);
+  const glm::vec3 arm = size * (turns_[meeting.a] * ball.middle);
+  const glm::vec3 away = glm::vec3(grain.middle - other.middle) + arm;
+  meeting.gone = static_cast<float>(gone_[meeting.a] + gone_[meeting.b]);
+  if (other.shape->field.empty()) {
+    const float distance = glm::length(away);
+    meeting.normal = distance > 0.0F ? away / distance : glm::vec3(0.0F, 0.0F, 1.0F);
+    meeting.gap = distance - other_size * static_cast<float>(other.shape->reach) - size * ball.radius;
+  } else {
+    const Field::Value value = other.shape->field.front().at(away * turns_[meeting.b] / other_size);
+    meeting.normal = turns_[meeting.b] * value.outwards;
+    meeting.gap = other_size * value.distance - size * ball.radius;
+  }
+  meeting.arm = arm - size * ball.radius * meeting.normal;
+}
+
+void Touching::measure_side(Meeting& meeting) const {
   const Grain& grain = grains_[meeting.a];
   const Ball& ball = grain.shape->balls[meeting.ball];
   const double radius = grain.size * ball.radius;
-  const glm::dvec3 middle = grain.middle + grain.size * (turns_[meeting.a] * ball.middle);
-  if (meeting.b != nobody) {
-    const Grain& other = grains_[meeting.b];
-    const glm::dvec3 apart = middle - other.middle;
-    if (other.shape->field.empty()) {
-      const double distance = glm::length(apart);
-      meeting.normal = distance > 0.0 ? apart / distance : glm::dvec3(0.0, 0.0, 1.0);
-      meeting.gap = distance - other.size * other.shape->reach - radius;
-    } else {
-      const Field::Value value = other.shape->field.front().at(apart * turns_[meeting.b] / other.size);
-      meeting.normal = turns_[meeting.b] * value.outwards;
-      meeting.gap = other.size * value.distance - radius;
-    }
-  } else if (meeting.triangle != nobody) {
-    const Triangle& triangle = surface_[meeting.triangle];
+  const glm::dvec3 arm = grain.size * glm::dvec3(turns_[meeting.a] * ball.middle);
+  const glm::dvec3 middle = grain.middle + arm;
+  glm::dvec3 normal;
+  double gap = 0.0;
+  if (meeting.side >= surface_.size()) {
+    const Plane& plane = planes_[meeting.side - surface_.size()];
+    normal = plane.normal;
+    gap = glm::dot(normal, middle) - plane.from_origin - radius;
+  } else {
+    const Triangle& triangle = surface_[meeting.side];
     const double above = glm::dot(grain.middle - triangle.corners[0], triangle.normal);
-    const glm::dvec3 up = above < 0.0 ? -triangle.normal : triangle.normal;
-    const double height = glm::dot(middle - triangle.corners[0], up);
-    meeting.normal = up;
+    normal = above < 0.0 ? -triangle.normal : triangle.normal;
+    const double height = glm::dot(middle - triangle.corners[0], normal);
     if (height < 0.0) {
       // It has gone through this triangle, or around its edge.
-      meeting.gap =
-          crossing(triangle, grain.middle, middle) ? height - radius : std::numeric_limits<double>::infinity();
+      gap = crossing(triangle, grain.middle, middle) ? height - radius : std::numeric_limits<double>::infinity();
     } else {
       const glm::dvec3 away = middle - nearest_on(triangle, middle);
       const double distance = glm::length(away);
-      if (distance > 1e-9) meeting.normal = away / distance;
-      meeting.gap = distance - radius;
+      if (distance > 1e-9) normal = away / distance;
+      gap = distance - radius;
     }
-  } else {
-    meeting.gap = glm::dot(meeting.normal, middle) - meeting.from_origin - radius;
   }
-  meeting.place = middle - radius * meeting.normal;
+  meeting.normal = glm::vec3(normal);
+  meeting.gap = static_cast<float>(gap);
+  meeting.arm = glm::vec3(arm - radius * normal);
 }
 
 bool Touching::passes(std::uint32_t a, const glm::dvec3& moved) const {

@@ -13,6 +13,7 @@
 #include "pile/contacts.h"
 #include "pile/field.h"
 #include "pile/settle.h"
+#include "pile/support.h"
 
 namespace mesograin::pile {
 namespace {
@@ -157,20 +158,40 @@ TEST(Pile, TheSameSeedIsTheSamePile) {
 }
 
 TEST(Pile, EveryPairThatTouchesIsFoundOnce) {
+  using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
   std::mt19937 random(2);
   std::uniform_real_distribution<double> place(-4.0, 4.0);
   std::vector<glm::dvec3> middles(300);
   for (glm::dvec3& middle : middles) middle = {place(random), place(random), place(random)};
-  const std::vector<double> radii = some_radii(300, 0.6);
+  std::vector<double> radii = some_radii(300, 0.65);
+  radii[7] = 3.0;
   Pairs expected;
   for (std::uint32_t i = 0; i < 300; ++i)
-    for (std::uint32_t j = i + 1; j < 300; ++j)
-      if (glm::distance(middles[i], middles[j]) < radii[i] + radii[j] + 0.1) expected.emplace_back(i, j);
+    for (std::uint32_t j = 0; j < 300; ++j)
+      if (i != j && glm::distance(middles[i], middles[j]) < radii[i] + radii[j]) expected.emplace_back(i, j);
   Pairs found;
-  find_pairs(middles, radii, 0.1, found);
+  const Neighbours neighbours(middles, radii);
+  for (std::uint32_t i = 0; i < 300; ++i) neighbours.visit(i, [&](std::uint32_t j) { found.emplace_back(i, j); });
   std::sort(found.begin(), found.end());
-  EXPECT_GT(expected.size(), 500U);
+  EXPECT_GT(expected.size(), 1000U);
   EXPECT_EQ(found, expected);
+}
+
+TEST(Pile, AGrainReachesAsFarAsItsCornersDo) {
+  const Mesh mesh = block({1.2, 0.8, 0.5});
+  const Support support(mesh.vertices);
+  std::mt19937 random(4);
+  std::normal_distribution<double> normal;
+  for (int i = 0; i < 300; ++i) {
+    const double x = normal(random);
+    const double y = normal(random);
+    const double z = normal(random);
+    const glm::dvec3 direction = glm::normalize(glm::dvec3(x, y, z));
+    const double farthest = glm::dot(glm::abs(direction), glm::dvec3(1.2, 0.8, 0.5));
+    EXPECT_GT(support(glm::vec3(direction)), farthest - 1e-5);
+    EXPECT_LT(support(glm::vec3(direction)), farthest + 0.1);
+  }
+  EXPECT_EQ(Support(2.0)(glm::vec3(0.0F, 0.6F, 0.8F)), 2.0F);
 }
 
 TEST(Pile, MistakesAreSaidInASentence) {
