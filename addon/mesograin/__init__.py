@@ -26,7 +26,7 @@ ROOMS = ("compat", "translations", "native_module", "grains.shape", "grains.kind
            for name in ("settings", "session", "job_session", "pictures", "operators", "panel", "results")),
          *(f"ui.compare_panel.{name}" for name in ("properties", "session", "operators", "panel")),
          *(f"ui.bake_panel.{name}" for name in ("properties", "compared", "session", "operators", "panel")),
-         *(f"ui.match_panel.{name}" for name in ("properties", "session", "operators", "panel")))
+         *(f"ui.match_panel.{name}" for name in ("properties", "session", "operators", "panel")), "ui.menus")
 # What there is instead where Blender's Python has no NumPy, as Debian's may be installed.
 ROOMS_WITHOUT_NUMPY = ("without_numpy",)
 # What scripts use, from `studies.scripting`.

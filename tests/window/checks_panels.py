@@ -145,8 +145,16 @@ def menu(window, area, name, call, what):
 def check_menus(window):
     yield from prepare(window, viewport=True)
     area = window.area_of_type("VIEW_3D")
-    for name in ("presets", "conversion", "add"):
+    for name in ("presets", "conversion", "add", "grain"):
         yield from menu(window, area, f"menu_{name}", bpy.ops.wm.call_menu, f"MESOGRAIN_MT_{name}")
+    with window.override(area):
+        bpy.ops.wm.search_menu("INVOKE_DEFAULT")
+    at = yield from window.point_at(area)
+    for letter in "grain":
+        window._window().event_simulate(type=letter.upper(), value="PRESS", unicode=letter, **at)
+        yield 0.05
+    yield from keep(window, area, "searched")
+    yield from window.press(area, "ESC")
 
 
 def check_tools(window):
