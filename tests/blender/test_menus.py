@@ -1,4 +1,4 @@
-# Object > Grain and the Render menu: what keys and Blender's menu search find of Mesograin, and that it works from there.
+# Object > Grain and the Render menu: what keys and Blender's menu search find of Mesograin, and that it works there.
 import types
 
 import bpy
@@ -6,9 +6,9 @@ import pytest
 from mesograin.scene import plain_materials
 from mesograin.ui import copy_grain, grain_tools, menus
 
-ELSEWHERE = {"cancel_bake", "cancel_compare", "cancel_match", "show_bake", "show_compared", "show_picture", "show_match",
-             "open_report", "apply_match", "apply_preset", "add_preset", "match", "select_named", "self_test",
-             "copy_diagnostics", "add_asset_library", "clear_references", "nothing", "hand"}
+ELSEWHERE = {"cancel_bake", "cancel_compare", "cancel_match", "show_bake", "show_picture", "show_match", "open_report",
+             "apply_match", "apply_preset", "add_preset", "match", "select_named", "self_test", "copy_diagnostics",
+             "add_asset_library", "clear_references", "nothing", "hand"}
 """Of results, of what a panel chose first, of a menu's own entries, and the preferences'."""
 
 
