@@ -10,8 +10,10 @@
 namespace mesograin::pile {
 
 /// The floor is a plane without end. A mesh on it has two sides, and whatever is on one of them stays there.
+/// `inside`: grains begin in the room that the mesh encloses, as many as fit, where they fall on it otherwise.
 struct Ground {
   Mesh mesh;
+  bool inside = false;
   double floor = 0.0;
 };
 

@@ -11,9 +11,12 @@
 #include <glm/matrix.hpp>
 #include <limits>
 #include <numeric>
+#include <optional>
+#include <utility>
 
 #include "base/error.h"
 #include "pile/parallel.h"
+#include "pile/pouring.h"
 #include "pile/solver.h"
 #include "pile/touching.h"
 
@@ -31,8 +34,11 @@ constexpr int least_steps = 20;
 constexpr double calm = 0.03;  // a step, on average; then little is left but creeping
 constexpr float kept_when_calm = 0.8F;
 constexpr double at_rest = 6e-3;              // a step, on average
+constexpr float creeping = 0.1F;              // a step, at most
+constexpr double falling = 0.5;               // of the longest step, of one alone
 constexpr std::size_t balls_of_falling = 12;  // of a grain, that are asked for before it rests
 constexpr int most_steps = 120;               // beyond the fall
+constexpr int pouring_steps = 6;              // between two looks for free places
 constexpr std::size_t balls_at_rest = 72;     // by another grain; the ground asks for all
 constexpr std::size_t all_balls = std::numeric_limits<std::size_t>::max();
 constexpr int fading_steps = 12;  // under a weight that fades
@@ -45,30 +51,28 @@ class Settling {
   Settling(std::vector<Grain>& grains, const Triangles& surface, double floor, const Walls& walls, double friction)
       : grains_(grains),
         touching_(grains, surface, floor, walls),
-        friction_(static_cast<float>(friction)),
-        bodies_(grains.size()),
-        eases_(grains.size()),
-        speeds_(grains.size()),
-        went_(grains.size()),
-        outlooks_(grains.size()) {
-    for (std::size_t i = 0; i < grains.size(); ++i) {
-      const Grain& grain = grains[i];
-      bodies_[i].lightness = static_cast<float>(1.0 / (grain.size * grain.size * grain.size));
-      eases_[i] = glm::mat3(glm::inverse(grain.shape->inertia) / std::pow(grain.size, 5.0));
-      top_ = std::max(top_, grain.middle.z - floor);
-      // Nothing thin may be passed within a step.
-      longest_ = std::min(longest_, grain.size * grain.shape->thickness);
-    }
-    longest_ = std::max(longest_, 0.2);
+        floor_(floor),
+        friction_(static_cast<float>(friction)) {
+    grow();
   }
 
-  double run(const std::function<void(double)>& go_on) {
-    const int fall = static_cast<int>(top_ / longest_);
+  /// Lets them fall, and those that are poured after them.
+  double run(Pouring* pouring, const std::function<void(double)>& go_on) {
     touching_.set_detail(balls_of_falling, 2 * balls_of_falling);
     double speed = gravity;
-    for (int step = 0; step < fall + most_steps && (speed > at_rest || step < least_steps); ++step) {
-      go_on(0.85 * step / (fall + most_steps));
-      speed = advance(gravity, speed < calm && step > least_steps ? kept_when_calm : kept_of_speed);
+    // Steps since grains came last.
+    for (int step = 0; step < most_fall() + most_steps; ++step) {
+      go_on(0.85 * step / (most_fall() + most_steps));
+      const bool resting = speed <= at_rest && fastest_ <= falling * longest_ && step >= least_steps;
+      if (pouring != nullptr && !pouring->done() && (resting || step % pouring_steps == 0) &&
+          pouring->pour(grains_) > 0) {
+        grow();
+        step = 0;
+      } else if (resting) {
+        break;
+      }
+      const bool is_calm = speed < calm && step > least_steps;
+      speed = advance(gravity, kept_of_speed, is_calm ? kept_when_calm : kept_of_speed);
     }
     touching_.set_detail(balls_at_rest, all_balls);
     most_ahead_ = 1;
@@ -76,21 +80,44 @@ class Settling {
     // Weight presses grains into each other: it fades, and then they part.
     for (int step = 0; step < fading_steps; ++step) {
       go_on(0.85 + 0.05 * step / fading_steps);
-      advance(gravity * (1.0F - static_cast<float>(step + 1) / fading_steps), 0.5F);
+      advance(gravity * (1.0F - static_cast<float>(step + 1) / fading_steps), 0.5F, 0.5F);
     }
     for (int step = 0; step < last_steps && (step == 0 || solver_.overlap() > small_overlap); ++step) {
       go_on(0.9 + 0.1 * step / last_steps);
-      advance(0.0F, 0.0F);
+      advance(0.0F, 0.0F, 0.0F);
     }
     go_on(1.0);
     return overlap();
   }
 
  private:
-  // How far a grain goes on average.
-  double advance(float weight, float kept) {
+  // For grains that are new.
+  void grow() {
+    const std::size_t before = bodies_.size();
+    const std::size_t count = grains_.size();
+    touching_.grow();
+    bodies_.resize(count);
+    eases_.resize(count);
+    speeds_.resize(count);
+    went_.resize(count);
+    outlooks_.resize(count);
+    for (std::size_t i = before; i < count; ++i) {
+      const Grain& grain = grains_[i];
+      bodies_[i].lightness = static_cast<float>(1.0 / (grain.size * grain.size * grain.size));
+      eases_[i] = glm::mat3(glm::inverse(grain.shape->inertia) / std::pow(grain.size, 5.0));
+      top_ = std::max(top_, grain.middle.z - floor_);
+      // Nothing thin may be passed within a step.
+      longest_ = std::max(std::min(longest_, grain.size * grain.shape->thickness), 0.2);
+    }
+  }
+
+  int most_fall() const { return static_cast<int>(top_ / longest_); }
+
+  // How far a grain goes on average. What creeps keeps another share of its speed than what falls.
+  double advance(float weight, float kept_of_falling, float kept_of_creeping) {
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
       Body& body = bodies_[i];
+      const float kept = glm::length(body.moved) > creeping ? kept_of_falling : kept_of_creeping;
       body.moved = kept * body.moved - glm::vec3(0.0F, 0.0F, weight);
       body.turned *= kept;
       speeds_[i] = limit(body, i);
@@ -149,6 +176,7 @@ class Settling {
 
   double move() {
     double sum = 0.0;
+    fastest_ = 0.0;
     for (std::uint32_t i = 0; i < bodies_.size(); ++i) {
       Body& body = bodies_[i];
       if (touching_.passes(i, body.moved)) body.moved = glm::vec3(0.0F);
@@ -157,7 +185,9 @@ class Settling {
       outlooks_[i].strayed += moved - outlooks_[i].way;
       grains_[i].middle += moved;
       went_[i] = moved;
-      sum += glm::length(moved);
+      const double length = glm::length(moved);
+      sum += length;
+      fastest_ = std::max(fastest_, length);
       const glm::dvec3 turned(body.turned);
       const double angle = glm::length(turned);
       outlooks_[i].turned += angle * reach(i);
@@ -178,10 +208,12 @@ class Settling {
   std::vector<Grain>& grains_;
   Touching touching_;
   Solver solver_;
+  double floor_;
   float friction_;
   std::vector<Body> bodies_;
   std::vector<glm::mat3> eases_;  // of turning, along a grain's own axes
   double top_ = 0.0;
+  double fastest_ = 0.0;
   double longest_ = longest_step;
   int most_ahead_ = most_ahead;
   std::vector<float> speeds_;     // how far each may go in this step
@@ -227,14 +259,26 @@ Pile settle(const Grains& grains, const Ground& ground, const Walls& walls, doub
   const Triangles surface(scaled);
   std::vector<Grain> placed(grains.radii.size());
   for (std::size_t i = 0; i < placed.size(); ++i) {
+    placed[i].number = static_cast<std::uint32_t>(i);
     placed[i].size = grains.radii[i] / unit;
     placed[i].shape = &shapes[grains.meshes.empty() ? 0 : grains.shapes[i]];
   }
-  const Walls held{walls.half / unit};
-  place(placed, surface, ground.floor / unit, held, seed);
+  const double floor = ground.floor / unit;
+  const Walls held = ground.inside ? Walls{} : Walls{walls.half / unit};
+  std::optional<Pouring> pouring;
+  if (ground.inside) {
+    if (surface.empty()) throw Error("A mesh that grains shall lie inside needs at least one triangle.");
+    pouring.emplace(std::exchange(placed, {}), surface, seed);
+    pouring->pour(placed);
+  } else {
+    place(placed, surface, floor, held, seed);
+  }
   Pile pile;
-  pile.largest_overlap = Settling(placed, surface, ground.floor / unit, held, friction).run(go_on);
+  pile.largest_overlap = Settling(placed, surface, floor, held, friction).run(pouring ? &*pouring : nullptr, go_on);
+  std::sort(placed.begin(), placed.end(),
+            [](const Grain& one, const Grain& other) { return one.number < other.number; });
   for (const Grain& grain : placed) {
+    pile.numbers.push_back(grain.number);
     pile.middles.push_back(unit * grain.middle);
     pile.turns.push_back(grain.turn);
   }

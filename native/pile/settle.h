@@ -20,7 +20,9 @@ struct Grains {
   std::vector<Mesh> meshes;
 };
 
+/// `numbers`: which of the grains lie there, in their order; all but where no more fit inside a mesh.
 struct Pile {
+  std::vector<std::uint32_t> numbers;
   std::vector<glm::dvec3> middles;
   std::vector<glm::dquat> turns;
   double largest_overlap = 0.0;  ///< of two grains, in radii of the smaller one
@@ -30,8 +32,9 @@ struct Pile {
 using Progress = std::function<bool(double)>;
 
 /// Lets the grains fall on the ground, z up, between the walls. The same `seed` gives the same pile.
+/// Inside a mesh walls are not asked for, and no more grains come than fit.
 /// `friction`: the coefficient of Coulomb's law, between grains and on the ground. Throws Error if there is no grain, a
-/// radius is not greater than 0, the walls leave no room, or it was ended.
+/// radius is not greater than 0, the walls or a mesh that they shall lie inside leave no room, or it was ended.
 Pile settle(const Grains& grains, const Ground& ground, const Walls& walls, double friction, std::uint64_t seed,
             const Progress& progress);
 

@@ -9,7 +9,6 @@
 #include <numbers>
 #include <numeric>
 #include <optional>
-#include <random>
 #include <utility>
 
 namespace mesograin::pile {
@@ -29,29 +28,9 @@ struct Spot {
   double x, y;
 };
 
-bool is_compact(const Shape& shape) { return shape.half[2] > compact * shape.half[0]; }
-
 double half_height(const Shape& shape) {
   if (is_compact(shape)) return shape.reach;
   return std::min(shape.reach, shape.half[2] * std::cos(most_tilt) + shape.half[0] * std::sin(most_tilt));
-}
-
-template <typename Random>
-glm::dquat drawn_turn(const Shape& shape, Random& random) {
-  std::normal_distribution<double> normal;
-  const double w = normal(random);
-  const double x = normal(random);
-  const double y = normal(random);
-  const double z = normal(random);
-  const glm::dquat any = glm::normalize(glm::dquat(w, x, y, z));
-  if (is_compact(shape)) return any;
-  std::uniform_real_distribution<double> turn(-std::numbers::pi, std::numbers::pi);
-  const double about_up = turn(random);
-  const double towards = turn(random);
-  const double tilt = std::uniform_real_distribution<double>(-most_tilt, most_tilt)(random);
-  const glm::dquat level = glm::quat_cast(glm::transpose(shape.axes));
-  return glm::angleAxis(tilt, glm::dvec3(std::cos(towards), std::sin(towards), 0.0)) *
-         glm::angleAxis(about_up, glm::dvec3(0.0, 0.0, 1.0)) * level;
 }
 
 std::vector<Spot> lattice(const glm::dvec2& room, double spacing) {
@@ -112,12 +91,31 @@ double leave_those_above(std::vector<Spot>& spots, const Triangles& surface, dou
 
 }  // namespace
 
+bool is_compact(const Shape& shape) { return shape.half[2] > compact * shape.half[0]; }
+
+glm::dquat drawn_turn(const Shape& shape, std::mt19937_64& random) {
+  std::normal_distribution<double> normal;
+  const double w = normal(random);
+  const double x = normal(random);
+  const double y = normal(random);
+  const double z = normal(random);
+  const glm::dquat any = glm::normalize(glm::dquat(w, x, y, z));
+  if (is_compact(shape)) return any;
+  std::uniform_real_distribution<double> turn(-std::numbers::pi, std::numbers::pi);
+  const double about_up = turn(random);
+  const double towards = turn(random);
+  const double tilt = std::uniform_real_distribution<double>(-most_tilt, most_tilt)(random);
+  const glm::dquat level = glm::quat_cast(glm::transpose(shape.axes));
+  return glm::angleAxis(tilt, glm::dvec3(std::cos(towards), std::sin(towards), 0.0)) *
+         glm::angleAxis(about_up, glm::dvec3(0.0, 0.0, 1.0)) * level;
+}
+
 void place(std::vector<Grain>& grains, const Triangles& surface, double floor, const Walls& walls, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   double reach = 0.0;
   double half_layer = 0.0;
   for (const Grain& grain : grains) {
-    const double room = is_compact(*grain.shape) ? 0.85 : 1.0;  // corners seldom meet, and are moved apart at once
+    const double room = is_compact(*grain.shape) ? compact_room : 1.0;
     reach = std::max(reach, room * grain.size * grain.shape->reach);
     half_layer = std::max(half_layer, room * grain.size * half_height(*grain.shape));
   }

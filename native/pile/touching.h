@@ -66,6 +66,9 @@ class Touching {
   /// as they are.
   void measure(std::span<const float> speeds);
 
+  /// There are more grains than before.
+  void grow() { gone_.resize(grains_.size()); }
+
   /// A grain went so far at most, any of its places.
   void went(std::uint32_t a, double far) { gone_[a] += far; }
 

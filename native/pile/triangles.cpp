@@ -5,6 +5,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/vector_relational.hpp>
 
 #include "base/error.h"
 
@@ -159,6 +160,17 @@ void Triangles::near(const glm::dvec3& place, double reach, std::vector<std::uin
        [&](std::uint32_t i) {
          if (glm::length(nearest_on(triangles_[i], place) - place) < reach) found.push_back(i);
        });
+}
+
+bool Triangles::between(const glm::dvec3& from, const glm::dvec3& to) const {
+  const glm::dvec3 least = glm::min(from, to);
+  const glm::dvec3 most = glm::max(from, to);
+  bool met = false;
+  const auto reaches = [&](const Node& node) {
+    return !met && glm::all(glm::lessThanEqual(node.lower, most)) && glm::all(glm::lessThanEqual(least, node.upper));
+  };
+  walk(reaches, [&](std::uint32_t i) { met = met || crossing(triangles_[i], from, to).has_value(); });
+  return met;
 }
 
 std::optional<double> Triangles::height(double x, double y) const {

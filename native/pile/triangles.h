@@ -48,6 +48,9 @@ class Triangles {
   /// Adds the numbers of those nearer to `place` than `reach`, the lower ones of the tree first.
   void near(const glm::dvec3& place, double reach, std::vector<std::uint32_t>& found) const;
 
+  /// Whether the line between two places meets a triangle.
+  bool between(const glm::dvec3& from, const glm::dvec3& to) const;
+
   /// The height where a line straight down meets the first of them.
   std::optional<double> height(double x, double y) const;
 

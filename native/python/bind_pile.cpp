@@ -41,14 +41,15 @@ py::tuple to_tuple(const pile::Pile& found) {
     const double parts[4] = {turn.w, turn.x, turn.y, turn.z};
     for (int part = 0; part < 4; ++part) turns.mutable_at(i, part) = parts[part];
   }
-  return py::make_tuple(middles, turns, found.largest_overlap);
+  const Array<std::uint32_t> numbers(static_cast<py::ssize_t>(found.numbers.size()), found.numbers.data());
+  return py::make_tuple(middles, turns, found.largest_overlap, numbers);
 }
 
 std::unique_ptr<pile::Work> start_settling(std::vector<double> radii, std::vector<std::uint32_t> shapes,
                                            const std::vector<Arrays>& meshes,
                                            const std::optional<std::pair<double, double>>& walls,
                                            const std::optional<Arrays>& surface, double floor, double friction,
-                                           std::uint64_t seed) {
+                                           std::uint64_t seed, bool inside) {
   pile::Grains grains{std::move(radii), std::move(shapes), {}};
   for (const Arrays& mesh : meshes) grains.meshes.push_back(to_mesh(mesh));
   pile::Walls held;
@@ -56,6 +57,7 @@ std::unique_ptr<pile::Work> start_settling(std::vector<double> radii, std::vecto
   pile::Ground ground;
   if (surface) ground.mesh = to_mesh(*surface);
   ground.floor = floor;
+  ground.inside = inside;
   return std::make_unique<pile::Work>(std::move(grains), std::move(ground), held, friction, seed);
 }
 
@@ -69,8 +71,9 @@ py::tuple result_of(pile::Work& work) {
 
 py::tuple settle(std::vector<double> radii, std::vector<std::uint32_t> shapes, const std::vector<Arrays>& meshes,
                  const std::optional<std::pair<double, double>>& walls, const std::optional<Arrays>& surface,
-                 double floor, double friction, std::uint64_t seed) {
-  return result_of(*start_settling(std::move(radii), std::move(shapes), meshes, walls, surface, floor, friction, seed));
+                 double floor, double friction, std::uint64_t seed, bool inside) {
+  return result_of(
+      *start_settling(std::move(radii), std::move(shapes), meshes, walls, surface, floor, friction, seed, inside));
 }
 
 }  // namespace
@@ -85,17 +88,19 @@ void bind_pile(py::module_& module) {
     module.def(name, function, py::arg("radii"), py::arg("shapes") = std::vector<std::uint32_t>(),
                py::arg("meshes") = std::vector<Arrays>(), py::arg("walls") = py::none(),
                py::arg("surface") = py::none(), py::arg("floor") = 0.0, py::arg("friction") = 0.5, py::arg("seed") = 0,
-               text);
+               py::arg("inside") = false, text);
   };
   define("start_settling", &start_settling, "As settle, without waiting: a Settling.");
   define(
       "settle", &settle,
-      "((n, 3) float64, (n, 4) float64, largest overlap): where grains of these radii lie after they fell, z up, and "
-      "how they are turned, as quaternions (w, x, y, z); the overlap in radii of the smaller grain. shapes: which of "
+      "((n, 3) float64, (n, 4) float64, largest overlap, (n,) uint32): where grains of these radii lie after they "
+      "fell, z up, and "
+      "how they are turned, as quaternions (w, x, y, z); the overlap in radii of the smaller grain; last, "
+      "which of the grains these are. shapes: which of "
       "meshes each has, closed and as large as the unit sphere, (vertices, triangles) each; without meshes they are "
       "balls. walls: (x, y), how far apart upright walls around the origin are; None lets the pile run out. surface: "
-      "(vertices, triangles) of what they fall on or into. floor: the height of the plane below it all. Raises "
-      "Error.");
+      "(vertices, triangles) of what they fall on or into. floor: the height of the plane below it all. inside: "
+      "they begin in the room that the surface encloses, as many as fit, and the others are left out. Raises Error.");
 }
 
 }  // namespace mesograin::python

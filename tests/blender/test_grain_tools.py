@@ -201,6 +201,30 @@ def test_a_pile_settles_in_a_vessel(native, thick):
     assert (placed[:, 2] - radii).min() > -0.005 and placed[:, 2].max() < 1.6
 
 
+def test_a_pile_lies_inside_a_closed_mesh(native):
+    bpy.ops.mesh.primitive_cube_add(size=2.0, location=(3.0, 1.0, 2.0))
+    cube = bpy.context.object
+    assert bpy.ops.mesograin.add_pile(kind="salt", count=150, place="INSIDE", size=0.1, segments=6) == {"FINISHED"}
+    heap = bpy.context.object
+    assert len(heap.data.vertices) == 150
+    into_cube = cube.matrix_world.inverted() @ heap.matrix_world
+    corners = np.array([into_cube @ corner for _, corners, _ in grains_of(heap) for corner in corners])
+    assert np.abs(corners).max() < 1.01 and corners[:, 2].mean() < -0.3, "they lie on its floor"
+
+
+def test_no_more_grains_come_than_fit_inside(native):
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=16, ring_count=8)
+    assert bpy.ops.mesograin.add_pile(kind="bead", count=1000, place="INSIDE", size=0.1, shapes=1) == {"FINISHED"}
+    heap = bpy.context.object
+    placed = np.array([vertex.co for vertex in heap.data.vertices])
+    radii = np.array([each.value for each in heap.data.attributes["size"].data])
+    assert (np.linalg.norm(placed, axis=1) + radii).max() < 1.005
+    # Of the ball's volume, in balls; random ones fill .55 to .64 of what is well within.
+    assert 0.35 < (radii ** 3).sum() < 0.64 and len(placed) < 1000
+    attributes = {name: len(heap.data.attributes[name].data) for name in ("turn", "size", "shape")}
+    assert set(attributes.values()) == {len(placed)}
+
+
 def test_the_same_seed_is_the_same_pile(native):
     shapes = pile.shapes_of(["salt", "rice"])
     once, other, again = (pile.Settling(shapes, 60, 0.1, seed=seed).result() for seed in (1, 2, 1))
@@ -248,6 +272,12 @@ def test_mistakes_are_said_in_a_sentence(native):
         bpy.ops.mesograin.add_pile(count=10, place="ACTIVE")
     with pytest.raises(RuntimeError, match="walls leave no room"):
         bpy.ops.mesograin.add_pile(count=10, size=1.0, place="BOX", box=0.5)
+    bpy.ops.mesh.primitive_plane_add()
+    with pytest.raises(RuntimeError, match="encloses no room: it must be closed"):
+        bpy.ops.mesograin.add_pile(count=10, size=0.05, place="INSIDE")
+    bpy.ops.mesh.primitive_cube_add()
+    with pytest.raises(RuntimeError, match="No grain fits inside"):
+        bpy.ops.mesograin.add_pile(count=10, size=2.0, place="INSIDE")
     bpy.ops.object.empty_add()
     bpy.context.object.select_set(True)
     with pytest.raises(RuntimeError, match="no active mesh"):

@@ -103,7 +103,7 @@ TEST(Pile, LiesOnTheGroundThatIsThere) {
   const glm::dvec3 bottom(0.0, -8.0, 0.0);
   const glm::dvec3 right(8.0, -8.0, 4.0);
   const Ground ground{
-      rectangles({{left, bottom, bottom + far, left + far}, {bottom, bottom + far, right + far, right}}), -10.0};
+      rectangles({{left, bottom, bottom + far, left + far}, {bottom, bottom + far, right + far, right}}), false, -10.0};
   const std::vector<double> radii = some_radii(60, 0.5);
   const Pile pile = settle(balls(radii), ground, {glm::dvec2(8.0)}, 0.2, 1, silent);
   double away = 0.0;
@@ -118,11 +118,74 @@ TEST(Pile, StaysInAVesselThatIsOpenAbove) {
   Mesh vessel = block({4.0, 4.0, 6.0});
   // Its lid is the last side, two triangles.
   vessel.triangles.resize(10);
-  const Pile pile = settle(balls(some_radii(150, 0.5)), {vessel, -6.0}, {}, 0.4, 1, silent);
+  const Pile pile = settle(balls(some_radii(150, 0.5)), {vessel, false, -6.0}, {}, 0.4, 1, silent);
   for (const glm::dvec3& middle : pile.middles) {
     EXPECT_LT(std::max(std::abs(middle.x), std::abs(middle.y)), 3.65);
     EXPECT_GT(middle.z, -5.65);
   }
+}
+
+// Of a block that is a grain.
+std::vector<glm::dvec3> corners_of(const Pile& pile, std::size_t i, const glm::dvec3& half) {
+  std::vector<glm::dvec3> corners;
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::dvec3 signs(corner % 2 * 2 - 1, corner / 2 % 2 * 2 - 1, corner / 4 * 2 - 1);
+    corners.push_back(pile.middles[i] + pile.turns[i] * (signs * half));
+  }
+  return corners;
+}
+
+TEST(Pile, InsideAClosedMeshAllThatFitStay) {
+  const Ground ground{block({5.0, 4.0, 6.0}), true, -6.0};
+  const glm::dvec3 half(0.8, 0.6, 0.5);
+  const auto filled = [&](std::size_t count) {
+    return settle({std::vector<double>(count, 1.0), std::vector<std::uint32_t>(count, 0), {block(half)}}, ground, {},
+                  0.5, 1, silent);
+  };
+  const Pile some = filled(60);
+  ASSERT_EQ(some.middles.size(), 60U);
+  const Pile full = filled(1000);
+  // Of the room, grains take half or more, but for what none falls into below the lid.
+  const double share = static_cast<double>(full.middles.size()) * half.x * half.y * half.z / (5.0 * 4.0 * 6.0);
+  EXPECT_GT(share, 0.4);
+  EXPECT_LT(share, 0.8);
+  EXPECT_EQ(full.numbers.size(), full.middles.size());
+  EXPECT_TRUE(std::is_sorted(full.numbers.begin(), full.numbers.end()));
+  double height = 0.0;
+  for (const Pile& pile : {some, full})
+    for (std::size_t i = 0; i < pile.middles.size(); ++i) {
+      height = std::max(height, pile.middles[i].z);
+      for (const glm::dvec3& corner : corners_of(pile, i, half)) {
+        EXPECT_LT(std::abs(corner.x), 5.05);
+        EXPECT_LT(std::abs(corner.y), 4.05);
+        EXPECT_LT(std::abs(corner.z), 6.05);
+      }
+    }
+  EXPECT_GT(height, 6.0 - 2.0 * glm::length(half)) << "full up to the lid";
+}
+
+TEST(Pile, InsideAMeshNoneIsLeftInTheAir) {
+  // Few at a time have room in so high a shaft.
+  const Ground ground{block({1.4, 1.4, 60.0}), true, -60.0};
+  const Pile pile = settle(balls(some_radii(40, 1.0)), ground, {}, 0.2, 1, silent);
+  ASSERT_EQ(pile.middles.size(), 40U);
+  std::vector<double> heights;
+  for (const glm::dvec3& middle : pile.middles) heights.push_back(middle.z);
+  std::sort(heights.begin(), heights.end());
+  EXPECT_LT(heights.front(), -58.0);
+  for (std::size_t i = 1; i < heights.size(); ++i) EXPECT_LT(heights[i] - heights[i - 1], 2.4);
+}
+
+TEST(Pile, InsideABottleIsWithinItsGlass) {
+  Mesh bottle = block({5.0, 5.0, 5.0});
+  const Mesh within = block({4.4, 4.4, 4.4});
+  const auto first = static_cast<std::uint32_t>(bottle.vertices.size());
+  bottle.vertices.insert(bottle.vertices.end(), within.vertices.begin(), within.vertices.end());
+  for (const auto& [a, b, c] : within.triangles) bottle.triangles.push_back({first + a, first + c, first + b});
+  const Pile pile = settle(balls(some_radii(40, 0.5)), {bottle, true, -5.0}, {}, 0.4, 1, silent);
+  EXPECT_EQ(pile.middles.size(), 40U);
+  for (const glm::dvec3& middle : pile.middles)
+    EXPECT_LT(std::max({std::abs(middle.x), std::abs(middle.y), std::abs(middle.z)}), 4.05);
 }
 
 TEST(Pile, BlocksLieOnTheirSides) {
@@ -133,10 +196,7 @@ TEST(Pile, BlocksLieOnTheirSides) {
   int flat = 0;
   for (std::size_t i = 0; i < pile.middles.size(); ++i) {
     double lowest = pile.middles[i].z;
-    for (int corner = 0; corner < 8; ++corner) {
-      const glm::dvec3 signs(corner % 2 * 2 - 1, corner / 2 % 2 * 2 - 1, corner / 4 * 2 - 1);
-      lowest = std::min(lowest, pile.middles[i].z + (pile.turns[i] * (signs * half)).z);
-    }
+    for (const glm::dvec3& corner : corners_of(pile, i, half)) lowest = std::min(lowest, corner.z);
     EXPECT_GT(lowest, -0.05);
     if (lowest < 0.1 && std::abs((pile.turns[i] * glm::dvec3(0.0, 0.0, 1.0)).z) > 0.95) ++flat;
   }
@@ -199,6 +259,13 @@ TEST(Pile, MistakesAreSaidInASentence) {
   expect_error([] { settle(balls({1.0, -1.0}), {}, {}, 0.5, 0, silent); }, "must be greater than 0; got -1");
   expect_error([] { settle(balls({1.0}), {}, {glm::dvec2(0.5)}, 0.5, 0, silent); }, "leave no room");
   expect_error([] { settle(balls({1.0}), {}, {}, -0.5, 0, silent); }, "Friction must be at least 0");
+  const auto inside = [](Mesh mesh) { return Ground{std::move(mesh), true, -2.0}; };
+  Mesh open = block(glm::dvec3(2.0));
+  open.triangles.resize(10);
+  expect_error([&] { settle(balls({0.5}), inside(open), {}, 0.5, 0, silent); }, "encloses no room: it must be closed");
+  expect_error([&] { settle(balls({3.0}), inside(block(glm::dvec3(2.0))), {}, 0.5, 0, silent); },
+               "No grain fits inside the mesh");
+  expect_error([&] { settle(balls({0.5}), inside({}), {}, 0.5, 0, silent); }, "needs at least one triangle");
   expect_error([] { settle(balls({1.0, 1.0}), {}, {}, 0.5, 0, [](double) { return false; }); }, "was cancelled");
 }
 

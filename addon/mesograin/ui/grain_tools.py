@@ -66,7 +66,9 @@ class MESOGRAIN_OT_add_pile(bpy.types.Operator, _Habit):
     place: EnumProperty(name="Place", items=(
         ("HEAP", "Heap", "On the plane of the 3D cursor, as far as it runs out", 0),
         ("BOX", "Box", "Between upright walls around the 3D cursor", 1),
-        ("ACTIVE", "On Active Object", "On the surface of the active mesh, or in it: a bowl, a jar", 2)))
+        ("ACTIVE", "On Active Object", "On the surface of the active mesh, or in it from above: a bowl, a jar", 2),
+        ("INSIDE", "Inside Active Object",
+         "In the room that the active mesh encloses, as many as fit: a box, a bottle, a body filled with grains", 3)))
     box: FloatProperty(name="Box", default=1.0, min=1e-5, subtype="DISTANCE", description="How far the walls are apart")
     settle_walls: BoolProperty(name="Walls", default=True,
                                description="Grains do not fall over the edge of the active object")
@@ -136,6 +138,10 @@ class MESOGRAIN_OT_add_pile(bpy.types.Operator, _Habit):
         except _sentences() as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
+        came = len(made.data.vertices)
+        if came < self.count:
+            self.report({"WARNING"}, f"{came} of {self.count} grains fit inside the active mesh: "
+                        "smaller grains or a larger mesh hold more.")
         made.location = place
         context.collection.objects.link(made)
         for other in context.selected_objects:
@@ -152,6 +158,8 @@ class MESOGRAIN_OT_add_pile(bpy.types.Operator, _Habit):
         if self.place == "BOX":
             return cursor, {"walls": (self.box, self.box)}
         place, span, surface = _surface(context)
+        if self.place == "INSIDE":
+            return place, {"surface": surface, "inside": True}
         return place, {"walls": span if self.settle_walls else None, "surface": surface}
 
 
