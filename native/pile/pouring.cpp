@@ -2,6 +2,7 @@
 #include "pile/pouring.h"
 
 #include <algorithm>
+#include <glm/common.hpp>
 #include <utility>
 
 #include "base/error.h"
@@ -27,13 +28,16 @@ Pouring::Pouring(std::vector<Grain> waiting, const Triangles& surface, std::uint
   }
   std::shuffle(waiting_.begin(), waiting_.end(), random_);
   const Room room(surface);
-  const double spacing = apart * reach_;
-  const glm::dvec3 first = surface.lower() + spacing;
-  const glm::dvec3& last = surface.upper();
-  for (double z = first.z; z < last.z && spots_.size() < spots_each * waiting_.size(); z += spacing)
-    for (double y = first.y; y < last.y; y += spacing)
-      for (double x = first.x; x < last.x; x += spacing)
-        if (room.fits({x, y, z}, reach_)) spots_.emplace_back(x, y, z);
+  // From wall to wall of a box, and no more spots than grains could need.
+  const glm::dvec3 first = surface.lower() + apart * reach_;
+  const glm::dvec3 span = glm::max(surface.upper() - surface.lower() - 2.0 * apart * reach_, glm::dvec3(0.0));
+  const glm::dvec3 steps = glm::max(glm::floor(span / (apart * reach_)), glm::dvec3(1.0));
+  for (int z = 0; z <= steps.z && spots_.size() < spots_each * waiting_.size(); ++z)
+    for (int y = 0; y <= steps.y; ++y)
+      for (int x = 0; x <= steps.x; ++x) {
+        const glm::dvec3 spot = first + span * glm::dvec3(x, y, z) / steps;
+        if (room.fits(spot, reach_)) spots_.push_back(spot);
+      }
   if (spots_.empty()) throw Error("No grain fits inside the mesh: choose smaller grains, or a larger mesh.");
 }
 

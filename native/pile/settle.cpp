@@ -24,17 +24,16 @@ namespace mesograin::pile {
 namespace {
 
 constexpr float gravity = 0.04F;
-constexpr float kept_of_speed = 0.93F;
+// Of the speed, in a step: grains that slide and roll on each other lose more of it, and so run out less far.
+constexpr float kept_of_falling = 0.93F;
+constexpr float kept_of_touching = 0.8F;
 constexpr double longest_step = 0.6;
 constexpr double near_enough = 0.06;  // who may meet before neighbours are looked for again
 constexpr double farthest_ahead = 0.6;
 constexpr double slow = 0.02;  // a step; so slow a grain is good for any number of them, until it has strayed
 constexpr int any_steps = 1000;
 constexpr int least_steps = 20;
-constexpr double calm = 0.03;  // a step, on average; then little is left but creeping
-constexpr float kept_when_calm = 0.8F;
 constexpr double at_rest = 6e-3;              // a step, on average
-constexpr float creeping = 0.1F;              // a step, at most
 constexpr double falling = 0.5;               // of the longest step, of one alone
 constexpr std::size_t balls_of_falling = 12;  // of a grain, that are asked for before it rests
 constexpr int most_steps = 120;               // beyond the fall
@@ -71,8 +70,7 @@ class Settling {
       } else if (resting) {
         break;
       }
-      const bool is_calm = speed < calm && step > least_steps;
-      speed = advance(gravity, kept_of_speed, is_calm ? kept_when_calm : kept_of_speed);
+      speed = advance(gravity, kept_of_falling, kept_of_touching);
     }
     touching_.set_detail(balls_at_rest, all_balls);
     most_ahead_ = 1;
@@ -113,11 +111,12 @@ class Settling {
 
   int most_fall() const { return static_cast<int>(top_ / longest_); }
 
-  // How far a grain goes on average. What creeps keeps another share of its speed than what falls.
-  double advance(float weight, float kept_of_falling, float kept_of_creeping) {
+  // How far a grain goes on average.
+  double advance(float weight, float kept_alone, float kept_touching) {
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
       Body& body = bodies_[i];
-      const float kept = glm::length(body.moved) > creeping ? kept_of_falling : kept_of_creeping;
+      const float kept = body.touched ? kept_touching : kept_alone;
+      body.touched = false;
       body.moved = kept * body.moved - glm::vec3(0.0F, 0.0F, weight);
       body.turned *= kept;
       speeds_[i] = limit(body, i);

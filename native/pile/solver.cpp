@@ -213,6 +213,10 @@ void Solver::solve(std::vector<Body>& bodies, float friction) {
     });
   on_all([&](Contact& contact) {
     hold_apart(contact, bodies);
+    if (contact.push > 0.0F) {
+      bodies[contact.a].touched = true;
+      if (contact.b != nobody) bodies[contact.b].touched = true;
+    }
     contact.meeting->push = contact.push;
     contact.meeting->rub = contact.rub;
   });

@@ -17,6 +17,7 @@ struct Body {
   glm::vec3 moved{0.0F};  ///< within a step
   glm::vec3 turned{0.0F};
   float lightness = 1.0F;  ///< 1 / mass
+  bool touched = false;    ///< pushed by another or the ground, in the last step
   glm::mat3 ease{0.0F};    ///< of turning: the inverse inertia
 };
 

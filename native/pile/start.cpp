@@ -1,4 +1,4 @@
-// A lattice with room for each grain however it is turned.
+// A lattice with room for each grain however it is turned; of a heap, a cone of it.
 #include "pile/start.h"
 
 #include <algorithm>
@@ -14,15 +14,14 @@
 namespace mesograin::pile {
 namespace {
 
-constexpr double loose = 1.05;   // how far grains are apart before they fall
-constexpr double narrow = 0.32;  // half a free column's width, over the side of a cube as large; of few grains
-constexpr double wide = 0.45;    // of so many that a higher column would take long to fall
-constexpr double many = 5000.0;
-constexpr double compact = 0.6;    // shortest over longest extent; such grains fall turned anyhow
-constexpr double most_tilt = 0.3;  // radians, of others
-constexpr double too_steep = 4.0;  // a rise over its run; nothing falls right beside such a wall
-constexpr double well_away = 1.8;  // from an edge of what they fall on, in their reach
-constexpr int around = 8;          // places around a spot where the ground is asked for
+constexpr double loose = 1.05;      // how far grains are apart before they fall
+constexpr double steep = 4.5;       // a heap's height over its radius before it falls together
+constexpr double in_circle = 1.02;  // of its rim
+constexpr double compact = 0.6;     // shortest over longest extent; such grains fall turned anyhow
+constexpr double most_tilt = 0.3;   // radians, of others
+constexpr double too_steep = 4.0;   // a rise over its run; nothing falls right beside such a wall
+constexpr double well_away = 1.8;   // from an edge of what they fall on, in their reach
+constexpr int around = 8;           // places around a spot where the ground is asked for
 
 struct Spot {
   double x, y;
@@ -46,16 +45,29 @@ std::vector<Spot> lattice(const glm::dvec2& room, double spacing) {
   return spots;
 }
 
-// The same within the circle of as much area: a heap is round.
-std::vector<Spot> round_lattice(const glm::dvec2& half, double spacing) {
-  const glm::dvec2 room = 2.0 * std::numbers::inv_sqrtpi * half;
-  std::vector<Spot> spots = lattice(room, spacing);
-  const auto outside = [&](const Spot& spot) {
-    constexpr double within = 1.0 + 1e-9;
-    return glm::length(glm::dvec2(spot.x, spot.y) / room) > within;
-  };
-  spots.erase(std::remove_if(spots.begin(), spots.end(), outside), spots.end());
-  return spots.empty() ? std::vector<Spot>{{0.0, 0.0}} : spots;
+// Of a cone, the lowest first: each layer lies in the hollows of that below it, as balls do in the closest packing.
+// What falls from a column is a table with steep edges; a cone stays one and sinks as its grains come nearer to each
+// other.
+std::vector<glm::dvec3> cone(std::size_t count, double spacing, double full_layer) {
+  const double layer = full_layer / std::numbers::sqrt2;
+  const double volume = static_cast<double>(count) * spacing * spacing * layer;
+  const double radius = std::cbrt(3.0 * volume / (std::numbers::pi * steep));
+  std::vector<glm::dvec3> spots;
+  for (int number = 0; spots.size() < count; ++number) {
+    const double height = layer * number;
+    const double within = in_circle * radius - height / steep;
+    const double shift = number % 2 == 0 ? 0.0 : 0.5 * spacing;
+    const int half = static_cast<int>(std::max(within, 0.0) / spacing) + 1;
+    const std::size_t before = spots.size();
+    for (int row = -half; row <= half; ++row)
+      for (int column = -half; column <= half; ++column) {
+        const double x = spacing * column + shift;
+        const double y = spacing * row + shift;
+        if (x * x + y * y <= within * within) spots.emplace_back(x, y, height);
+      }
+    if (spots.size() == before) spots.emplace_back(0.0, 0.0, height);
+  }
+  return spots;
 }
 
 // The height there if a grain that reaches so far falls on the surface and not beside it.
@@ -121,15 +133,22 @@ void place(std::vector<Grain>& grains, const Triangles& surface, double floor, c
   }
   const double spacing = 2.0 * loose * reach;
   const double layer = 2.0 * loose * half_layer;
-  // Without walls, a column higher than wide: what falls from a wide one is a flat heap.
-  const auto count = static_cast<double>(grains.size());
-  glm::dvec2 room(glm::mix(narrow, wide, std::min(count / many, 1.0)) * std::cbrt(count * spacing * spacing * layer));
-  if (!surface.empty()) room = 0.5 * glm::dvec2(surface.upper() - surface.lower());
-  if (walls.any()) room = glm::max(walls.half - reach, glm::dvec2(0.0));
-  const bool heap = surface.empty() && !walls.any();
-  std::vector<Spot> spots = heap ? round_lattice(room, spacing) : lattice(room, spacing);
   double ground = floor;
-  if (!surface.empty()) ground = leave_those_above(spots, surface, reach);
+  std::vector<glm::dvec3> places;
+  if (surface.empty() && !walls.any()) {
+    places = cone(grains.size(), spacing, layer);
+  } else {
+    glm::dvec2 room(0.0);
+    if (!surface.empty()) room = 0.5 * glm::dvec2(surface.upper() - surface.lower());
+    if (walls.any()) room = glm::max(walls.half - reach, glm::dvec2(0.0));
+    std::vector<Spot> spots = lattice(room, spacing);
+    if (!surface.empty()) ground = leave_those_above(spots, surface, reach);
+    for (std::size_t i = 0; i < grains.size(); ++i) {
+      const Spot& spot = spots[i % spots.size()];
+      const std::size_t below = i / spots.size();
+      places.emplace_back(spot.x, spot.y, layer * static_cast<double>(below));
+    }
+  }
 
   std::vector<std::size_t> order(grains.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -137,11 +156,9 @@ void place(std::vector<Grain>& grains, const Triangles& surface, double floor, c
   std::uniform_real_distribution<double> jitter(-(loose - 1.0) * half_layer, (loose - 1.0) * half_layer);
   for (std::size_t i = 0; i < order.size(); ++i) {
     Grain& grain = grains[order[i]];
-    const Spot& spot = spots[i % spots.size()];
-    const double x = spot.x + jitter(random);
-    const double y = spot.y + jitter(random);
-    const std::size_t below = i / spots.size();
-    grain.middle = {x, y, ground + half_layer + layer * static_cast<double>(below)};
+    const double x = places[i].x + jitter(random);
+    const double y = places[i].y + jitter(random);
+    grain.middle = {x, y, ground + half_layer + places[i].z};
     grain.turn = drawn_turn(*grain.shape, random);
   }
 }
