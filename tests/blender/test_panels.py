@@ -59,15 +59,11 @@ class Layout:
         if text == "":
             self.whole.append(name)
 
-    def prop_with_menu(self, owner, name, menu, text=None):
-        self.menu(menu)
-        self.prop(owner, name, text=text)
-
     def prop_decorator(self, _owner, name):
         self.dotted.append(name)
 
-    def menu(self, name, **_):
-        self.menus.append(name)
+    def menu(self, menu, **_):
+        self.menus.append(menu)
 
     def label(self, text="", **_):
         """Of a column of its own."""

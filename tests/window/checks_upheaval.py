@@ -49,6 +49,21 @@ def check_objects_come_and_go_while_rendering(window):
     yield from settle(window, area)
 
 
+def check_tabs_are_shown_and_left_while_rendering(window):
+    """Blender frees what was drawn of a tab when it shows another."""
+    area = yield from window.open("sphere", samples=ENDLESS)
+    grain = bpy.data.materials["Translucent"].mesograin
+    bpy.context.view_layer.objects.active = bpy.data.objects["Sphere"]
+    properties = yield from window.render_properties(area)
+    for model in models.NAMES:
+        grain.model = model
+        for tab in ("MATERIAL", "DATA", "VIEW_LAYER", "WORLD", "RENDER"):
+            properties.spaces.active.context = tab
+            yield from window.seconds(0.2)
+    yield from window.restore()
+    yield from settle(window, area)
+
+
 def check_film_turns_transparent_and_back_while_rendering(window):
     area = yield from window.open("sphere")
     opaque = yield from window.converged_picture(area)

@@ -186,13 +186,23 @@ class MESOGRAIN_MT_profiles(bpy.types.Menu):
             self.layout.prop_enum(grain, "profile", profile)
 
 
+def _profile_label(grain):
+    choices = parameters.PARAMETERS["profile"].choices
+    return next(choice.label for choice in choices if choice.name == grain.profile)
+
+
 def _choose_profile(layout, grain):
-    """As `choose`, of those that the model knows."""
-    named = layout.use_property_split
-    if not named:
-        layout = layout.column(align=True)
-        layout.label(text="Profile")
-    layout.prop_with_menu(grain, "profile", menu=MESOGRAIN_MT_profiles.bl_idname, **({} if named else {"text": ""}))
+    """As `choose`, of those that the model knows. Not by prop_with_menu: Blender 4.3 dies when it frees what that
+    drew."""
+    menu = {"menu": MESOGRAIN_MT_profiles.bl_idname, "text": _profile_label(grain)}
+    if layout.use_property_split:
+        row = layout.row(heading="Profile")
+        row.menu(**menu)
+        row.prop_decorator(grain, "profile")
+        return
+    column = layout.column(align=True)
+    column.label(text="Profile")
+    column.menu(**menu)
 
 
 class MESOGRAIN_PT_light(MesograinPanel, bpy.types.Panel):
