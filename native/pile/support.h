@@ -43,7 +43,8 @@ class Support {
     return std::min(0.5F * static_cast<float>(cells) * (place + 1.0F), last);
   }
   static std::size_t number(int side, int i, int j) {
-    return static_cast<std::size_t>((side * nodes_along + j) * nodes_along + i);
+    constexpr std::size_t along = nodes_along;
+    return (static_cast<std::size_t>(side) * along + static_cast<std::size_t>(j)) * along + static_cast<std::size_t>(i);
   }
 
   float radius_ = 0.0F;
