@@ -156,6 +156,7 @@ Gather::ScatteredLight Gather::scattered_in(const SeenFacet& seen) const {
 
 void Gather::follow_look(SeenFacet seen, const Facets& facets, const Look& how, transport::Random& random,
                          Through& sum) const {
+  const std::uint32_t seen_first = seen.grain;
   glm::vec3 weight(1.0F);
   bool crosses = false;  // the grain that is seen, and its model tells how much does
   for (int through = 0; through < most_looked_into; ++through) {
@@ -194,7 +195,9 @@ void Gather::follow_look(SeenFacet seen, const Facets& facets, const Look& how, 
     // What else the grain that is seen makes of the lights is its model's, or highlights().
     const bool straight = passage->entered && !passage->scattered;
     if (!passage->wall && (!first || (straight && !asks_lights) || (passage->scattered && how.whole))) {
-      const float spread = spread_of(seen.grain, *passage, how, facets);
+      // What one of many shows of a sun through another is specks, however it is seen.
+      const float spread = how.alone && seen.grain == seen_first ? spread_of_alpha * facets.finish(seen.grain).roughness
+                                                                 : spread_of(*passage, how.narrowed);
       glm::vec3 found = lights_along(seen.grain, *passage, spread, facets, random);
       if (!how.alone) found += glare_along(seen.grain, *passage, spread, facets, random);
       (passage->scattered ? sum.scattered : sum.lights) += weight * found;
@@ -224,9 +227,8 @@ void Gather::follow_look(SeenFacet seen, const Facets& facets, const Look& how, 
   }
 }
 
-float Gather::spread_of(std::uint32_t grain, const Passage& passage, const Look& how, const Facets& facets) const {
-  if (how.alone) return spread_of_alpha * facets.finish(grain).roughness;
-  return how.narrowed * (passage.scattered ? spread_of_scattered : passage.flat ? spread_of_facets : least_spread);
+float Gather::spread_of(const Passage& passage, float narrowed) {
+  return narrowed * (passage.scattered ? spread_of_scattered : passage.flat ? spread_of_facets : least_spread);
 }
 
 // Kaplanyan and Dachsbacher 2013, section 4.3 and their supplement: of a mollifier in two dimensions.

@@ -127,7 +127,7 @@ class Gather {
   };
   ScatteredLight scattered_in(const SeenFacet& seen) const;
   /// In how wide a cone lights are seen where a look leaves a grain, at the least: its half angle.
-  float spread_of(std::uint32_t grain, const Passage& passage, const Look& how, const Facets& facets) const;
+  static float spread_of(const Passage& passage, float narrowed);
   /// `spread`: the least half angle of the cone in which a light is seen.
   glm::vec3 lights_along(std::uint32_t grain, const Passage& passage, float spread, const Facets& facets,
                          transport::Random& random) const;

@@ -139,8 +139,10 @@ std::optional<heap::Meeting> ContentFacets::inside(std::uint32_t grain, const gl
 std::optional<heap::Meeting> ContentFacets::beyond(std::uint32_t grain, const glm::vec3& origin,
                                                    const glm::vec3& direction) const {
   const std::size_t object = objects_[grain];
-  // What it lies on begins where it ends.
-  std::optional<Hit> hit = first_hit(origin - clear_of(object, origin) * direction, direction, object, 0.0F);
+  const float clearance = clear_of(object, origin);
+  // What it lies on begins where it ends. A jar has another wall beyond this one.
+  std::optional<Hit> hit =
+      first_hit(origin - clearance * direction, direction, object, roles_[object].pane ? 2.0F * clearance : 0.0F);
   for (int passed = 0; hit && passed < most_passed; ++passed) {
     const Exchange::Role& role = roles_[hit->object];
     // One that reaches into the grain that is looked through is not met from inside.

@@ -7,6 +7,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/vector_relational.hpp>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <utility>
@@ -26,10 +27,16 @@ struct Shape {
   bool grain;
   double radius_over_reach;  // of the sphere of its area
   double roundness;
+
+  double thickness_over_reach() const { return radius_over_reach * std::sqrt(roundness); }
 };
 
 // A ground, a wall or a bowl encloses little for its area (the isoperimetric quotient; a sphere's is 1, a cube's .52).
 constexpr double least_roundness = 0.02;
+
+// What such a one of glass is among grains, over its reach: a jar holds others, and no ball of its area stands where it
+// does. It is looked into, and takes no part in what they send each other.
+constexpr float pane_over_reach = 1e-6F;
 
 // Of a mesh that stands for a ball.
 constexpr double roundness_of_balls = 0.95;
@@ -96,11 +103,14 @@ class Gatherer {
       if (may_be_grain(draw)) radii.push_back(radius_of(draw));
     const auto middle = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2);
     std::nth_element(radii.begin(), middle, radii.end());
+    const float usual = radii.empty() ? std::numeric_limits<float>::infinity() : *middle;
     for (const Draw& draw : content.draws()) {
-      const bool large = is_plain(draw.look) && radius_of(draw) > wall_over_grain * *middle;
+      const bool large = is_plain(draw.look) && radius_of(draw) > wall_over_grain * usual;
+      const glm::vec4 ball(glm::vec3(draw.centre - content.anchor()), static_cast<float>(draw.reach));
       if (may_be_grain(draw) && !large)
-        add(draw.source, draw.look,
-            glm::vec4(glm::vec3(draw.centre - content.anchor()), static_cast<float>(draw.reach)));
+        add(draw.source, draw.look, ball);
+      else if (is_pane(draw))
+        add_pane(draw, ball);
       else
         add_wall(draw, content.anchor());
     }
@@ -129,27 +139,46 @@ class Gatherer {
     return !is_plain(draw.look) || cache_->closed(draw.source);
   }
 
+  // A jar, a bottle, a pane.
+  bool is_pane(const Draw& draw) {
+    const Shape& of = shape(*draw.source);
+    if (of.grain || !(of.roundness > 0.0) || !(draw.reach > 0.0) || !cache_->closed(draw.source)) return false;
+    const heap::Optics optics = heap::optics_of(draw.look, draw.reach * of.thickness_over_reach());
+    return optics.clear() && optics.scatters_little();
+  }
+
   float radius_of(const Draw& draw) { return static_cast<float>(draw.reach * shape(*draw.source).radius_over_reach); }
 
   void add(const scene::MeshPointer& mesh, const scene::Material& material, const glm::vec4& ball) {
-    const double radius = ball.w * shape(*mesh).radius_over_reach;
     roles.emplace_back();
+    const double radius = ball.w * shape(*mesh).radius_over_reach;
     if (!shape(*mesh).grain || !(radius > 0.0)) return;
     roles.back().ball = shape(*mesh).roundness > roundness_of_balls;
+    add_grain(shape(*mesh), material, ball, static_cast<float>(radius));
+  }
+
+  void add_pane(const Draw& draw, const glm::vec4& ball) {
+    roles.emplace_back();
+    roles.back().pane = true;
+    add_grain(shape(*draw.source), draw.look, ball, pane_over_reach * ball.w);
+  }
+
+  /// `radius`: of the sphere that it is to others.
+  void add_grain(const Shape& shape, const scene::Material& material, const glm::vec4& ball, float radius) {
     balls = balls && roles.back().ball;
     roles.back().grain = static_cast<std::uint32_t>(grains.grains.size());
     // The mean way of light through a body is 4 V / A, whatever its shape and however it scatters, so that what a grain
     // absorbs is right if the ball's is as long (Blanco and Fournier, "An invariance property of diffusive random
     // walks", 2003, eq. 1). Of balls of one area it goes as the square root of the roundness.
-    const double as_thick = radius * std::sqrt(shape(*mesh).roundness);
-    const bool lens = shape(*mesh).roundness > roundness_of_lenses;
+    const double as_thick = ball.w * shape.thickness_over_reach();
+    const bool lens = shape.roundness > roundness_of_lenses;
     heap::Optics about = heap::optics_of(material, rounded(as_thick, radii_an_octave));
     about.lens = lens;
     const std::uint32_t of = alike_.kind(about);
     if (of == kinds_.size()) kinds_.push_back({material, lens});
     kinds_[of].logarithms += std::log2(as_thick);
     ++kinds_[of].count;
-    grains.grains.push_back({glm::vec3(ball), static_cast<float>(radius), of, 1.0F});
+    grains.grains.push_back({glm::vec3(ball), radius, of, 1.0F});
   }
 
   /// Grains have been given the number of a Kind each.

@@ -1,4 +1,5 @@
 # Materials of which nothing of Mesograin was ever chosen: what their nodes say, and what is left out by name.
+import bmesh
 import bpy
 import pytest
 from test_export import add_camera, add_cube, add_sun, read_scene
@@ -78,12 +79,67 @@ def test_emission_is_seen(material, render):
     assert drawn()[1] == ()
 
 
-@pytest.mark.parametrize("kind", ["ShaderNodeBsdfGlass", "ShaderNodeMixShader"])
+@pytest.mark.parametrize("kind", ["ShaderNodeBsdfToon", "ShaderNodeMixShader"])
 def test_none_is_black(material, kind):
     material.diffuse_color = (*COLOUR, 1.0)
     shade(material, kind)
     values, [sentence] = drawn()
     assert min(values["reflectance"]) > 0.0 and "Material 'Paint'" in sentence
+
+
+@pytest.mark.parametrize("kind, mirrors", [("ShaderNodeBsdfGlass", True), ("ShaderNodeBsdfRefraction", False)])
+def test_glass_is_a_clear_grain(material, kind, mirrors):
+    shade(material, kind, Color=(1.0, 1.0, 1.0, 1.0), IOR=1.4, Roughness=0.3)
+    values, sentences = drawn()
+    assert sentences == ()
+    assert values["sigma_s"] == values["sigma_a"] == (0.0, 0.0, 0.0) and values["boundary"] == "dielectric"
+    assert values["eta"] == pytest.approx(1.4) and values["roughness"] == pytest.approx(0.09)
+    assert values["specular"] is mirrors
+
+
+def test_what_glass_is_drawn_without_is_said(material):
+    shade(material, "ShaderNodeBsdfGlass", Color=(*COLOUR, 1.0))
+    assert drawn()[1] == ("Material 'Paint' is no grain and is drawn as clear glass; left out: the colour of its "
+                          "glass.",)
+
+
+def hollow_box(half, thick):
+    """A closed box around room for others; its walls are as thick."""
+    shell = bmesh.new()
+    for size, inner in ((half, False), (half - thick, True)):
+        made = bmesh.ops.create_cube(shell, size=2.0 * size)
+        if inner:
+            bmesh.ops.reverse_faces(shell, faces=list({face for corner in made["verts"] for face in corner.link_faces}))
+    mesh = bpy.data.meshes.new("Jar")
+    shell.to_mesh(mesh)
+    shell.free()
+    jar = bpy.data.objects.new("Jar", mesh)
+    bpy.context.scene.collection.objects.link(jar)
+    return jar
+
+
+@pytest.mark.parametrize("away, walls", [(0.0, 1), (-4.0, 2)])
+@pytest.mark.parametrize("reflectance", [1.0, 0.3])
+def test_what_stands_in_a_jar_or_behind_it_is_seen(material, render, away, walls, reflectance):
+    """In an even white world, which makes a cube as bright as it reflects. Of light straight through a wall of glass
+    there is left, after its two interfaces and all reflections between them, (1 - R) / (1 + R), R that of each; what
+    is not left is what the world gives, and little else: half of what the cube inside sends meets it again."""
+    shade(material, "ShaderNodeBsdfDiffuse", Color=(*3 * [reflectance], 1.0))
+    glass = bpy.data.materials.new("Glass")
+    compat.use_nodes(glass)
+    glass.node_tree.nodes.clear()
+    shade(glass, "ShaderNodeBsdfGlass", Color=(1.0, 1.0, 1.0, 1.0), IOR=1.5, Roughness=0.0)
+    hollow_box(2.0, 0.05).data.materials.append(glass)
+    bpy.data.objects["Cube"].location.z = away
+    bpy.data.lights["Sun"].energy = 0.0
+    scene = bpy.context.scene
+    scene.world = bpy.data.worlds.new("White")
+    scene.world.color = (1.0, 1.0, 1.0)
+    scene.render.resolution_x = scene.render.resolution_y = 8
+    scene.render.resolution_percentage, scene.mesograin.samples = 100, 64
+    add_camera((0.0, 0.0, 8.0), lens=200.0)
+    left = ((1.0 - 0.04) / (1.0 + 0.04))**walls
+    assert render()[3:5, 3:5, :3].mean() == pytest.approx(left * reflectance + 1.0 - left, abs=0.015)
 
 
 def test_a_chosen_model_makes_it_a_grain(material):

@@ -31,7 +31,9 @@ def stays(materials):
 
 def recipe_name(kind, model):
     """Of what stays, drawn by a model of plain materials: the row of `recipes` in a kinds.Kind."""
-    return _OF_NO_LIGHT.get(kind.recipe) or ("glossy" if model == plain_materials.METAL else "diffuse")
+    return _OF_NO_LIGHT.get(kind.recipe) or _OF_PLAIN[model]
 
 
+_OF_PLAIN = {plain_materials.PLAIN: "diffuse", plain_materials.METAL: "glossy",
+             plain_materials.GLASS: "volume_dielectric"}
 _OF_NO_LIGHT = {"coverage": "holdout", "normal": "normal", "mirrored": "mirrored"}

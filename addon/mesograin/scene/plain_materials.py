@@ -1,11 +1,12 @@
-# Materials that are no grains: what their nodes say, as far as a diffuse surface, a coat, a rough conductor and worn
-# pictures can.
+# Materials that are no grains: what their nodes say, as far as a diffuse surface, a coat, a rough conductor, clear
+# glass and worn pictures can.
 import dataclasses
 
 from .. import compat
+from ..schema import models, parameters
 from . import node_colours, textures
 
-PLAIN, METAL = "lambert", "conductor"
+PLAIN, METAL, GLASS = "lambert", "conductor", models.AUTO.name
 
 
 @dataclasses.dataclass(frozen=True)
@@ -55,6 +56,8 @@ class Reading:
     def _what(self):
         if self.values["model"] == METAL:
             return "a rough conductor"
+        if self.values["model"] == GLASS:
+            return "clear glass"
         return "a diffuse surface under a coat" if "coat" in self._numbers else "a Lambertian surface"
 
     def leave_out(self, what):
@@ -67,6 +70,14 @@ class Reading:
         # Cycles' roughness is the square root of the GGX alpha.
         self.values = {"model": METAL, "reflectance": _reflectance(colour), "masking": compat.facets_masking(),
                        "roughness": min(max(roughness, 0.0), 1.0) ** 2}
+
+    def be_glass(self, eta, roughness, mirrors):
+        """Which no light scatters in. mirrors: whether its surface also reflects what shines on it."""
+        bounds = parameters.PARAMETERS["eta"]
+        nothing = (0.0, 0.0, 0.0)
+        self.values = {"model": GLASS, "boundary": "dielectric", "sigma_s": nothing, "sigma_a": nothing,
+                       "eta": min(max(eta, bounds.least), bounds.most), "masking": compat.facets_masking(),
+                       "roughness": min(max(roughness, 0.0), 1.0) ** 2, "specular": mirrors}
 
     def set(self, **numbers):
         self._numbers.update(numbers)
@@ -244,6 +255,17 @@ def _read_glossy(found, _material, node):
     found.normal(node)
 
 
+def _read_glass(found, _material, node):
+    sharp = getattr(node, "distribution", "") == "SHARP"
+    roughness = 0.0 if sharp else found.number(node.inputs["Roughness"])
+    found.be_glass(found.number(node.inputs["IOR"]), roughness, mirrors=node.type == "BSDF_GLASS")
+    colour = node.inputs["Color"]
+    if colour.is_linked or min(colour.default_value[:3]) < 1.0:
+        found.leave_out("the colour of its glass")
+    if node.inputs["Normal"].is_linked:
+        found.leave_out("what bends its normal")
+
+
 _OTHER_FACETS = {"BECKMANN": "Beckmann", "ASHIKHMIN_SHIRLEY": "Ashikhmin-Shirley"}
 
 
@@ -315,5 +337,6 @@ def _read_mix(found, material, node):
 
 _READERS = {
     "BSDF_DIFFUSE": _read_diffuse, "BSDF_PRINCIPLED": _read_principled, "BSDF_GLOSSY": _read_glossy,
-    "BSDF_ANISOTROPIC": _read_glossy, "EMISSION": _read_emission, "MIX_SHADER": _read_mix,
+    "BSDF_ANISOTROPIC": _read_glossy, "BSDF_GLASS": _read_glass, "BSDF_REFRACTION": _read_glass,
+    "EMISSION": _read_emission, "MIX_SHADER": _read_mix,
 }
