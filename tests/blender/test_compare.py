@@ -131,6 +131,26 @@ def test_a_ground_stays_what_it_is_beside_grains_and_does_not_count(tmp_path, na
     assert case["metrics"]["relative_l1_blocks"] < 0.08 and abs(case["metrics"]["bias"] - 1.0) < 0.05
 
 
+def test_glass_stays_what_it_is_beside_grains(tmp_path, native):
+    make_sphere([((0.6, 0.0, 1.0), 4.0)], model="model_2")
+    bpy.ops.mesh.primitive_uv_sphere_add(location=(0.0, 2.5, 0.0))
+    material = bpy.data.materials.new("Glass")
+    compat.use_nodes(material)
+    material.node_tree.nodes.clear()
+    glass = material.node_tree.nodes.new("ShaderNodeBsdfGlass")
+    glass.inputs["IOR"].default_value, glass.inputs["Color"].default_value = 1.4, (1.0, 1.0, 1.0, 1.0)
+    output = material.node_tree.nodes.new("ShaderNodeOutputMaterial")
+    material.node_tree.links.new(glass.outputs[0], output.inputs["Surface"])
+    bpy.context.object.data.materials.append(material)
+    [case] = compare(tmp_path, models=("model_2",), size=(32, 32))["cases"]
+    assert case["status"] == "done", case
+    assert case["material"]["Glass"]["eta"] == pytest.approx(1.4)
+    _, _, provenance = native.read_exr(tmp_path / "out" / case["files"]["reference"])
+    [theirs] = [each for each in json.loads(provenance[reference.PROVENANCE])["mean_of"][0]["materials"]
+                if "Glass" in each["nodes"]]
+    assert theirs["nodes"]["Glass"]["inputs"]["IOR"] == pytest.approx(1.4)
+
+
 def test_a_failing_case_is_recorded_and_the_others_go_on(tmp_path):
     make_sphere(SUNS, segments=16, rings=8, roughness=0.0)
     found = compare(tmp_path, size=(16, 16))
