@@ -134,7 +134,9 @@ def test_what_stands_in_a_jar_or_behind_it_is_seen(material, render, away, walls
     bpy.data.lights["Sun"].energy = 0.0
     scene = bpy.context.scene
     scene.world = bpy.data.worlds.new("White")
-    scene.world.color = (1.0, 1.0, 1.0)
+    compat.use_nodes(scene.world)
+    background = next(node for node in scene.world.node_tree.nodes if node.type == "BACKGROUND")
+    background.inputs["Color"].default_value = (1.0, 1.0, 1.0, 1.0)
     scene.render.resolution_x = scene.render.resolution_y = 8
     scene.render.resolution_percentage, scene.mesograin.samples = 100, 64
     add_camera((0.0, 0.0, 8.0), lens=200.0)
