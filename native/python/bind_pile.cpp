@@ -94,10 +94,9 @@ void bind_pile(py::module_& module) {
   define(
       "settle", &settle,
       "((n, 3) float64, (n, 4) float64, largest overlap, (n,) uint32): where grains of these radii lie after they "
-      "fell, z up, and "
-      "how they are turned, as quaternions (w, x, y, z); the overlap in radii of the smaller grain; last, "
-      "which of the grains these are. shapes: which of "
-      "meshes each has, closed and as large as the unit sphere, (vertices, triangles) each; without meshes they are "
+      "fell, z up, and how they are turned, as quaternions (w, x, y, z); the overlap in radii of the smaller grain; "
+      "last, which of the grains these are. shapes: which of meshes each has, closed and as large as the unit sphere, "
+      "(vertices, triangles) each; without meshes they are "
       "balls. walls: (x, y), how far apart upright walls around the origin are; None lets the pile run out. surface: "
       "(vertices, triangles) of what they fall on or into. floor: the height of the plane below it all. inside: "
       "they begin in the room that the surface encloses, as many as fit, and the others are left out. Raises Error.");
