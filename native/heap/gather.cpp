@@ -17,9 +17,6 @@
 namespace mesograin::heap {
 namespace {
 
-// Clear grains, one behind the other; the last of them is as its neighbours see it.
-constexpr int most_looked_into = 12;
-
 // Light that comes from a lamp or a sun through several grains is found by no look along one line, or seldom: it is
 // told as if each of them spread it over a cone of this half angle, narrower with each sample (Kaplanyan and
 // Dachsbacher, "Path space regularization for holistic and robust light transport", 2013, section 4).
@@ -156,7 +153,7 @@ Gather::ScatteredLight Gather::scattered_in(const SeenFacet& seen) const {
 
 void Gather::follow_look(SeenFacet seen, const Facets& facets, const Look& how, transport::Random& random,
                          Through& sum) const {
-  const std::uint32_t seen_first = seen.grain;
+  bool wandered = false;  // through others
   glm::vec3 weight(1.0F);
   bool crosses = false;  // the grain that is seen, and its model tells how much does
   for (int through = 0; through < most_looked_into; ++through) {
@@ -196,8 +193,8 @@ void Gather::follow_look(SeenFacet seen, const Facets& facets, const Look& how, 
     const bool straight = passage->entered && !passage->scattered;
     if (!passage->wall && (!first || (straight && !asks_lights) || (passage->scattered && how.whole))) {
       // What one of many shows of a sun through another is specks, however it is seen.
-      const float spread = how.alone && seen.grain == seen_first ? spread_of_alpha * facets.finish(seen.grain).roughness
-                                                                 : spread_of(*passage, how.narrowed);
+      const float spread = how.alone && !wandered ? spread_of_alpha * facets.finish(seen.grain).roughness
+                                                  : spread_of(*passage, how.narrowed);
       glm::vec3 found = lights_along(seen.grain, *passage, spread, facets, random);
       if (!how.alone) found += glare_along(seen.grain, *passage, spread, facets, random);
       (passage->scattered ? sum.scattered : sum.lights) += weight * found;
@@ -217,12 +214,15 @@ void Gather::follow_look(SeenFacet seen, const Facets& facets, const Look& how, 
     // What is scattered shows no longer where others are clear.
     const bool ends = passage->scattered || through + 1 == most_looked_into;
     if (meeting->wall || !sees_into(meeting->number) || ends) {
+      if (meeting->wall && !heap_.grains.walls[meeting->number].has_lights)
+        behind += weight * heap_.grains.walls[meeting->number].radiance;
       Ray ray{passage->place, passage->direction, weight};
       if (const std::optional<Source> source = space_.source(*meeting, ray, random))
         behind += ray.weight / source->met *
                   glm::max(light_->seats->light_at(light_->sent, source->number, source->normal, true), 0.0F);
       return;
     }
+    wandered = wandered || meeting->number != seen.grain;
     seen = {meeting->number, meeting->place, meeting->normal, -passage->direction};
   }
 }

@@ -106,6 +106,16 @@ class Gather {
   /// the lights that are seen so.
   Through look_into(const SeenFacet& seen, const Facets& facets, const Look& how, transport::Random& random) const;
 
+  /// What is seen straight through a clear grain.
+  struct StraightEnd {
+    std::optional<Meeting> met;  ///< another or a wall; else the world
+    glm::vec3 direction;         ///< its normal; of the world the way towards it
+    glm::vec3 radiance;          ///< the world's; else 1
+  };
+
+  /// Nothing, where that is not clearly seen.
+  std::optional<StraightEnd> straight_end(SeenFacet seen, const Facets& facets) const;
+
   /// Look::narrowed of a picture's sample: its bias goes as its noise does, the more samples there are.
   static float narrowed(std::uint32_t sample);
 
@@ -117,6 +127,8 @@ class Gather {
   static constexpr float nothing = 1e-3F;
   /// Transparent grains, one behind the other.
   static constexpr int most_crossed = 32;
+  /// Clear grains, one behind the other; the last of them is as its neighbours see it.
+  static constexpr int most_looked_into = 12;
 
   void follow_look(SeenFacet seen, const Facets& facets, const Look& how, transport::Random& random,
                    Through& sum) const;

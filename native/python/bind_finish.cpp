@@ -100,7 +100,8 @@ void bind_finish(py::module_& module) {
                                                std::pair{"metal_whitens", &finish.metal_whitens},
                                                std::pair{"facets_keep_energy", &finish.facets_keep_energy},
                                                std::pair{"facets_shade_bumps", &finish.facets_shade_bumps},
-                                               std::pair{"bent_normals_stay", &finish.bent_normals_stay}})
+                                               std::pair{"bent_normals_stay", &finish.bent_normals_stay},
+                                               std::pair{"faces_are_lights", &finish.faces_are_lights}})
               taken += take(name, *chosen);
             Triple radiance{};
             if (take("radiance", radiance)) {
@@ -122,7 +123,7 @@ void bind_finish(py::module_& module) {
           "facets loses is sent on in their lobe (Turquin); facets_shade_bumps=False: what a bent normal shades of "
           "itself is masked as facets are (Estevez et al.), else by Cycles' former cubic; bent_normals_stay=False: for "
           "the diffuse share, else they are bent back until a mirror would reflect what is above the surface; "
-          "radiance=(0, 0, 0) that it sends out.");
+          "radiance=(0, 0, 0) that it sends out; faces_are_lights=False: area lights of the scene stand for that.");
 }
 
 }  // namespace mesograin::python

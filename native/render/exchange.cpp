@@ -205,7 +205,8 @@ class Gatherer {
     glm::dmat4 to_heap = draw.object_to_world;
     to_heap[3] -= glm::dvec4(anchor, 0.0);
     const std::uint32_t kind = grains.kind(heap::optics_of(draw.look, rounded(draw.reach, radii_an_octave)));
-    grains.walls.push_back({draw.source, to_heap, kind, glm::vec3(radiance_of(draw))});
+    const bool has_lights = draw.look.finish && draw.look.finish->faces_are_lights;
+    grains.walls.push_back({draw.source, to_heap, kind, glm::vec3(radiance_of(draw)), has_lights});
   }
 
   /// Grains that are about as thick.

@@ -71,6 +71,7 @@ struct Finish {
                                     ///< 2019); else by Cycles' former cubic
   bool bent_normals_stay = false;   ///< for the diffuse share; else they are bent back until a mirror would reflect
   glm::dvec3 radiance{0.0};         ///< that it sends out, linear RGB
+  bool faces_are_lights = false;    ///< area lights of the scene stand for what it sends out
 
   bool operator==(const Finish&) const = default;
 };

@@ -1,6 +1,7 @@
 # Materials of which nothing of Mesograin was ever chosen: what their nodes say, and what is left out by name.
 import bmesh
 import bpy
+import numpy as np
 import pytest
 from test_export import add_camera, add_cube, add_sun, read_scene
 
@@ -118,30 +119,60 @@ def hollow_box(half, thick):
     return jar
 
 
-@pytest.mark.parametrize("away, walls", [(0.0, 1), (-4.0, 2)])
-@pytest.mark.parametrize("reflectance", [1.0, 0.3])
-def test_what_stands_in_a_jar_or_behind_it_is_seen(material, render, away, walls, reflectance):
-    """In an even white world, which makes a cube as bright as it reflects. Of light straight through a wall of glass
-    there is left, after its two interfaces and all reflections between them, (1 - R) / (1 + R), R that of each; what
-    is not left is what the world gives, and little else: half of what the cube inside sends meets it again."""
-    shade(material, "ShaderNodeBsdfDiffuse", Color=(*3 * [reflectance], 1.0))
+@pytest.fixture
+def jar(material):
+    """Of glass, under a world but no sun. Called with the world's radiance, pixels a side and samples."""
     glass = bpy.data.materials.new("Glass")
     compat.use_nodes(glass)
     glass.node_tree.nodes.clear()
     shade(glass, "ShaderNodeBsdfGlass", Color=(1.0, 1.0, 1.0, 1.0), IOR=1.5, Roughness=0.0)
     hollow_box(2.0, 0.05).data.materials.append(glass)
-    bpy.data.objects["Cube"].location.z = away
     bpy.data.lights["Sun"].energy = 0.0
-    scene = bpy.context.scene
-    scene.world = bpy.data.worlds.new("White")
-    compat.use_nodes(scene.world)
-    background = next(node for node in scene.world.node_tree.nodes if node.type == "BACKGROUND")
-    background.inputs["Color"].default_value = (1.0, 1.0, 1.0, 1.0)
-    scene.render.resolution_x = scene.render.resolution_y = 8
-    scene.render.resolution_percentage, scene.mesograin.samples = 100, 64
     add_camera((0.0, 0.0, 8.0), lens=200.0)
-    left = ((1.0 - 0.04) / (1.0 + 0.04))**walls
+
+    def stand(radiance, side, samples):
+        scene = bpy.context.scene
+        scene.world = bpy.data.worlds.new("Even")
+        compat.use_nodes(scene.world)
+        background = next(node for node in scene.world.node_tree.nodes if node.type == "BACKGROUND")
+        background.inputs["Color"].default_value = (radiance, radiance, radiance, 1.0)
+        scene.render.resolution_x = scene.render.resolution_y = side
+        scene.render.resolution_percentage, scene.mesograin.samples = 100, samples
+
+    return stand
+
+
+LEFT_BY_A_WALL = (1.0 - 0.04) / (1.0 + 0.04)
+"""Of light straight through glass, after its two interfaces and all reflections between them: (1 - R) / (1 + R), R that
+of each."""
+
+
+@pytest.mark.parametrize("away, walls", [(0.0, 1), (-4.0, 2)])
+@pytest.mark.parametrize("reflectance", [1.0, 0.3])
+def test_what_stands_in_a_jar_or_behind_it_is_seen(material, jar, render, away, walls, reflectance):
+    """In an even white world, which makes a cube as bright as it reflects. What is not left of that is what the world
+    gives, and little else: half of what the cube inside sends meets it again."""
+    shade(material, "ShaderNodeBsdfDiffuse", Color=(*3 * [reflectance], 1.0))
+    bpy.data.objects["Cube"].location.z = away
+    jar(1.0, 8, 64)
+    left = LEFT_BY_A_WALL**walls
     assert render()[3:5, 3:5, :3].mean() == pytest.approx(left * reflectance + 1.0 - left, abs=0.015)
+
+
+def test_what_shines_in_a_jar_is_seen_with_edges(material, jar, render):
+    """A ball, which is no light to others: it fills a disc of few samples, one pixel wide at its edge."""
+    shade(material, "ShaderNodeEmission", Color=(1.0, 1.0, 1.0, 1.0), Strength=0.5)
+    ball = bmesh.new()
+    bmesh.ops.create_uvsphere(ball, u_segments=96, v_segments=48, radius=0.5)
+    ball.to_mesh(bpy.data.objects["Cube"].data)
+    ball.free()
+    bpy.data.objects["Cube"].data.materials.append(material)
+    jar(0.0, 48, 4)
+    shown = render()[..., :3].mean(axis=2) / (0.5 * LEFT_BY_A_WALL)
+    assert shown[20:28, 20:28].mean() == pytest.approx(1.0, abs=0.03)
+    inside, outside = shown > 0.7, shown < 0.15
+    radius = np.sqrt(inside.sum() / np.pi)
+    assert (~inside & ~outside).sum() < 1.2 * 2.0 * np.pi * radius and inside.sum() > 300
 
 
 def test_a_chosen_model_makes_it_a_grain(material):

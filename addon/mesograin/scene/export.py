@@ -37,6 +37,11 @@ class MaterialValues:
             values[name] = tuple(min(channel, most) if name == "reflectance" else channel for channel in product)
         return dataclasses.replace(self, values=tuple(values.items()))
 
+    def of_lights(self):
+        """The material of an object whose faces are area lights of the scene."""
+        finish = dataclasses.replace(self.finish, values=(*self.finish.values, ("faces_are_lights", True)))
+        return dataclasses.replace(self, finish=finish)
+
     def to_native(self, native):
         """Raises native.Error naming the material if a value is out of range, or one that its model does not know."""
         values = dict(self.values)
@@ -542,20 +547,23 @@ class _Reader:
             if not self._has_surface(evaluated_object, part.slot):
                 continue
             material = self._material(evaluated_object, part.slot)
+            if self._read_mesh_lights(evaluated_object, matrix_world, part.slot, material):
+                material = material.of_lights()
             self._instances.append(InstanceValues(evaluated_object.name, part.mesh, material, to_world,
                                                   part.broken_uvs, whole))
-            self._read_mesh_lights(evaluated_object, matrix_world, part.slot, material)
 
     def _read_mesh_lights(self, evaluated_object, matrix_world, slot, material):
+        """Whether there are any."""
         radiance = material.finish and material.finish.radiance
         if not radiance:
-            return
+            return False
         found = mesh_lights.read(evaluated_object, matrix_world, slot, radiance)
         if found is None:
             self._warn(f"Object '{evaluated_object.name}' shines, but on nothing: only up to {mesh_lights.MOST_FACES} "
                        "rectangular faces are lights to others.")
-            return
+            return False
         self._lights.extend(found)
+        return True
 
     def _worn(self, evaluated_object, slot):
         """The bpy.types.Material of faces, or None."""

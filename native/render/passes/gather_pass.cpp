@@ -59,6 +59,14 @@ void set_direction(Likeness& likeness, heap::Surface surface, const glm::vec3& n
   if (const float length = glm::length(between); length > 1e-3F) likeness.direction = between / length;
 }
 
+/// Of what is seen through a clear grain: below 0, where no surface is that is seen itself.
+Likeness likeness_of(const heap::Gather::StraightEnd& end) {
+  constexpr float narrow = 0.1F;
+  const float kind = !end.met ? 0.0F : end.met->wall ? 1.0F : 2.0F;
+  const float number = end.met ? static_cast<float>(end.met->number) : 0.0F;
+  return {end.direction, -1.0F - kind - 3.0F * number, 1.0F - narrow, glm::max(end.radiance, least_share)};
+}
+
 }  // namespace
 
 bool GatherPass::run(const Sample& sample, const ArrayVisibility& arrays, SurfacePass& surfaces) {
@@ -135,6 +143,11 @@ bool GatherPass::run(const Sample& sample, const ArrayVisibility& arrays, Surfac
       }
       if (others_[i].w == 0.0F) continue;
       likenesses_[i].object = std::abs(facing.w);
+      if (clear && number >= instances && gather->sees_into(*grain))
+        if (const auto end = gather->straight_end({*grain, place, normal, towards}, *facets)) {
+          likenesses_[i] = likeness_of(*end);
+          continue;
+        }
       set_direction(likenesses_[i], gather->optics(*grain).surface, normal, glm::vec3(seen.positions[i]), sample.index);
     }
   });
