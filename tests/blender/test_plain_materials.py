@@ -98,6 +98,34 @@ def test_glass_is_a_clear_grain(material, kind, mirrors):
     assert values["specular"] is mirrors
 
 
+def transmission(node):
+    return node.inputs["Transmission Weight" if "Transmission Weight" in node.inputs else "Transmission"]
+
+
+@pytest.mark.parametrize("weight, metallic, what", [(1.0, 0.0, ()), (0.8, 0.0, ("what of it is no glass",)),
+                                                    (0.3, 0.0, None), (1.0, 1.0, None)])
+def test_a_transmissive_principled_is_glass(material, weight, metallic, what):
+    node = shade(material, "ShaderNodeBsdfPrincipled", Base_Color=(1.0, 1.0, 1.0, 1.0), IOR=1.3, Roughness=0.5,
+                 Metallic=metallic)
+    transmission(node).default_value = weight
+    values, sentences = drawn()
+    if what is None:
+        assert values["model"] != "auto" and "its transmission" in sentences[0]
+        return
+    assert values["model"] == "auto" and values["sigma_s"] == (0.0, 0.0, 0.0)
+    assert (values["eta"], values["roughness"], values["specular"]) == pytest.approx((1.3, 0.25, True))
+    assert sentences == tuple(f"Material 'Paint' is no grain and is drawn as clear glass; left out: {each}."
+                              for each in what)
+
+
+def test_what_transmissive_principled_is_drawn_without_is_said(material):
+    node = shade(material, "ShaderNodeBsdfPrincipled", Base_Color=(*COLOUR, 1.0), Alpha=0.5)
+    transmission(node).default_value = 1.0
+    node.inputs["Emission Color" if "Emission Color" in node.inputs else "Emission"].default_value = (1, 1, 1, 1)
+    node.inputs["Emission Strength"].default_value = 2.0
+    assert drawn()[1][0].endswith("left out: the colour of its glass, its emission, its transparency.")
+
+
 def test_what_glass_is_drawn_without_is_said(material):
     shade(material, "ShaderNodeBsdfGlass", Color=(*COLOUR, 1.0))
     assert drawn()[1] == ("Material 'Paint' is no grain and is drawn as clear glass; left out: the colour of its "

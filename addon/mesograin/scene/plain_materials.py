@@ -258,8 +258,11 @@ def _read_glossy(found, _material, node):
 def _read_glass(found, _material, node):
     sharp = getattr(node, "distribution", "") == "SHARP"
     roughness = 0.0 if sharp else found.number(node.inputs["Roughness"])
-    found.be_glass(found.number(node.inputs["IOR"]), roughness, mirrors=node.type == "BSDF_GLASS")
-    colour = node.inputs["Color"]
+    _be_clear(found, node, node.inputs["Color"], roughness, mirrors=node.type == "BSDF_GLASS")
+
+
+def _be_clear(found, node, colour, roughness, mirrors=True):
+    found.be_glass(found.number(node.inputs["IOR"]), roughness, mirrors)
     if colour.is_linked or min(colour.default_value[:3]) < 1.0:
         found.leave_out("the colour of its glass")
     if node.inputs["Normal"].is_linked:
@@ -289,6 +292,47 @@ def _read_principled(found, _material, node):
         """Of the first name that this Blender knows."""
         return next((node.inputs[name] for name in names if name in node.inputs), None)
 
+    clear = _clear_share(socket)
+    if clear > 0.5:
+        _be_clear(found, node, node.inputs["Base Color"], found.number(node.inputs["Roughness"]))
+        if clear < 1.0:
+            found.leave_out("what of it is no glass")
+        if _emission(socket) is not None:
+            found.leave_out("its emission")
+        unknown = _TRANSMISSION_ROUGHNESS, *_LAYERS
+    else:
+        _read_opaque_principled(found, node, socket)
+        unknown = _TRANSMISSION, _SUBSURFACE, *_LAYERS
+    for names, what, none in unknown:
+        each = socket(*names)
+        if each is not None and (each.is_linked or each.default_value != none):
+            found.leave_out(what)
+
+
+_TRANSMISSION = (("Transmission Weight", "Transmission"), "its transmission", 0.0)
+_TRANSMISSION_ROUGHNESS = (("Transmission Roughness",), "the roughness of its transmission", 0.0)
+_SUBSURFACE = (("Subsurface Weight", "Subsurface"), "its subsurface scattering", 0.0)
+_LAYERS = ((("Coat Weight", "Clearcoat"), "its clear coat", 0.0), (("Sheen Weight", "Sheen"), "its sheen", 0.0),
+           (("Alpha",), "its transparency", 1.0))
+
+
+def _clear_share(socket):
+    """Of the surface that is glass, as far as no texture says so."""
+    transmission, metallic = socket(*_TRANSMISSION[0]), socket("Metallic")
+    if transmission is None or transmission.is_linked or metallic.is_linked:
+        return 0.0
+    return transmission.default_value * (1.0 - metallic.default_value)
+
+
+def _emission(socket):
+    """The inputs of its colour and strength; None where it is none."""
+    colour, strength = socket("Emission Color", "Emission"), socket("Emission Strength")
+    if strength is None or not (strength.is_linked or strength.default_value > 0.0):
+        return None
+    return (colour, strength) if colour.is_linked or max(colour.default_value[:3]) > 0.0 else None
+
+
+def _read_opaque_principled(found, node, socket):
     colour = found.colour(node.inputs["Base Color"])
     metallic = found.number(node.inputs["Metallic"], "metallic")
     roughness = found.number(node.inputs["Roughness"], "roughness")
@@ -303,16 +347,8 @@ def _read_principled(found, _material, node):
     found.set(coat_roughness=roughness, **compat.principled_layers(), **compat.facets(node))
     found.values["masking"] = compat.facets_masking()
     found.normal(node)
-    strength = socket("Emission Strength")
-    if strength is not None and (strength.is_linked or strength.default_value > 0.0):
-        _read_radiance(found, socket("Emission Color", "Emission"), strength)
-    for names, what, none in ((("Transmission Weight", "Transmission"), "its transmission", 0.0),
-                              (("Subsurface Weight", "Subsurface"), "its subsurface scattering", 0.0),
-                              (("Coat Weight", "Clearcoat"), "its clear coat", 0.0),
-                              (("Sheen Weight", "Sheen"), "its sheen", 0.0), (("Alpha",), "its transparency", 1.0)):
-        each = socket(*names)
-        if each is not None and (each.is_linked or each.default_value != none):
-            found.leave_out(what)
+    if (emission := _emission(socket)) is not None:
+        _read_radiance(found, *emission)
 
 
 def _straight_reflectance(found, socket):
