@@ -16,7 +16,7 @@ ROOMS = ("compat", "translations", "native_module", "grains.shape", "grains.kind
          "scene.smooth_normals", "scene.properties", "scene.meshes", "scene.heaps", "scene.lens", "scene.lights",
          "scene.mesh_lights", "scene.images", "scene.node_colours", "scene.node_patterns", "scene.node_skies",
          "scene.unwrapped", "scene.colours", "scene.overrides", "scene.surroundings",
-         "scene.textures", "scene.plain_materials", "scene.thick_layer", "scene.export",
+         "scene.textures", "scene.plain_materials", "scene.thick_layer", "scene.coloured_glass", "scene.export",
          "engine.status", "engine.writing", "engine.motion", "engine.identities", "engine.passes", "engine.viewport",
          "engine.viewport_text", "engine.own_grain", "engine.material_preview", "engine.engine",
          "cycles.reference_cache", "ui.presets", "ui.look", "ui.conversion", "ui.copy_grain", "ui.named_things",

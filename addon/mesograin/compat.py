@@ -192,6 +192,12 @@ def principled_layers():
     return {"coat_shades_base": True, "metal_whitens": True} if has_even_lights() else {"retro_reflective": True}
 
 
+def principled_tint_power(node):
+    """Of a Principled node's base colour, which is left of light that goes into its glass and out: up to Blender 3 each
+    of both surfaces has it whole, as a Glass node's has, then its root."""
+    return 1.0 if "Transmission Weight" in node.inputs else 2.0
+
+
 def facets(node):
     """Whether the facets of a Principled or Glossy node keep what one bounce loses, as native.Finish has it."""
     # Up to Blender 3 Cycles follows walks among the facets (Heitz et al., "Multiple-Scattering Microfacet BSDFs with

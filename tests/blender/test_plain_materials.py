@@ -123,13 +123,13 @@ def test_what_transmissive_principled_is_drawn_without_is_said(material):
     transmission(node).default_value = 1.0
     node.inputs["Emission Color" if "Emission Color" in node.inputs else "Emission"].default_value = (1, 1, 1, 1)
     node.inputs["Emission Strength"].default_value = 2.0
-    assert drawn()[1][0].endswith("left out: the colour of its glass, its emission, its transparency.")
+    assert drawn()[1][0].endswith("left out: its emission, its transparency.")
 
 
 def test_what_glass_is_drawn_without_is_said(material):
-    shade(material, "ShaderNodeBsdfGlass", Color=(*COLOUR, 1.0))
-    assert drawn()[1] == ("Material 'Paint' is no grain and is drawn as clear glass; left out: the colour of its "
-                          "glass.",)
+    node = shade(material, "ShaderNodeBsdfGlass", Color=(1.0, 1.0, 1.0, 1.0))
+    material.node_tree.links.new(material.node_tree.nodes.new("ShaderNodeBump").outputs[0], node.inputs["Normal"])
+    assert drawn()[1] == ("Material 'Paint' is no grain and is drawn as clear glass; left out: what bends its normal.",)
 
 
 def hollow_box(half, thick):

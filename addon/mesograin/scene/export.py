@@ -11,8 +11,8 @@ import numpy as np
 
 from .. import compat, native_module
 from ..schema import advice, labels, models, parameters
-from . import (automatic, budgets, colours, heaps, instance_attributes, left_out, lens, lights, mesh_lights, meshes,
-               node_colours, plain_materials, properties, scattered, surroundings, textures)
+from . import (automatic, budgets, coloured_glass, colours, heaps, instance_attributes, left_out, lens, lights,
+               mesh_lights, meshes, node_colours, plain_materials, properties, scattered, surroundings, textures)
 
 INDICES = {"air": 1.0, "water": 1.333, "oil": 1.47}
 """Of refraction, of what a grain may lie in."""
@@ -25,6 +25,8 @@ class MaterialValues:
     name: str
     values: tuple  # (parameter, value) pairs
     finish: object = None  # plain_materials.FinishValues, of what is no grain
+    tint: object = None  # linear RGB that is left of light which crosses coloured glass once
+    absorption: object = None  # sigma_a that does so, of the shape's own space
 
     def multiplied(self, factors):
         """The material with some of its colours multiplied. factors: {parameter: 3 numbers}."""
@@ -36,6 +38,13 @@ class MaterialValues:
             product = (channel * each for channel, each in zip(values[name], factor))
             values[name] = tuple(min(channel, most) if name == "reflectance" else channel for channel in product)
         return dataclasses.replace(self, values=tuple(values.items()))
+
+    def at_scale(self, scale):
+        """The material of a shape that is drawn so many times as large as it is."""
+        if self.absorption is None:
+            return self
+        values = {**dict(self.values), "sigma_a": tuple(each / scale for each in self.absorption)}
+        return dataclasses.replace(self, values=tuple(values.items()), tint=None, absorption=None)
 
     def of_lights(self):
         """The material of an object whose faces are area lights of the scene."""
@@ -275,7 +284,7 @@ def material_values(material, millimetres_per_unit, reading=None):
     if not plain_materials.is_plain(material):
         return MaterialValues(material.name_full, tuple(values.items()))
     reading = reading or plain_materials.read(material)
-    return MaterialValues(material.name_full, tuple({**values, **reading.values}.items()), reading.finish)
+    return MaterialValues(material.name_full, tuple({**values, **reading.values}.items()), reading.finish, reading.tint)
 
 
 def read_scene(depsgraph, cache, varied=True):
@@ -449,7 +458,7 @@ class _Reader:
             return None
         for sentence in left_out.sentences(shape):
             self._warn(sentence)
-        materials = [self._material(shape, part.slot, many=True) for part in parts]
+        materials = [self._coloured(self._material(shape, part.slot, many=True), shape, part.mesh) for part in parts]
         if any(material.finish and material.finish.radiance for material in materials):
             self._warn(f"Instances of '{shape.name}' shine, but on nothing: only objects of their own are lights to "
                        "others.")
@@ -546,7 +555,8 @@ class _Reader:
         for part in parts:
             if not self._has_surface(evaluated_object, part.slot):
                 continue
-            material = self._material(evaluated_object, part.slot)
+            material = self._coloured(self._material(evaluated_object, part.slot), evaluated_object, part.mesh)
+            material = material.at_scale(meshes.scale(matrix_world))
             if self._read_mesh_lights(evaluated_object, matrix_world, part.slot, material):
                 material = material.of_lights()
             self._instances.append(InstanceValues(evaluated_object.name, part.mesh, material, to_world,
@@ -645,6 +655,15 @@ class _Reader:
             values = material_values(material, self._millimetres_per_unit, reading)
             self._materials[key] = values if self._varied else dataclasses.replace(values, finish=None)
         return self._materials[key]
+
+    def _coloured(self, material, evaluated_object, mesh):
+        """A material with what its glass absorbs on an object, if it is of glass and coloured."""
+        if material.tint is None:
+            return material
+        absorption = coloured_glass.absorption(evaluated_object, mesh, material.tint, dict(material.values)["eta"])
+        if absorption is None:
+            self._warn(f"Object '{evaluated_object.name}' is not closed, so its glass is drawn without its colour.")
+        return dataclasses.replace(material, tint=None, absorption=absorption)
 
     def _read_light(self, evaluated_object, matrix_world):
         if not math.isfinite(sum(sum(row) for row in matrix_world)):

@@ -87,13 +87,19 @@ class Group:
         if len(kept) == 0:
             return [], left_out
         shared = native_module.get().Transforms(kept)
-        return [HeapValues(self.name, part.mesh, part.material, shared, self._factors(part, drawn))
-                for part in self._parts], left_out
+        return [HeapValues(self.name, part.mesh, _at_mean_scale(part.material, kept), shared,
+                           self._factors(part, drawn)) for part in self._parts], left_out
 
     def _factors(self, part, drawn):
         if part.variation is None or self._each is None:
             return ()
         return part.variation.factors({name: values[drawn] for name, values in self._each.items()})
+
+
+def _at_mean_scale(material, placings):
+    if material.absorption is None:
+        return material
+    return material.at_scale(float(np.cbrt(np.abs(np.linalg.det(placings[:, :3, :3].astype(float)))).mean()))
 
 
 def place(depsgraph, numbers, groups, shapes, readers):

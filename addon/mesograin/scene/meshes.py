@@ -44,6 +44,11 @@ def has_extent(matrix_world):
     return matrix_world.determinant() != 0.0 and not min(lengths) < THINNEST * max(lengths)
 
 
+def scale(matrix_world):
+    """How many times as large an object is as its mesh, on average over its axes."""
+    return abs(matrix_world.determinant()) ** (1.0 / 3.0)
+
+
 def is_finite(matrix_world):
     """Whether an object's place, rotation and scale are numbers."""
     return math.isfinite(sum(sum(row) for row in matrix_world))

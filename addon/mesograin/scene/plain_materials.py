@@ -37,6 +37,7 @@ class Reading:
     def __init__(self, material, box, own, side, mesh):
         self._material, self._box, self._own, self._side, self._mesh = material, box, own, side, mesh
         self.by_instance = None  # the input that says the reflectance of each of many instances; here it is 1
+        self.tint = None  # linear RGB, of what crosses glass once
         self._numbers, self._maps, self._left_out = {}, {}, []
         self.values = {}
 
@@ -258,13 +259,16 @@ def _read_glossy(found, _material, node):
 def _read_glass(found, _material, node):
     sharp = getattr(node, "distribution", "") == "SHARP"
     roughness = 0.0 if sharp else found.number(node.inputs["Roughness"])
-    _be_clear(found, node, node.inputs["Color"], roughness, mirrors=node.type == "BSDF_GLASS")
+    _be_clear(found, node, node.inputs["Color"], 2.0, roughness, mirrors=node.type == "BSDF_GLASS")
 
 
-def _be_clear(found, node, colour, roughness, mirrors=True):
+def _be_clear(found, node, colour, power, roughness, mirrors=True):
+    """power: of the colour that is left of light which goes in and out."""
     found.be_glass(found.number(node.inputs["IOR"]), roughness, mirrors)
-    if colour.is_linked or min(colour.default_value[:3]) < 1.0:
-        found.leave_out("the colour of its glass")
+    if colour.is_linked:
+        found.leave_out("the texture of its glass")
+    elif min(colour.default_value[:3]) < 1.0:
+        found.tint = tuple(min(max(channel, 0.0), 1.0) ** power for channel in colour.default_value[:3])
     if node.inputs["Normal"].is_linked:
         found.leave_out("what bends its normal")
 
@@ -294,7 +298,8 @@ def _read_principled(found, _material, node):
 
     clear = _clear_share(socket)
     if clear > 0.5:
-        _be_clear(found, node, node.inputs["Base Color"], found.number(node.inputs["Roughness"]))
+        _be_clear(found, node, node.inputs["Base Color"], compat.principled_tint_power(node),
+                  found.number(node.inputs["Roughness"]))
         if clear < 1.0:
             found.leave_out("what of it is no glass")
         if _emission(socket) is not None:
