@@ -191,11 +191,14 @@ void Gather::follow_look(SeenFacet seen, const Facets& facets, const Look& how, 
     }
     // What else the grain that is seen makes of the lights is its model's, or highlights().
     const bool straight = passage->entered && !passage->scattered;
+    bool sees_surfaces = passage->wall.has_value();  // that shine, though lights stand for them
     if (!passage->wall && (!first || (straight && !asks_lights) || (passage->scattered && how.whole))) {
       // What one of many shows of a sun through another is specks, however it is seen.
-      const float spread = how.alone && !wandered ? spread_of_alpha * facets.finish(seen.grain).roughness
-                                                  : spread_of(*passage, how.narrowed);
-      glm::vec3 found = lights_along(seen.grain, *passage, spread, facets, random);
+      const bool undisturbed = how.alone && !wandered;
+      const float spread =
+          undisturbed ? spread_of_alpha * facets.finish(seen.grain).roughness : spread_of(*passage, how.narrowed);
+      sees_surfaces = undisturbed && facets.finish(seen.grain).roughness < rough;
+      glm::vec3 found = lights_along(seen.grain, *passage, spread, sees_surfaces, facets, random);
       if (!how.alone) found += glare_along(seen.grain, *passage, spread, facets, random);
       (passage->scattered ? sum.scattered : sum.lights) += weight * found;
     }
@@ -214,7 +217,7 @@ void Gather::follow_look(SeenFacet seen, const Facets& facets, const Look& how, 
     // What is scattered shows no longer where others are clear.
     const bool ends = passage->scattered || through + 1 == most_looked_into;
     if (meeting->wall || !sees_into(meeting->number) || ends) {
-      if (meeting->wall && !heap_.grains.walls[meeting->number].has_lights)
+      if (meeting->wall && (sees_surfaces || !heap_.grains.walls[meeting->number].has_lights))
         behind += weight * heap_.grains.walls[meeting->number].radiance;
       Ray ray{passage->place, passage->direction, weight};
       if (const std::optional<Source> source = space_.source(*meeting, ray, random))
@@ -306,10 +309,12 @@ glm::vec3 Gather::passed_towards(std::uint32_t grain, const glm::vec3& place, co
   return space_.passed(ray, reach);
 }
 
-glm::vec3 Gather::lights_along(std::uint32_t grain, const Passage& passage, float spread, const Facets& facets,
-                               transport::Random& random) const {
+glm::vec3 Gather::lights_along(std::uint32_t grain, const Passage& passage, float spread, bool but_drawn,
+                               const Facets& facets, transport::Random& random) const {
   glm::vec3 sum(0.0F);
   for (std::size_t i = 0; i < heap_.lights.size(); ++i) {
+    const auto* area = std::get_if<scene::AreaLight>(&heap_.lights[i]);
+    if (but_drawn && area && area->drawn) continue;
     // A disc that is found as it is; the cone is around its middle.
     const lights::DeviceLight& of = lights_[i];
     const bool sun = std::holds_alternative<scene::DirectionalLight>(heap_.lights[i]);

@@ -140,9 +140,10 @@ class Gather {
   ScatteredLight scattered_in(const SeenFacet& seen) const;
   /// In how wide a cone lights are seen where a look leaves a grain, at the least: its half angle.
   static float spread_of(const Passage& passage, float narrowed);
-  /// `spread`: the least half angle of the cone in which a light is seen.
-  glm::vec3 lights_along(std::uint32_t grain, const Passage& passage, float spread, const Facets& facets,
-                         transport::Random& random) const;
+  /// `spread`: the least half angle of the cone in which a light is seen; `but_drawn`: without those that stand for
+  /// surfaces.
+  glm::vec3 lights_along(std::uint32_t grain, const Passage& passage, float spread, bool but_drawn,
+                         const Facets& facets, transport::Random& random) const;
   /// What leaves a grain's rough facet, from inside, of the lights beyond it. `inwards`: the facet's normal. `rougher`:
   /// so many times, as a facet is taken to be that meets what others have reflected.
   glm::vec3 lights_through(std::uint32_t grain, const Passage& arriving, const glm::vec3& inwards, float rougher,

@@ -16,7 +16,7 @@ struct Wall {
   glm::dmat4 to_heap;        ///< from the mesh's own space to where grains have their places
   std::uint32_t kind;        ///< which of Grains::kinds
   glm::vec3 radiance{0.0F};  ///< of its own; lights tell what that does to grains
-  bool has_lights = false;   ///< by which a look through clear grains sees it
+  bool has_lights = false;   ///< by which most looks through clear grains see it
 
   bool operator==(const Wall&) const = default;
 

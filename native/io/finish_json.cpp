@@ -31,7 +31,8 @@ constexpr std::array switch_names{std::pair{"retro_reflective", &Finish::retro_r
                                   std::pair{"metal_whitens", &Finish::metal_whitens},
                                   std::pair{"facets_keep_energy", &Finish::facets_keep_energy},
                                   std::pair{"facets_shade_bumps", &Finish::facets_shade_bumps},
-                                  std::pair{"bent_normals_stay", &Finish::bent_normals_stay}};
+                                  std::pair{"bent_normals_stay", &Finish::bent_normals_stay},
+                                  std::pair{"faces_are_lights", &Finish::faces_are_lights}};
 
 std::shared_ptr<const Picture> read_picture(const std::filesystem::path& path, bool srgb) {
   const ExrFile file = read_exr(path);

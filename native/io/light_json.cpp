@@ -70,8 +70,8 @@ SpotLight read_spot_light(const Node& node) {
 }
 
 AreaLight read_area_light(const Node& node) {
-  node.require_object(std::array<std::string_view, 7>{"type", "position", "half_x", "half_y", "radiance_linear_rgb",
-                                                      "ellipse", "spread"},
+  node.require_object(std::array<std::string_view, 8>{"type", "position", "half_x", "half_y", "radiance_linear_rgb",
+                                                      "ellipse", "spread", "drawn"},
                       provenance_keys);
   AreaLight light;
   light.position = node["position"].vector();
@@ -80,6 +80,7 @@ AreaLight read_area_light(const Node& node) {
   light.radiance = node["radiance_linear_rgb"].rgb();
   if (node.has("ellipse")) light.ellipse = node["ellipse"].boolean();
   if (node.has("spread")) light.spread = node["spread"].number();
+  if (node.has("drawn")) light.drawn = node["drawn"].boolean();
   return light;
 }
 
@@ -154,7 +155,8 @@ Json written(const AreaLight& light) {
           {"half_y", listed(light.half_y)},
           {"radiance_linear_rgb", listed(light.radiance)},
           {"ellipse", light.ellipse},
-          {"spread", light.spread}};
+          {"spread", light.spread},
+          {"drawn", light.drawn}};
 }
 
 // around: a World or a Backdrop.

@@ -101,21 +101,22 @@ void bind_area(py::module_& module) {
   py::class_<AreaLight>(module, "AreaLight", "A flat light of one bright side.")
       .def(
           py::init([](const Triple& position, const Triple& half_x, const Triple& half_y, const Triple& radiance,
-                      bool ellipse, double spread) {
+                      bool ellipse, double spread, bool drawn) {
             return validated(AreaLight{to_vector(position), to_vector(half_x), to_vector(half_y), to_vector(radiance),
-                                       ellipse, spread});
+                                       ellipse, spread, drawn});
           }),
           py::arg("position"), py::arg("half_x"), py::arg("half_y"), py::arg("radiance"), py::arg("ellipse") = false,
-          py::arg("spread") = scene::AreaLight{}.spread,
+          py::arg("spread") = scene::AreaLight{}.spread, py::arg("drawn") = false,
           "position: its middle; half_x, half_y: from there to the middle of its sides, or half the ellipse's axes; it "
           "shines along -cross(half_x, half_y); radiance: linear RGB; spread: full angle of the cone that it shines "
-          "into, radians.")
+          "into, radians; drawn: it stands for a surface of the scene, which is seen where it is.")
       .def_property_readonly("position", [](const AreaLight& l) { return to_triple(l.position); })
       .def_property_readonly("half_x", [](const AreaLight& l) { return to_triple(l.half_x); })
       .def_property_readonly("half_y", [](const AreaLight& l) { return to_triple(l.half_y); })
       .def_property_readonly("radiance", [](const AreaLight& l) { return to_triple(l.radiance); })
       .def_readonly("ellipse", &AreaLight::ellipse)
-      .def_readonly("spread", &AreaLight::spread);
+      .def_readonly("spread", &AreaLight::spread)
+      .def_readonly("drawn", &AreaLight::drawn);
 }
 
 using Surroundings = scene::Surroundings;

@@ -187,20 +187,37 @@ def test_what_stands_in_a_jar_or_behind_it_is_seen(material, jar, render, away, 
     assert render()[3:5, 3:5, :3].mean() == pytest.approx(left * reflectance + 1.0 - left, abs=0.015)
 
 
+def shine(material, shape):
+    """Puts what `shape` adds to a bmesh in place of the cube, shining, under nothing else."""
+    shade(material, "ShaderNodeEmission", Color=(1.0, 1.0, 1.0, 1.0), Strength=0.5)
+    made = bmesh.new()
+    shape(made)
+    made.to_mesh(bpy.data.objects["Cube"].data)
+    made.free()
+    bpy.data.objects["Cube"].data.materials.append(material)
+
+
 def test_what_shines_in_a_jar_is_seen_with_edges(material, jar, render):
     """A ball, which is no light to others: it fills a disc of few samples, one pixel wide at its edge."""
-    shade(material, "ShaderNodeEmission", Color=(1.0, 1.0, 1.0, 1.0), Strength=0.5)
-    ball = bmesh.new()
-    bmesh.ops.create_uvsphere(ball, u_segments=96, v_segments=48, radius=0.5)
-    ball.to_mesh(bpy.data.objects["Cube"].data)
-    ball.free()
-    bpy.data.objects["Cube"].data.materials.append(material)
+    shine(material, lambda ball: bmesh.ops.create_uvsphere(ball, u_segments=96, v_segments=48, radius=0.5))
     jar(0.0, 48, 4)
     shown = render()[..., :3].mean(axis=2) / (0.5 * LEFT_BY_A_WALL)
     assert shown[20:28, 20:28].mean() == pytest.approx(1.0, abs=0.03)
     inside, outside = shown > 0.7, shown < 0.15
     radius = np.sqrt(inside.sum() / np.pi)
     assert (~inside & ~outside).sum() < 1.2 * 2.0 * np.pi * radius and inside.sum() > 300
+
+
+def test_a_light_that_is_a_surface_is_seen_as_one_through_glass(material, jar, render):
+    """A rectangle, and no disc of its area."""
+    shine(material, lambda plane: bmesh.ops.create_grid(plane, x_segments=1, y_segments=1, size=0.5))
+    bpy.data.objects["Cube"].scale = (1.6, 0.6, 1.0)
+    jar(0.0, 48, 16)
+    shown = render()[..., :3].mean(axis=2) / (0.5 * LEFT_BY_A_WALL)
+    rows, columns = np.nonzero(shown > 0.7)
+    assert shown[rows, columns].mean() == pytest.approx(1.0, abs=0.03)
+    wide, high = np.ptp(columns) + 1, np.ptp(rows) + 1
+    assert wide / high == pytest.approx(1.6 / 0.6, rel=0.12) and len(rows) > 0.95 * wide * high > 250
 
 
 def test_a_chosen_model_makes_it_a_grain(material):

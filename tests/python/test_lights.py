@@ -22,7 +22,7 @@ POINT = {"type": "point", "position": [0, 0, 4], "radiant_intensity_linear_rgb":
 SPOT = {"type": "spot", "position": [0, 0, 4], "radiant_intensity_linear_rgb": 2, "axis": [0, 0, -1], "angle": 0.8,
         "blend": 0.3, "cosine": True, "wide_x": [2, 0, 0], "wide_y": [0, 1, 0]}
 AREA = {"type": "area", "position": [0, 0, 4], "half_x": [1, 0, 0], "half_y": [0, 0.5, 0], "radiance_linear_rgb": 7,
-        "ellipse": True, "spread": 1.5}
+        "ellipse": True, "spread": 1.5, "drawn": True}
 
 
 def load(**changes):
@@ -33,7 +33,8 @@ def test_every_kind_is_read():
     point, spot, area = load(lights=[POINT, SPOT, AREA]).lights
     assert (point.radiant_intensity, point.radius, point.shape) == ([3, 2, 1], 0.5, "sphere")
     assert (spot.axis, spot.angle, spot.blend, spot.cosine, spot.shape) == ([0, 0, -1], 0.8, 0.3, True, "disc")
-    assert (area.half_y, area.radiance, area.ellipse, area.spread) == ([0, 0.5, 0], [7, 7, 7], True, 1.5)
+    assert (area.half_y, area.radiance, area.ellipse) == ([0, 0.5, 0], [7, 7, 7], True)
+    assert (area.spread, area.drawn) == (1.5, True)
 
 
 def test_a_world_is_read_with_its_image(tmp_path):

@@ -123,7 +123,7 @@ def test_a_finish_is_written_and_read(tmp_path, diffuse):
                                     to_picture=[[0.4, 0.1, 0, 0.2], [0, 0.7, 0, 0]]),
         emission=native.TextureMap(coloured, smooth=False), normal=native.TextureMap(coloured), normal_strength=0.5,
         coat=0.05, coat_roughness=0.4, **diffuse, metal_whitens=True, facets_keep_energy=True,
-        facets_shade_bumps=True, bent_normals_stay=True, radiance=(0.5, 0.4, 0.3))
+        facets_shade_bumps=True, bent_normals_stay=True, faces_are_lights=True, radiance=(0.5, 0.4, 0.3))
     material = native.Material(model="lambert", reflectance=(0.5, 0.4, 0.3), finish=finish)
     scene = native.Scene(instances=[native.Instance(mesh, material)],
                          lights=[native.DirectionalLight((0.3, 0.2, 1), (3, 2, 1))])

@@ -53,4 +53,4 @@ def _light(name, corners, side, radiance):
         ("position", tuple((corners.mean(axis=0) + APART * size * normal).tolist())),
         ("half_x", tuple(half_x.tolist())),
         ("half_y", tuple(half_y.tolist())),
-        ("radiance", tuple(radiance)), ("ellipse", False), ("spread", np.pi)))
+        ("radiance", tuple(radiance)), ("ellipse", False), ("spread", np.pi), ("drawn", True)))

@@ -12,6 +12,7 @@ struct AreaLight {
   glm::dvec3 radiance{1.0};                ///< linear RGB, along its normal
   bool ellipse = false;                    ///< the ellipse with these half axes, else the parallelogram
   double spread = 3.14159265358979323846;  ///< full angle of the cone that it shines into, as through a grid of slats
+  bool drawn = false;                      ///< it stands for a surface of the scene, which is seen where it is
 
   bool operator==(const AreaLight&) const = default;
 };
