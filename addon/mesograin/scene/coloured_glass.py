@@ -10,20 +10,26 @@ RAYS = 256
 LEAST = 1e-4
 """Of light: less would need endless absorption."""
 
-_chords = weakref.WeakKeyDictionary()  # of native.Mesh: {eta: chords}
+MOST_COLOURS = 64
+"""Of a mesh, that are remembered: a slider's are many."""
+
+_known = weakref.WeakKeyDictionary()  # of native.Mesh: (eta, chords, {tint: absorption}), of the last eta
 
 
 def absorption(thing, mesh, tint, eta):
     """(3,) per unit of the shape's own space, of which light that enters from everywhere keeps `tint`, linear RGB, on
     its first way through; None where it does not end in it. thing: the evaluated object; mesh: its native.Mesh, by
     which ways are remembered."""
-    known = _chords.setdefault(mesh, {})
-    if eta not in known:
-        known[eta] = chords(thing, eta)
-    ways = known[eta]
+    if mesh not in _known or _known[mesh][0] != eta:
+        _known[mesh] = eta, chords(thing, eta), {}
+    _, ways, colours = _known[mesh]
     if 2 * len(ways) < RAYS:
         return None
-    return tuple(_keeping(max(left, LEAST), ways) for left in tint)
+    if tint not in colours:
+        if len(colours) == MOST_COLOURS:
+            colours.clear()
+        colours[tint] = tuple(_keeping(max(left, LEAST), ways) for left in tint)
+    return colours[tint]
 
 
 def chords(thing, eta):
@@ -32,16 +38,19 @@ def chords(thing, eta):
     mesh = thing.to_mesh()
     try:
         mesh.calc_loop_triangles()
-        places = [vertex.co.copy() for vertex in mesh.vertices]
-        triangles = [tuple(triangle.vertices) for triangle in mesh.loop_triangles]
+        places = np.empty(3 * len(mesh.vertices), dtype=np.float32)
+        mesh.vertices.foreach_get("co", places)
+        triangles = np.empty(3 * len(mesh.loop_triangles), dtype=np.int32)
+        mesh.loop_triangles.foreach_get("vertices", triangles)
     finally:
         thing.to_mesh_clear()
-    corners = np.array(places, dtype=float).reshape(-1, 3)[np.array(triangles, dtype=int).reshape(-1, 3)]
+    places, triangles = places.reshape(-1, 3), triangles.reshape(-1, 3)
+    corners = places.astype(float)[triangles]
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     areas = np.linalg.norm(across, axis=1)
     if not areas.sum() > 0.0:
         return np.zeros(0)
-    tree = BVHTree.FromPolygons(places, triangles)
+    tree = BVHTree.FromPolygons(places.tolist(), triangles.tolist())
     shift = 1e-5 * float(np.ptp(corners.reshape(-1, 3), axis=0).max())
     random = np.random.default_rng(0)
     shares = (np.arange(RAYS) + random.random(RAYS)) / RAYS
