@@ -110,7 +110,7 @@ class Gather {
   struct StraightEnd {
     std::optional<Meeting> met;  ///< another or a wall; else the world
     glm::vec3 direction;         ///< its normal; of the world the way towards it
-    glm::vec3 radiance;          ///< the world's; else 1
+    glm::vec3 radiance;          ///< of the world, else of 1 there, what is left of it on its way
   };
 
   /// Nothing, where that is not clearly seen.

@@ -25,8 +25,12 @@ bool is_totally_reflected(const glm::vec3& travelling, const glm::vec3& normal, 
 }  // namespace
 
 std::optional<Gather::StraightEnd> Gather::straight_end(SeenFacet seen, const Facets& facets) const {
+  glm::vec3 left(1.0F);
   for (int through = 0; through < most_looked_into; ++through) {
-    const auto eta = static_cast<float>(optics(seen.grain).eta);
+    const Optics& of = optics(seen.grain);
+    const auto eta = static_cast<float>(of.eta);
+    const glm::vec3 absorbed(of.sigma_t * (1.0 - of.albedo) /
+                             static_cast<double>(space_.grains()[seen.grain].radius_of_kind()));
     glm::vec3 direction = -seen.towards;
     if (facets.finish(seen.grain).roughness >= least_rough || is_totally_reflected(direction, seen.normal, eta))
       return std::nullopt;
@@ -36,7 +40,8 @@ std::optional<Gather::StraightEnd> Gather::straight_end(SeenFacet seen, const Fa
     for (int met = 0; within && met <= most_reflected; ++met) {
       const std::optional<Meeting> facet = facets.inside(seen.grain, place, direction);
       if (!facet) break;
-      if (facet->wall) return StraightEnd{facet, facet->normal, glm::vec3(1.0F)};
+      left *= glm::exp(-glm::distance(place, facet->place) * absorbed);
+      if (facet->wall) return StraightEnd{facet, facet->normal, left};
       place = facet->place;
       within = is_totally_reflected(direction, facet->normal, 1.0F / eta);
       direction = within ? glm::normalize(glm::reflect(direction, facet->normal))
@@ -44,8 +49,8 @@ std::optional<Gather::StraightEnd> Gather::straight_end(SeenFacet seen, const Fa
     }
     if (within) return std::nullopt;
     const std::optional<Meeting> meeting = facets.beyond(seen.grain, place, direction);
-    if (!meeting) return StraightEnd{std::nullopt, direction, world_along(direction, true)};
-    if (meeting->wall || meeting->number != seen.grain) return StraightEnd{meeting, meeting->normal, glm::vec3(1.0F)};
+    if (!meeting) return StraightEnd{std::nullopt, direction, left * world_along(direction, true)};
+    if (meeting->wall || meeting->number != seen.grain) return StraightEnd{meeting, meeting->normal, left};
     seen = {meeting->number, meeting->place, meeting->normal, -direction};
   }
   return std::nullopt;

@@ -43,7 +43,7 @@ heap::Gather::Through into_clear(const heap::SeenFacet& seen, const PixelRays& r
   return sum;
 }
 
-// Of light that a grain meets on a straight way through it. Divided by less, noise is all that is left.
+// Of light that a grain meets, or lets through, on a straight way. Divided by less, noise is all that is left.
 constexpr float least_share = 1e-3F;
 
 /// What is scattered in a medium that begins without refraction depends on the place as much as on its bumps: within 45
