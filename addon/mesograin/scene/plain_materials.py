@@ -304,7 +304,7 @@ def _read_principled(found, _material, node):
             found.leave_out("what of it is no glass")
         if _emission(socket) is not None:
             found.leave_out("its emission")
-        unknown = _TRANSMISSION_ROUGHNESS, *_LAYERS
+        unknown = _TRANSMISSION_ROUGHNESS, _THIN_WALL, *_LAYERS
     else:
         _read_opaque_principled(found, node, socket)
         unknown = _TRANSMISSION, _SUBSURFACE, *_LAYERS
@@ -316,6 +316,7 @@ def _read_principled(found, _material, node):
 
 _TRANSMISSION = (("Transmission Weight", "Transmission"), "its transmission", 0.0)
 _TRANSMISSION_ROUGHNESS = (("Transmission Roughness",), "the roughness of its transmission", 0.0)
+_THIN_WALL = (("Thin Wall",), "that its wall is thin", False)
 _SUBSURFACE = (("Subsurface Weight", "Subsurface"), "its subsurface scattering", 0.0)
 _LAYERS = ((("Coat Weight", "Clearcoat"), "its clear coat", 0.0), (("Sheen Weight", "Sheen"), "its sheen", 0.0),
            (("Alpha",), "its transparency", 1.0))
