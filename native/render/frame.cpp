@@ -181,6 +181,7 @@ bool Frame::add_sample(const GoOn& go_on, bool hurried) {
   if (!(unwrapping_ ? draw_unwrapped(sample) : draw_seen(sample))) return false;
   timers_.shade.stop();
   if (!mirror_.run(sample, arrays_, surfaces_, shadows_, shade_)) return false;
+  subpixels_.smooth(sample);
   timers_.accumulate.start();
   accumulate_.run(*targets_, targets_->sum, added_to() == 0);
   timers_.accumulate.stop();
@@ -198,7 +199,9 @@ bool Frame::draw_seen(const Sample& sample) {
     if (!surfaces_.run(sample, arrays_, first)) return false;
     if (first == 0) {
       timers_.surfaces.stop();
-      if (!update_shadows(sample) || !gather_.run(sample, arrays_, surfaces_)) return false;
+      if (!update_shadows(sample) || !gather_.run(sample, arrays_, surfaces_) ||
+          !subpixels_.look(sample, arrays_, surfaces_))
+        return false;
       // Rays are not the device's work.
       if (sample.cast) timers_.shade.start();
       shade_.clear(sample);
@@ -222,6 +225,7 @@ bool Frame::add_portions(Sample sample) {
     }
     const bool looks_on = portion == Portion::specular || portion == Portion::transmission;
     if (looks_on && !mirror_.run(sample, arrays_, surfaces_, shadows_, shade_)) return false;
+    subpixels_.smooth(sample);
     accumulate_.run(*targets_, *told.sum, told.samples == 0);
     ++told.samples;
   }
@@ -303,6 +307,7 @@ std::vector<PassTiming> Frame::timings() const {
   }
   if (mirror_.ran()) passes.push_back({"mirror", mirror_.milliseconds()});
   if (gather_.ran()) passes.push_back({"gather", gather_.milliseconds()});
+  if (subpixels_.ran()) passes.push_back({"subpixels", subpixels_.milliseconds()});
   passes.push_back({"shade", shade});
   passes.push_back({"accumulate", timers_.accumulate.milliseconds()});
   return passes;

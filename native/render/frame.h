@@ -20,6 +20,7 @@
 #include "render/passes/sample.h"
 #include "render/passes/shade_pass.h"
 #include "render/passes/shadow_pass.h"
+#include "render/passes/subpixel_pass.h"
 #include "render/passes/surface_pass.h"
 #include "render/passes/targets.h"
 #include "render/passes/timings.h"
@@ -166,6 +167,7 @@ class Frame {
   GatherPass gather_;
   ShadePass shade_;
   MirrorPass mirror_;
+  SubpixelPass subpixels_;
   AccumulatePass accumulate_;
   PassTimers timers_;
   bool timed_ = false;
