@@ -1,4 +1,4 @@
-"""The edges of a picture's first two samples are smooth where light is gathered: each pixel looks at three more places."""
+"""The edges of a picture's first two samples are smooth where light is gathered: a pixel looks at three more places."""
 
 import mesograin_native as native
 import numpy

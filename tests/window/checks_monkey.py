@@ -1,9 +1,12 @@
 # A monkey works in Blender's window: nothing breaks, the picture after it is right, and over a long day memory rests.
-# MESOGRAIN_MONKEY=2000 has it do so many operations, MESOGRAIN_MONKEY_SEED=7 others.
+# MESOGRAIN_MONKEY=2000 has it do so many operations, MESOGRAIN_MONKEY_SEED=7 others; MESOGRAIN_ENGINE=BLENDER_WORKBENCH
+# those without us. In 4000 of them Blender 5.2 keeps 6 % more over the last half by itself, and 5 with us (allocated by
+# jemalloc, which is told to let go of what is free; by TBB's, which 5.2 comes with, more stays).
 import os
 
 import bpy
 import monkey
+import monkey_work
 from mesograin.engine import status
 
 OPERATIONS = int(os.environ.get("MESOGRAIN_MONKEY", "60"))
@@ -20,6 +23,9 @@ def check_whatever_a_monkey_does_nothing_breaks(window):
     memory = yield from one.live(OPERATIONS, HOME_EVERY)
     if OPERATIONS >= LONG:
         grown = monkey.growth(memory)
+        print(f"monkey, {monkey_work.ENGINE}: memory grew by {grown:.1%} over the last half", flush=True)
+        if monkey_work.ENGINE != monkey_work.OURS:
+            return
         assert grown < MOST_GROWTH, f"memory grew by {grown:.1%} over the last half: {memory}"
     area = yield from window.open("sphere")
     assert bpy.context.scene.render.engine == "MESOGRAIN"

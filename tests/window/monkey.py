@@ -93,6 +93,7 @@ class Monkey:
     def open(self, path, load_ui=False):
         bpy.ops.wm.open_mainfile(filepath=str(path), load_ui=load_ui)
         scene = bpy.context.scene
+        scene.render.engine = monkey_work.ENGINE
         scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = 96, 64, 100
         scene.mesograin.viewport_samples = 16
         thin_out(bpy.data.meshes.get("Heap"))

@@ -1,5 +1,6 @@
 # What a monkey may do in Blender's window: each function with @work is one operation, which draws its choices from `m`.
 import math
+import os
 
 import bpy
 from mesograin.schema import models, parameters
@@ -11,7 +12,10 @@ WORK = []  # (weight, function)
 COLOURS = [name for name, each in parameters.PARAMETERS.items() if each.kind == "rgb"]
 MOST_OBJECTS = 14
 MANY_VERTICES = 2000  # of a mesh that is not multiplied
-ENGINES = ("MESOGRAIN", "MESOGRAIN", "MESOGRAIN", "BLENDER_WORKBENCH", "CYCLES")
+# MESOGRAIN_ENGINE=BLENDER_WORKBENCH tells what Blender keeps of the same day without us: the engine of each file, then.
+OURS = "MESOGRAIN"
+ENGINE = os.environ.get("MESOGRAIN_ENGINE", OURS)
+ENGINES = (ENGINE, ENGINE, ENGINE, "BLENDER_WORKBENCH", "CYCLES")
 FILES = ("sphere", "grain", "heap", "studio")
 
 
@@ -479,6 +483,8 @@ def render_animation(m):
 
 @work(2)
 def bake(m):
+    if ENGINE != OURS:
+        return
     asked = bpy.context.scene.mesograin_bake
     asked.samples, asked.width, asked.height = m.random.choice((2, 1 << 14)), 32, 32
     asked.compare = False
@@ -496,6 +502,8 @@ def cancel_bake(m):
 
 @work(1)
 def compare(m):
+    if ENGINE != OURS:
+        return
     asked = bpy.context.scene.mesograin_compare
     asked.models, asked.size_percent, asked.out = {"lambert"}, 2, str(m.folder / "compared")
     yield from m.operator("mesograin", "compare")
