@@ -200,7 +200,7 @@ void Gather::follow_look(SeenFacet seen, const Facets& facets, const Look& how, 
       sees_surfaces = undisturbed && facets.finish(seen.grain).roughness < rough;
       glm::vec3 found = lights_along(seen.grain, *passage, spread, sees_surfaces, facets, random);
       if (!how.alone) found += glare_along(seen.grain, *passage, spread, facets, random);
-      (passage->scattered ? sum.scattered : sum.lights) += weight * found;
+      (passage->scattered ? sum.scattered : undisturbed ? sum.lights : sum.chance) += weight * found;
     }
     const std::optional<Meeting> meeting =
         passage->wall ? passage->wall : facets.beyond(seen.grain, passage->place, passage->direction);
@@ -236,6 +236,17 @@ float Gather::spread_of(const Passage& passage, float narrowed) {
 
 // Kaplanyan and Dachsbacher 2013, section 4.3 and their supplement: of a mollifier in two dimensions.
 float Gather::narrowed(std::uint32_t sample) { return std::pow(static_cast<float>(sample) + 1.0F, -1.0F / 6.0F); }
+
+float Gather::smallest_cone() const {
+  float angle = image_ ? spread_of_facets : 0.5F * std::numbers::pi_v<float>;
+  for (std::size_t i = 0; i < lights_.size(); ++i) {
+    const bool sun = std::holds_alternative<scene::DirectionalLight>(heap_.lights[i]);
+    const double away = sun ? 1.0 : glm::length(glm::dvec3(lights_[i].place));
+    const auto wide = static_cast<float>(0.5 * lights::light_angle(lights_[i], away));
+    angle = std::min(angle, std::max(wide, spread_of_facets));
+  }
+  return solid_angle(std::cos(angle));
+}
 
 glm::vec3 Gather::world_along(const glm::vec3& direction, bool as_it_is) const {
   const glm::dvec3 along(direction);

@@ -78,12 +78,14 @@ class Gather {
     glm::vec3 lights{0.0F};  ///< of the world and the lights, unscattered; of a grain alone, of all that is behind it
     glm::vec3 scattered{0.0F};  ///< of both, scattered in it
     glm::vec3 mirrored{0.0F};   ///< of both, reflected by its surface
+    glm::vec3 chance{0.0F};     ///< of lights, unscattered, that few looks meet
 
     void add(const Through& other) {
       others += other.others;
       lights += other.lights;
       scattered += other.scattered;
       mirrored += other.mirrored;
+      chance += other.chance;
     }
 
     void scale(float by) {
@@ -91,6 +93,7 @@ class Gather {
       lights *= by;
       scattered *= by;
       mirrored *= by;
+      chance *= by;
     }
   };
 
@@ -115,6 +118,10 @@ class Gather {
 
   /// Nothing, where that is not clearly seen.
   std::optional<StraightEnd> straight_end(SeenFacet seen, const Facets& facets) const;
+
+  /// Of all looks through clear grains such a share of a sphere at least sees the scene's smallest light, in a
+  /// picture's first sample: the solid angle, in steradians, of the cone that it is spread over.
+  float smallest_cone() const;
 
   /// Look::narrowed of a picture's sample: its bias goes as its noise does, the more samples there are.
   static float narrowed(std::uint32_t sample);

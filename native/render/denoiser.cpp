@@ -15,11 +15,8 @@
 namespace mesograin::render {
 namespace {
 
-// In pixels, of the first sample's Gaussian.
-constexpr double first_deviation = 2.0;
-
-// Its variance falls with the root of the samples, between what keeps the blur of the sum from vanishing and what keeps
-// its noise (Knaus and Zwicker, "Progressive photon mapping: a probabilistic approach", 2011, section 4).
+// The Gaussian's variance falls with the root of the samples, between what keeps the blur of the sum from vanishing and
+// what keeps its noise (Knaus and Zwicker, "Progressive photon mapping: a probabilistic approach", 2011, section 4).
 constexpr double shrinking = 0.5;
 
 // A Gaussian narrower than this leaves a pixel 97 % of itself.
@@ -117,8 +114,8 @@ class LineFilter {
 }  // namespace
 
 bool Denoiser::run(const glm::ivec2& size, std::uint32_t index, const std::vector<Likeness>& likenesses,
-                   const std::vector<std::vector<glm::vec4>*>& pictures, const GoOn& go_on) {
-  const double deviation = first_deviation * std::pow(index + 1.0, -0.5 * shrinking);
+                   const std::vector<std::vector<glm::vec4>*>& pictures, double deviation, const GoOn& go_on) {
+  deviation *= std::pow(index + 1.0, -0.5 * shrinking);
   if (deviation < least_deviation) return true;
   const std::vector<float> weights = gaussian(deviation);
   const auto width = static_cast<std::size_t>(size.x);

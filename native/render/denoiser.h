@@ -24,9 +24,10 @@ class Denoiser {
  public:
   /// Puts means over neighbours in place of each pixel of a sample's `pictures` of this `size`. The later the sample,
   /// `index`, the nearer they must be: what the mean of all samples is blurred by vanishes as its noise does. All light
-  /// is kept, and so is what the pictures add up to at each pixel, if it is the same everywhere. False if ended.
+  /// is kept, and so is what the pictures add up to at each pixel, if it is the same everywhere. `deviation`: in
+  /// pixels, of the first sample's Gaussian. False if ended.
   bool run(const glm::ivec2& size, std::uint32_t index, const std::vector<Likeness>& likenesses,
-           const std::vector<std::vector<glm::vec4>*>& pictures, const GoOn& go_on);
+           const std::vector<std::vector<glm::vec4>*>& pictures, double deviation, const GoOn& go_on);
 
  private:
   std::vector<std::vector<glm::vec4>> relative_;

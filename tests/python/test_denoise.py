@@ -3,6 +3,7 @@
 import mesograin_native as native
 import numpy
 import pytest
+from test_clear_heaps import cube
 from test_heap_light import ROUND, camera, heap, white
 
 SUN = [native.DirectionalLight((0.6, 0.3, 1.0), (3.0,) * 3)]
@@ -50,6 +51,26 @@ def test_no_light_comes_or_goes(of):
         means = [picture([heap(of)], denoise, samples)[0][..., :3].sum(dtype=float) for samples in (2, 3)]
         return 3.0 * means[1] - 2.0 * means[0]
     assert total(True) == pytest.approx(total(False), rel=1e-5)
+
+
+def cubes(of):
+    """Turned any way round in the balls' places."""
+    places = heap(of).transforms
+    turns = numpy.linalg.qr(numpy.random.default_rng(3).normal(size=(len(places), 3, 3)))[0]
+    places[:, :3, :3] = places[:, :3, :3] @ turns
+    return native.InstanceArray(cube(1.1), of, places)
+
+
+# One look in a hundred finds a small sun through clear cubes, a hundred times as bright. Measured of the brightest
+# percent of pixels' share of all light: .31 with Denoise and .88 without; shared no wider than all else .45.
+def test_a_small_sun_through_clear_grains_is_no_white_dots():
+    clear = native.Material(model="model_2", eta=1.5, sigma_a=(0.001,) * 3, sigma_s=(0.0,) * 3)
+    shares = []
+    for denoise in (True, False):
+        light = picture([cubes(clear)], denoise, 2)[1][..., 1].ravel()
+        brightest = numpy.sort(light)[-len(light) // 100:]
+        shares.append(brightest.sum() / light.sum())
+    assert shares[0] < 0.38 < 0.7 < shares[1]
 
 
 def test_many_samples_are_not_blurred(pictures):

@@ -1,6 +1,7 @@
 // Each pixel looks at its grain a few times a sample.
 #include "render/passes/gather_pass.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <glm/common.hpp>
@@ -19,6 +20,18 @@ constexpr int rays_a_sample = 4;
 
 // Into clear grains, where nothing else is gathered: two would cost nearly twice as much for half the noise's square.
 constexpr int rays_into_clear = 1;
+
+// In pixels, of the first sample's filter.
+constexpr double deviation = 2.0;
+
+// Of what one look in a hundred finds of a light, a hundred times as bright: wider, the smaller the cone is that it is
+// found in, up to this for one of ten degrees.
+constexpr double most_deviation = 8.0;
+constexpr double cone_of_ten_degrees = 0.0239;
+
+double deviation_by_chance(double cone) {
+  return std::clamp(most_deviation * cone_of_ten_degrees / cone, deviation, most_deviation);
+}
 
 void upload(std::optional<gl::Texture>& texture, const glm::ivec2& size, const std::vector<glm::vec4>& pixels) {
   if (!texture || texture->width() != size.x || texture->height() != size.y)
@@ -88,7 +101,10 @@ bool GatherPass::run(const Sample& sample, const ArrayVisibility& arrays, Surfac
   behind_.assign(seen.normals.size(), glm::vec4(0.0F));
   likenesses_.assign(seen.normals.size(), Likeness());
   const bool clear = facets && gather->sees_into_any();
-  if (clear) highlights_.assign(seen.normals.size(), glm::vec4(0.0F));
+  if (clear) {
+    highlights_.assign(seen.normals.size(), glm::vec4(0.0F));
+    chance_.assign(seen.normals.size(), glm::vec4(0.0F));
+  }
   const auto width = static_cast<std::size_t>(sample.size.x);
   const PixelRays pixel_rays(anchor_to_clip(sample.content, sample.camera), sample.size, glm::dvec2(0.0),
                              sample.content.instances() != nullptr ? sample.content.instances()->bounds() : Bounds{});
@@ -120,6 +136,7 @@ bool GatherPass::run(const Sample& sample, const ArrayVisibility& arrays, Surfac
         lights_[i] = glm::vec4(into.lights, 0.0F);
         scattered_[i] = glm::vec4(into.scattered, 0.0F);
         mirrored_[i] = glm::vec4(into.mirrored, 0.0F);
+        chance_[i] = glm::vec4(into.chance, 0.0F);
         if (how.whole)
           highlights_[i] = glm::vec4(gather->highlights({*grain, place, normal, towards}, *facets, random), 0.0F);
       } else if (sample.gathers_all_of(number)) {
@@ -155,13 +172,18 @@ bool GatherPass::run(const Sample& sample, const ArrayVisibility& arrays, Surfac
   if (sample.denoises) {
     std::vector<std::vector<glm::vec4>*> noisy{&others_, &lights_, &scattered_};
     if (clear) noisy.push_back(&mirrored_);
-    if (!denoiser_.run(seen.size, sample.index, likenesses_, noisy, sample.go_on)) return false;
+    if (!denoiser_.run(seen.size, sample.index, likenesses_, noisy, deviation, sample.go_on)) return false;
+    if (clear && !denoiser_.run(seen.size, sample.index, likenesses_, {&chance_},
+                                deviation_by_chance(gather->smallest_cone()), sample.go_on))
+      return false;
   }
   // They have no noise, and edges.
   for (std::size_t i = 0; i < others_.size(); ++i) {
     others_[i] += straight_[i];
     lights_[i] += behind_[i];
-    if (clear) mirrored_[i] += highlights_[i];
+    if (!clear) continue;
+    mirrored_[i] += highlights_[i];
+    lights_[i] += chance_[i];
   }
   upload(device_others_, sample.size, others_);
   upload(device_lights_, sample.size, lights_);

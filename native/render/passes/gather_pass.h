@@ -37,6 +37,7 @@ class GatherPass {
   std::vector<glm::vec4> scattered_;   // lights, in grains that no model is asked of
   std::vector<glm::vec4> mirrored_;    // and at their surfaces
   std::vector<glm::vec4> highlights_;  // of lights, there
+  std::vector<glm::vec4> chance_;      // and those that few looks through clear grains meet
   std::vector<glm::vec4> straight_;    // of what others send
   std::vector<glm::vec4> behind_;      // the world and the film, seen straight through
   std::optional<gl::Texture> device_others_;
