@@ -119,8 +119,8 @@ class Gather {
   /// Nothing, where that is not clearly seen.
   std::optional<StraightEnd> straight_end(SeenFacet seen, const Facets& facets) const;
 
-  /// Of all looks through clear grains such a share of a sphere at least sees the scene's smallest light, in a
-  /// picture's first sample: the solid angle, in steradians, of the cone that it is spread over.
+  /// The solid angle, in steradians, of the smallest cone in which looks through clear grains find a light of the
+  /// scene, in a picture's first sample.
   float smallest_cone() const;
 
   /// Look::narrowed of a picture's sample: its bias goes as its noise does, the more samples there are.

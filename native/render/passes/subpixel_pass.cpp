@@ -46,7 +46,8 @@ glm::dvec2 hammersley(int i, int points) {
 }  // namespace
 
 bool SubpixelPass::look(const Sample& sample, const ArrayVisibility& arrays, SurfacePass& surfaces) {
-  ran_ = sample.cast && sample.gathers && sample.index < most_samples;
+  const bool by_rays = sample.cast || sample.device_rays;
+  ran_ = by_rays && sample.traced && sample.gathers && sample.index < most_samples;
   if (!ran_) return true;
   const auto start = std::chrono::steady_clock::now();
   const SeenSurfaces seen = surfaces.seen(sample);
