@@ -36,7 +36,7 @@ double seen_through(double aside, double width, bool flat, std::uint32_t sample 
                .look_into({0, half_thickness * up, up, up}, Plate(smooth, flat),
                           {.scatterings = Scatterings::followed, .whole = true, .narrowed = Gather::narrowed(sample)},
                           random)
-               .lights.g /
+               .chance.g /
            looks;
   return sum;
 }
