@@ -198,7 +198,7 @@ def _choose_profile(layout, grain):
     if layout.use_property_split:
         row = layout.row(heading="Profile")
         row.menu(**menu)
-        row.prop_decorator(grain, "profile")
+        row.label(icon="BLANK1")  # where the others have their dot, which finds no button of the property here
         return
     column = layout.column(align=True)
     column.label(text="Profile")
