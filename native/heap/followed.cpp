@@ -179,7 +179,7 @@ glm::vec3 Gather::passed_between(std::uint32_t grain, glm::vec3 place, const glm
   const glm::vec3 start = place;
   glm::vec3 left(1.0F);
   for (int crossed = 0; crossed < most_crossed; ++crossed) {
-    const std::optional<Meeting> meeting = facets.beyond(grain, place, to_light);
+    const std::optional<Meeting> meeting = beyond_panes(grain, place, to_light, false, facets, left);
     if (!meeting || glm::distance(start, meeting->place) >= reach) return left;
     if (meeting->wall) break;
     const std::optional<End> end = end_across(meeting->number, meeting->place, to_light, facets);
@@ -206,7 +206,8 @@ glm::vec3 Gather::seen_between(std::uint32_t grain, std::optional<Meeting> wall,
                                const Facets& facets, transport::Random& random, Behind* behind) const {
   glm::vec3 seen(0.0F);
   for (int crossed = 0; crossed < most_crossed && largest(ray.weight) >= nothing; ++crossed) {
-    const std::optional<Meeting> meeting = wall ? wall : facets.beyond(grain, ray.origin, ray.direction);
+    const std::optional<Meeting> meeting =
+        wall ? wall : beyond_panes(grain, ray.origin, ray.direction, true, facets, ray.weight);
     if (!meeting) return seen;
     Ray here = ray;
     if (meeting->wall) {

@@ -313,11 +313,30 @@ glm::vec3 Gather::highlight(const SeenFacet& seen, const Facets& facets, const l
 
 glm::vec3 Gather::passed_towards(std::uint32_t grain, const glm::vec3& place, const glm::vec3& to_light, float reach,
                                  const Facets& facets) const {
-  const std::optional<Meeting> meeting = facets.beyond(grain, place, to_light);
-  if (!meeting || glm::distance(meeting->place, place) >= reach) return glm::vec3(1.0F);
+  glm::vec3 left(1.0F);
+  const std::optional<Meeting> meeting = beyond_panes(grain, place, to_light, false, facets, left);
+  if (!meeting || glm::distance(meeting->place, place) >= reach) return left;
   if (meeting->wall || !heap_.grains.kinds[space_.grains()[meeting->number].kind].transparent()) return glm::vec3(0.0F);
   Ray ray{place, to_light, glm::vec3(1.0F)};
   return space_.passed(ray, reach);
+}
+
+std::optional<Meeting> Gather::beyond_panes(std::uint32_t grain, glm::vec3 place, const glm::vec3& direction,
+                                            bool mirrored, const Facets& facets, glm::vec3& left) const {
+  const std::vector<Pane>& panes = heap_.grains.panes;
+  for (int crossed = 0;; ++crossed) {
+    std::optional<Meeting> meeting = facets.beyond(grain, place, direction);
+    if (!meeting || meeting->wall || crossed == most_crossed) return meeting;
+    const auto pane =
+        std::find_if(panes.begin(), panes.end(), [&](const Pane& one) { return one.grain == meeting->number; });
+    if (pane == panes.end()) return meeting;
+    const std::optional<End> end = facets.end(meeting->number, meeting->place, direction);
+    const float way = end ? end->distance : 0.0F;
+    const Sheet glass = sheet(pane->glass, std::max(-glm::dot(meeting->normal, direction), 0.0F), way);
+    left *= mirrored ? glass.left() : glass.passed;
+    grain = meeting->number;
+    place = meeting->place + way * direction;
+  }
 }
 
 glm::vec3 Gather::lights_along(std::uint32_t grain, const Passage& passage, float spread, bool but_drawn,

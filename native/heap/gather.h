@@ -167,6 +167,10 @@ class Gather {
   /// The same of a sun's disc by a surface smooth enough to be a mirror of it: `sun`: its number.
   glm::vec3 mirrored_disc(const SeenFacet& seen, const Facets& facets, std::size_t sun,
                           const glm::vec3& irradiance) const;
+  /// What is met from a grain's surface on, straight through panes, of whose light `left` loses what they reflect and
+  /// absorb; only what they absorb if `mirrored`, as if what they reflect saw the same.
+  std::optional<Meeting> beyond_panes(std::uint32_t grain, glm::vec3 place, const glm::vec3& direction, bool mirrored,
+                                      const Facets& facets, glm::vec3& left) const;
   /// What is left of a light on its way to a grain's surface.
   glm::vec3 passed_towards(std::uint32_t grain, const glm::vec3& place, const glm::vec3& to_light, float reach,
                            const Facets& facets) const;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 #include <glm/vec4.hpp>
 
 #include "base/error.h"
@@ -23,8 +24,10 @@ struct Neighbourhood::Device {
     if (device == nullptr) throw Error("Embree, which traces rays between grains, could not be started.");
     scene = rtcNewScene(device);
     only_walls = rtcNewScene(device);
+    only_panes = rtcNewScene(device);
   }
   ~Device() {
+    rtcReleaseScene(only_panes);
     rtcReleaseScene(only_walls);
     rtcReleaseScene(scene);
     rtcReleaseDevice(device);
@@ -42,10 +45,10 @@ struct Neighbourhood::Device {
     rtcReleaseGeometry(geometry);
   }
 
-  void add_wall(const Wall& wall, std::uint32_t number) {
+  RTCGeometry geometry_of(const scene::Mesh& mesh, const glm::dmat4& to_heap) const {
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    const std::vector<glm::vec3> positions = wall.positions();
-    const std::vector<glm::uvec3>& triangles = wall.mesh->triangles();
+    const std::vector<glm::vec3> positions = places_of(mesh, to_heap);
+    const std::vector<glm::uvec3>& triangles = mesh.triangles();
     void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(glm::vec3),
                                              positions.size());
     std::memcpy(vertices, positions.data(), positions.size() * sizeof(glm::vec3));
@@ -53,9 +56,21 @@ struct Neighbourhood::Device {
                                             triangles.size());
     std::memcpy(indices, triangles.data(), triangles.size() * sizeof(glm::uvec3));
     rtcCommitGeometry(geometry);
+    return geometry;
+  }
+
+  void add_wall(const Wall& wall, std::uint32_t number) {
+    const RTCGeometry geometry = geometry_of(*wall.mesh, wall.to_heap);
     rtcAttachGeometryByID(scene, geometry, of_grains + 1 + number);
     rtcAttachGeometryByID(only_walls, geometry, number);
     rtcReleaseGeometry(geometry);
+  }
+
+  void add_pane(const Pane& pane, std::uint32_t number) {
+    const RTCGeometry geometry = geometry_of(*pane.mesh, pane.to_heap);
+    rtcAttachGeometryByID(only_panes, geometry, number);
+    rtcReleaseGeometry(geometry);
+    turned_out.push_back(glm::determinant(pane.to_heap) < 0.0);
   }
 
   static Meeting on_wall(std::uint32_t wall, const glm::vec3& origin, const glm::vec3& direction,
@@ -69,7 +84,9 @@ struct Neighbourhood::Device {
   RTCDevice device;
   RTCScene scene = nullptr;
   RTCScene only_walls = nullptr;
+  RTCScene only_panes = nullptr;
   std::vector<glm::vec4> spheres;
+  std::vector<bool> turned_out;  // panes that are mirror images of their meshes
 };
 
 Neighbourhood::Neighbourhood(const Grains& grains) {
@@ -77,8 +94,9 @@ Neighbourhood::Neighbourhood(const Grains& grains) {
   device->add_grains(grains.grains);
   for (std::size_t wall = 0; wall < grains.walls.size(); ++wall)
     device->add_wall(grains.walls[wall], static_cast<std::uint32_t>(wall));
-  rtcCommitScene(device->scene);
-  rtcCommitScene(device->only_walls);
+  for (std::size_t pane = 0; pane < grains.panes.size(); ++pane)
+    device->add_pane(grains.panes[pane], static_cast<std::uint32_t>(pane));
+  for (const RTCScene scene : {device->scene, device->only_walls, device->only_panes}) rtcCommitScene(scene);
   device_ = std::move(device);
 }
 
@@ -120,6 +138,14 @@ std::optional<Meeting> Neighbourhood::first_on(std::uint32_t wall, const glm::ve
   return std::nullopt;
 }
 
+std::optional<PaneSurface> Neighbourhood::first_pane(const glm::vec3& origin, const glm::vec3& direction, float near,
+                                                     float reach) const {
+  const RTCRayHit ray = embree::first_hit(device_->only_panes, origin, direction, near, reach);
+  if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+  const glm::vec3 normal = glm::normalize(glm::vec3(ray.hit.Ng_x, ray.hit.Ng_y, ray.hit.Ng_z));
+  return PaneSurface{ray.hit.geomID, ray.ray.tfar, device_->turned_out[ray.hit.geomID] ? -normal : normal};
+}
+
 bool same_walls(const std::vector<Wall>& a, const std::vector<Wall>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const Wall& one, const Wall& other) {
     return one.mesh == other.mesh && one.to_heap == other.to_heap;
@@ -127,6 +153,10 @@ bool same_walls(const std::vector<Wall>& a, const std::vector<Wall>& b) {
 }
 
 bool same_places(const Grains& a, const Grains& b) {
+  const auto same_pane = [](const Pane& one, const Pane& other) {
+    return one.mesh == other.mesh && one.to_heap == other.to_heap;
+  };
+  if (!std::equal(a.panes.begin(), a.panes.end(), b.panes.begin(), b.panes.end(), same_pane)) return false;
   return same_walls(a.walls, b.walls) && std::equal(a.grains.begin(), a.grains.end(), b.grains.begin(), b.grains.end(),
                                                     [](const Grain& one, const Grain& other) {
                                                       return one.middle == other.middle && one.radius == other.radius;

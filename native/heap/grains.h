@@ -3,12 +3,14 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
 #include <optional>
 #include <vector>
 
 #include "heap/optics.h"
+#include "heap/panes.h"
 #include "heap/walls.h"
 
 namespace mesograin::heap {
@@ -29,6 +31,7 @@ struct Grains {
   std::vector<Grain> grains;
   std::vector<Optics> kinds;
   std::vector<Wall> walls;
+  std::vector<Pane> panes;
 
   /// The number of a kind of these optics, added if there is none.
   std::uint32_t kind(const Optics& optics);
@@ -39,7 +42,7 @@ struct Grains {
 /// Whether walls are where the others are, whatever they are made of.
 bool same_walls(const std::vector<Wall>& a, const std::vector<Wall>& b);
 
-/// The same of grains and walls.
+/// The same of grains, walls and panes.
 bool same_places(const Grains& a, const Grains& b);
 
 /// Which grain or wall a ray meets, and where.
@@ -51,7 +54,16 @@ struct Meeting {
   bool flat = false;  ///< the surface does not bend there
 };
 
-/// Grains and walls as rays find them (Embree). Places in it come from Grains.
+/// A surface of a pane, as a ray meets it.
+struct PaneSurface {
+  std::uint32_t pane;
+  float distance;
+  glm::vec3 normal;  ///< outwards
+
+  bool met_from_outside(const glm::vec3& direction) const { return glm::dot(normal, direction) < 0.0F; }
+};
+
+/// Grains and walls as rays find them, which pass panes (Embree). Places in it come from Grains.
 class Neighbourhood {
  public:
   explicit Neighbourhood(const Grains& grains);
@@ -65,6 +77,10 @@ class Neighbourhood {
   /// Where a ray meets this wall within `reach`.
   std::optional<Meeting> first_on(std::uint32_t wall, const glm::vec3& origin, const glm::vec3& direction,
                                   float reach) const;
+
+  /// The first surface of a pane beyond `near` and within `reach`.
+  std::optional<PaneSurface> first_pane(const glm::vec3& origin, const glm::vec3& direction, float near,
+                                        float reach) const;
 
  private:
   struct Device;

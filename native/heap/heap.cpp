@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <limits>
 
 namespace mesograin::heap {
 namespace {
@@ -16,6 +17,21 @@ constexpr int most_crossed = 4096;
 constexpr std::size_t fewest_nodes = 8000;
 
 float mean(const glm::vec3& colour) { return (colour.r + colour.g + colour.b) / 3.0F; }
+
+constexpr float far_away = std::numeric_limits<float>::infinity();
+
+// Where a ray no longer meets a pane's surface that it has met, or not yet.
+constexpr float rounding = 4e-6F;
+
+float clearance(const PaneSurface& met, const glm::vec3& origin) {
+  return rounding * (met.distance + std::max({std::abs(origin.x), std::abs(origin.y), std::abs(origin.z)}));
+}
+
+float beyond(const PaneSurface& met, const glm::vec3& origin) { return met.distance + clearance(met, origin); }
+
+float before(const PaneSurface& met, const glm::vec3& origin) {
+  return std::max(met.distance - clearance(met, origin), 0.0F);
+}
 
 }  // namespace
 
@@ -46,6 +62,7 @@ Space::Space(const Grains& grains, const std::vector<Kind>& kinds, std::shared_p
 Space::Space(const Grains& grains, const std::vector<Kind>& kinds, std::shared_ptr<const Seats> seats, Patches patches)
     : grains_(grains.grains),
       walls_(grains.walls),
+      panes_(grains.panes),
       kinds_(kinds),
       seats_(seats ? std::move(seats) : std::make_shared<const Seats>(grains.grains.size())),
       patches_(std::move(patches)),
@@ -118,9 +135,53 @@ std::optional<Source> Space::source(const Meeting& meeting, Ray& ray, transport:
   return Source{static_cast<std::uint32_t>(grains_.size()) + *node, glm::vec3(0.0F), glm::vec3(1.0F)};
 }
 
+glm::vec3 Space::passed_panes(const glm::vec3& origin, const glm::vec3& direction, float reach, bool mirrored) const {
+  glm::vec3 left(1.0F);
+  float near = 0.0F;
+  for (int crossed = 0; !panes_.empty() && crossed < most_crossed; ++crossed) {
+    const std::optional<PaneSurface> met = neighbourhood_.first_pane(origin, direction, near, reach);
+    if (!met) return left;
+    near = beyond(*met, origin);
+    if (!met->met_from_outside(direction)) continue;
+    const std::optional<PaneSurface> other = neighbourhood_.first_pane(origin, direction, near, reach);
+    if (!other) return left;
+    const Sheet glass =
+        sheet(panes_[met->pane].glass, -glm::dot(met->normal, direction), other->distance - met->distance);
+    left *= mirrored ? glass.left() : glass.passed;
+    near = beyond(*other, origin);
+  }
+  return left;
+}
+
+bool Space::meets_pane(Ray& ray, float far, transport::Random& random) const {
+  if (panes_.empty()) return false;
+  const std::optional<PaneSurface> met = neighbourhood_.first_pane(ray.origin, ray.direction, 0.0F, far);
+  if (!met) return false;
+  float onwards = beyond(*met, ray.origin);
+  if (met->met_from_outside(ray.direction))
+    if (const std::optional<PaneSurface> other = neighbourhood_.first_pane(ray.origin, ray.direction, onwards, far)) {
+      const float cosine = -glm::dot(met->normal, ray.direction);
+      const Sheet glass = sheet(panes_[met->pane].glass, cosine, other->distance - met->distance);
+      const float share = mean(glass.reflected) / mean(glass.reflected + glass.passed);
+      if (random.uniform() < share) {
+        ray.origin += before(*met, ray.origin) * ray.direction;
+        ray.direction += 2.0F * cosine * met->normal;
+        ray.weight *= glass.reflected / share;
+        ray.crossed = true;
+        return true;
+      }
+      ray.weight *= glass.passed / (1.0F - share);
+      onwards = beyond(*other, ray.origin);
+    }
+  ray.origin += onwards * ray.direction;
+  return true;
+}
+
 std::optional<Source> Space::follow(Ray& ray, transport::Random& random) const {
   for (int crossed = 0; crossed < most_crossed; ++crossed) {
     const std::optional<Meeting> meeting = neighbourhood_.first(ray.origin, ray.direction);
+    const float far = meeting ? glm::distance(ray.origin, meeting->place) : far_away;
+    if (meets_pane(ray, far, random)) continue;
     if (!meeting) return std::nullopt;
     if (meeting->wall) return source(*meeting, ray, random);
     const float cosine = std::clamp(-glm::dot(meeting->normal, ray.direction), 0.0F, 1.0F);
@@ -146,6 +207,8 @@ glm::vec3 Space::seen_along(Ray& ray, const Field& sent, transport::Random& rand
   for (int along = 0; along < most_crossed; ++along) {
     if (std::max({ray.weight.r, ray.weight.g, ray.weight.b}) < nothing) break;
     const std::optional<Meeting> meeting = neighbourhood_.first(ray.origin, ray.direction);
+    ray.weight *=
+        passed_panes(ray.origin, ray.direction, meeting ? glm::distance(ray.origin, meeting->place) : far_away, true);
     if (!meeting) return seen;
     const float cosine = std::clamp(-glm::dot(meeting->normal, ray.direction), 0.0F, 1.0F);
     if (const std::optional<glm::vec3> known = crossed && !meeting->wall ? crossed(*meeting, ray) : std::nullopt) {
@@ -171,7 +234,8 @@ glm::vec3 Space::passed(Ray& ray, float reach) const {
   glm::vec3 left(1.0F);
   for (int crossed = 0; crossed < most_crossed; ++crossed) {
     const std::optional<Meeting> meeting = neighbourhood_.first(ray.origin, ray.direction);
-    if (!meeting || glm::distance(start, meeting->place) > reach) return left;
+    if (!meeting || glm::distance(start, meeting->place) > reach)
+      return left * passed_panes(start, ray.direction, reach, false);
     if (meeting->wall) break;
     const float cosine = std::clamp(-glm::dot(meeting->normal, ray.direction), 0.0F, 1.0F);
     left *= kind(meeting->number).from_light->crossing(cosine);

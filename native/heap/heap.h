@@ -47,7 +47,7 @@ struct Ray {
   glm::vec3 origin;  ///< of one that was followed: where it has come to
   glm::vec3 direction;
   glm::vec3 weight;
-  bool crossed = false;  ///< whether it has gone straight through a grain
+  bool crossed = false;  ///< whether it has gone straight through a grain, or a pane has mirrored it
 };
 
 /// What sends out the light that a ray looks for: a grain at a normal, or a node of the walls' patches.
@@ -124,12 +124,21 @@ class Space {
   /// Does not change its weight.
   glm::vec3 passed(Ray& ray, float reach) const;
 
+  /// What panes leave of light that goes straight on for so long; `mirrored`: with what they reflect, as if that saw
+  /// the same.
+  glm::vec3 passed_panes(const glm::vec3& origin, const glm::vec3& direction, float reach, bool mirrored) const;
+
  private:
+  /// Whether a ray meets a pane before it has gone so far: then it has been mirrored there, or come through, one of the
+  /// two at random.
+  bool meets_pane(Ray& ray, float far, transport::Random& random) const;
+
   /// To where it leaves the grain that it met.
   void cross(Ray& ray, const Meeting& meeting, float cosine) const;
 
   const std::vector<Grain>& grains_;
   const std::vector<Wall>& walls_;
+  const std::vector<Pane>& panes_;
   const std::vector<Kind>& kinds_;
   std::shared_ptr<const Seats> seats_;
   Patches patches_;

@@ -18,7 +18,9 @@ constexpr float margin = 1e-3F;
 
 std::optional<Moves> Moves::between(const Grains& before, const Grains& now) {
   const std::size_t count = now.grains.size();
-  if (before.grains.size() != count || before.kinds != now.kinds || before.walls != now.walls) return std::nullopt;
+  if (before.grains.size() != count || before.kinds != now.kinds || before.walls != now.walls ||
+      before.panes != now.panes)
+    return std::nullopt;
   std::vector<bool> moved(count, false);
   Grains places;
   std::size_t few = 0;

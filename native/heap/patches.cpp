@@ -115,7 +115,7 @@ class Patches::Builder {
 
   /// False if there would be too many nodes.
   bool add(std::uint32_t number, const Wall& wall) {
-    const std::vector<glm::vec3> positions = wall.positions();
+    const std::vector<glm::vec3> positions = places_of(*wall.mesh, wall.to_heap);
     const glm::dmat3 linear(wall.to_heap);
     const float mirrored = glm::determinant(linear) < 0.0 ? -1.0F : 1.0F;
     const glm::dmat3 cofactors(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
@@ -278,6 +278,11 @@ Patches::Patches(const Grains& grains, std::size_t most_nodes) {
     lower = glm::min(lower, grain.middle - grain.radius);
     upper = glm::max(upper, grain.middle + grain.radius);
   }
+  for (const Pane& pane : grains.panes)
+    for (const glm::vec3& place : places_of(*pane.mesh, pane.to_heap)) {
+      lower = glm::min(lower, place);
+      upper = glm::max(upper, place);
+    }
   middle_ = 0.5F * (lower + upper);
   half_ = 0.5F * (upper - lower);
   // As fine as grains shade what they lie on, but for a few too many.

@@ -36,7 +36,7 @@ glm::vec3 Gather::lit_behind(const SeenFacet& seen, const Facets& facets, transp
   std::uint32_t grain = seen.grain;
   for (int crossed = 0; crossed < most_crossed; ++crossed) {
     if (std::max({weight.r, weight.g, weight.b}) < nothing) break;
-    const std::optional<Meeting> meeting = facets.beyond(grain, place, direction);
+    const std::optional<Meeting> meeting = beyond_panes(grain, place, direction, true, facets, weight);
     if (!meeting || meeting->wall) break;
     grain = meeting->number;
     const std::optional<End> end = end_across(grain, meeting->place, direction, facets);

@@ -118,7 +118,8 @@ Field resized(Field field, std::size_t count) {
 bool Solver::serves(const std::shared_ptr<const Matter>& other, int rays, int wanted, const Quality& quality) const {
   if (rays < wanted || other->seats != matter_->seats) return false;
   if (other->grains == matter_->grains && other->walks >= quality.walks) return true;
-  return quality.quick && same_places(other->grains, matter_->grains) && change_from(*other);
+  return quality.quick && same_places(other->grains, matter_->grains) && other->grains.panes == matter_->grains.panes &&
+         change_from(*other);
 }
 
 std::optional<Change> Solver::change_from(const Matter& other) const {

@@ -7,12 +7,12 @@
 
 namespace mesograin::heap {
 
-std::vector<glm::vec3> Wall::positions() const {
-  std::vector<glm::vec3> positions;
-  positions.reserve(mesh->positions().size());
-  for (const glm::vec3& position : mesh->positions())
-    positions.emplace_back(to_heap * glm::dvec4(glm::dvec3(position), 1.0));
-  return positions;
+std::vector<glm::vec3> places_of(const scene::Mesh& mesh, const glm::dmat4& to_heap) {
+  std::vector<glm::vec3> places;
+  places.reserve(mesh.positions().size());
+  for (const glm::vec3& position : mesh.positions())
+    places.emplace_back(to_heap * glm::dvec4(glm::dvec3(position), 1.0));
+  return places;
 }
 
 bool Wall::open() const {

@@ -20,10 +20,11 @@ struct Wall {
 
   bool operator==(const Wall&) const = default;
 
-  std::vector<glm::vec3> positions() const;
-
   /// Whether light may meet either side of its triangles: whether it has an edge that one triangle has alone.
   bool open() const;
 };
+
+/// Of a mesh's corners where the heap is.
+std::vector<glm::vec3> places_of(const scene::Mesh& mesh, const glm::dmat4& to_heap);
 
 }  // namespace mesograin::heap

@@ -8,7 +8,6 @@
 #include "render/cast_work.h"
 #include "render/lit_place.h"
 #include "render/pixel_rays.h"
-#include "transport/random.h"
 
 namespace mesograin::render {
 namespace {
@@ -26,11 +25,15 @@ casting::SingleRay alone(const casting::Packet& packet, unsigned ray) {
           .farthest = packet.farthest[ray] * length};
 }
 
-// In [0, 1), of each pixel and light: the golden ratio's sequence over the samples, begun anywhere.
-float draw_of(std::size_t place, std::size_t light, std::uint32_t index) {
-  transport::Random begun(static_cast<std::uint64_t>(light), static_cast<std::uint64_t>(place));
-  const float drawn = begun.uniform() + 0x1p-32F * static_cast<float>(2654435769U * index);
-  return drawn - std::floor(drawn);
+float fraction(float number) { return number - std::floor(number); }
+
+// In [0, 1), of each pixel and light: the golden ratio's sequence over the samples, begun so that neighbours have
+// nearly all of it between them (interleaved gradient noise: Jimenez, "Next generation post processing in Call of Duty:
+// Advanced Warfare", 2014), for each light elsewhere.
+float draw_of(const glm::ivec2& pixel, std::size_t light, std::uint32_t index) {
+  const glm::vec2 at = glm::vec2(pixel) + 5.588238F * static_cast<float>(light);
+  const float begun = fraction(52.9829189F * fraction(0.06711056F * at.x + 0.00583715F * at.y));
+  return fraction(begun + 0x1p-32F * static_cast<float>(2654435769U * index));
 }
 
 }  // namespace
@@ -74,7 +77,8 @@ bool CastShadows::cast(const CastContent& cast, const Content& content, const Se
         const bool whole = unhindered.cast[ray];
         if (!whole && through == nullptr) continue;
         const glm::vec3 left = whole ? glm::vec3(1.0F) : through->left(alone(packet, ray));
-        const float drawn = whole ? 0.0F : draw_of(places[ray], light, index);
+        const glm::ivec2 pixel(static_cast<int>(places[ray]) % size.x, static_cast<int>(places[ray]) / size.x);
+        const float drawn = whole ? 0.0F : draw_of(pixel, light, index);
         for (std::size_t channel = 0; channel < channels; ++channel)
           if (drawn < left[static_cast<int>(channel)]) reached_[channels * places[ray] + channel] |= 1U << light;
       }
@@ -120,16 +124,16 @@ bool cast_shadow_map(const CastContent& cast, const Content& content, const glm:
     }
     cast.first_hits(packet, hits);
     for (unsigned ray = 0; ray < casting::rays_in_packet; ++ray) {
-      const auto row = static_cast<std::size_t>(y) + ray / across;
+      const glm::ivec2 at(x + static_cast<int>(ray) % across, y + static_cast<int>(ray) / across);
       const std::size_t number =
-          row * static_cast<std::size_t>(resolution) + static_cast<std::size_t>(x) + ray % across;
+          static_cast<std::size_t>(at.y) * static_cast<std::size_t>(resolution) + static_cast<std::size_t>(at.x);
       texels[number] = glm::vec2(-3e38F, 0.0F);
       if (!hits.met[ray]) continue;
       const PixelRay& pixel = pixels[ray];
       float distance = hits.distance[ray];
       std::uint32_t of = hits.number[ray];
       if (through.straight != nullptr) {
-        const float drawn = draw_of(number, through.light, through.index);
+        const float drawn = draw_of(at, through.light, through.index);
         const std::optional<casting::Hit> stopped = through.straight->stopped(
             {.origin = pixel.origin, .direction = pixel.direction, .farthest = pixel.farthest}, drawn);
         if (!stopped) continue;

@@ -6,6 +6,7 @@
 #include <functional>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 #include <glm/vector_relational.hpp>
 #include <limits>
 #include <map>
@@ -35,7 +36,7 @@ struct Shape {
 constexpr double least_roundness = 0.02;
 
 // What such a one of glass is among grains, over its reach: a jar holds others, and no ball of its area stands where it
-// does. It is looked into, and takes no part in what they send each other.
+// does. It is looked into as a grain, and is a pane to what they send each other.
 constexpr float pane_over_reach = 1e-6F;
 
 // Of a mesh that stands for a ball.
@@ -44,20 +45,31 @@ constexpr double roundness_of_balls = 0.95;
 // Of one that refracts as a ball does; what is less round is a crystal.
 constexpr double roundness_of_lenses = 0.7;
 
-Shape shape_of(const scene::Mesh& mesh) {
+/// `linear`: from the mesh's own space to one in which no point is farther from the middle than `reach`.
+Shape shape_of(const scene::Mesh& mesh, const glm::dmat3& linear, double reach) {
   double area = 0.0;
   double volume = 0.0;
   for (const glm::uvec3& triangle : mesh.triangles()) {
-    const glm::dvec3 a(mesh.positions()[triangle.x]);
-    const glm::dvec3 b(mesh.positions()[triangle.y]);
-    const glm::dvec3 c(mesh.positions()[triangle.z]);
+    const glm::dvec3 a = linear * glm::dvec3(mesh.positions()[triangle.x]);
+    const glm::dvec3 b = linear * glm::dvec3(mesh.positions()[triangle.y]);
+    const glm::dvec3 c = linear * glm::dvec3(mesh.positions()[triangle.z]);
     const glm::dvec3 doubled = glm::cross(b - a, c - a);
     area += 0.5 * glm::length(doubled);
     volume += glm::dot(a, doubled) / 6.0;
   }
   const double roundness = 36.0 * std::numbers::pi * volume * volume / std::max(area * area * area, 1e-300);
   const double radius = std::sqrt(area / (4.0 * std::numbers::pi));
-  return {roundness > least_roundness && mesh.reach() > 0.0, radius / std::max(mesh.reach(), 1e-300), roundness};
+  return {roundness > least_roundness && reach > 0.0, radius / std::max(reach, 1e-300), roundness};
+}
+
+/// Whether a draw is as its mesh is, if larger or smaller.
+bool keeps_shape(const Draw& draw) {
+  constexpr double noticed = 1e-3;
+  const glm::dmat3 linear(draw.object_to_world);
+  const glm::dmat3 squares = glm::transpose(linear) * linear;
+  const double mean = (squares[0][0] + squares[1][1] + squares[2][2]) / 3.0;
+  const glm::dmat3 odd = squares - glm::dmat3(mean);
+  return std::max({glm::length(odd[0]), glm::length(odd[1]), glm::length(odd[2])}) <= noticed * mean;
 }
 
 // Grains within such a step of the radius are of one kind, whose radius is their mean: of sizes that are all alike it
@@ -84,6 +96,12 @@ bool is_followed(const heap::Optics& optics) {
   return optics.transparent() && std::max({sigma_t.r, sigma_t.g, sigma_t.b}) <= most_followed;
 }
 
+glm::dmat4 to_heap_of(const Draw& draw, const glm::dvec3& anchor) {
+  glm::dmat4 to_heap = draw.object_to_world;
+  to_heap[3] -= glm::dvec4(anchor, 0.0);
+  return to_heap;
+}
+
 bool is_plain(const scene::Material& material) {
   return material.model == scene::Model::lambert || material.model == scene::Model::conductor;
 }
@@ -96,7 +114,7 @@ class Gatherer {
     if (const Instances* instances = content.instances())
       for (const InstanceGroup& group : instances->groups())
         for (std::uint32_t i = group.first; i < group.first + group.count; ++i)
-          add(instances->prototypes()[group.prototype].mesh, group.source, instances->ball(i));
+          add(shape(*instances->prototypes()[group.prototype].mesh), group.source, instances->ball(i));
     std::vector<float> radii;
     for (const heap::Grain& grain : grains.grains) radii.push_back(grain.radius);
     for (const Draw& draw : content.draws())
@@ -108,9 +126,9 @@ class Gatherer {
       const bool large = is_plain(draw.look) && radius_of(draw) > wall_over_grain * usual;
       const glm::vec4 ball(glm::vec3(draw.centre - content.anchor()), static_cast<float>(draw.reach));
       if (may_be_grain(draw) && !large)
-        add(draw.source, draw.look, ball);
+        add(shape(draw), draw.look, ball);
       else if (is_pane(draw))
-        add_pane(draw, ball);
+        add_pane(draw, ball, content.anchor());
       else
         add_wall(draw, content.anchor());
     }
@@ -124,7 +142,14 @@ class Gatherer {
  private:
   const Shape& shape(const scene::Mesh& mesh) {
     const auto [shape, added] = shapes_.try_emplace(&mesh);
-    if (added) shape->second = shape_of(mesh);
+    if (added) shape->second = shape_of(mesh, glm::dmat3(1.0), mesh.reach());
+    return shape->second;
+  }
+
+  const Shape& shape(const Draw& draw) {
+    if (keeps_shape(draw)) return shape(*draw.source);
+    const auto [shape, added] = stretched_.try_emplace(&draw);
+    if (added) shape->second = shape_of(*draw.source, glm::dmat3(draw.object_to_world), draw.reach);
     return shape->second;
   }
 
@@ -135,32 +160,33 @@ class Gatherer {
   // What a plain surface that is open encloses depends on where its origin is: a bowl is no ball. What shines is seen
   // to do so where it is a wall.
   bool may_be_grain(const Draw& draw) {
-    if (!shape(*draw.source).grain || radiance_of(draw) != glm::dvec3(0.0)) return false;
+    if (!shape(draw).grain || radiance_of(draw) != glm::dvec3(0.0)) return false;
     return !is_plain(draw.look) || cache_->closed(draw.source);
   }
 
   // A jar, a bottle, a pane.
   bool is_pane(const Draw& draw) {
-    const Shape& of = shape(*draw.source);
+    const Shape& of = shape(draw);
     if (of.grain || !(of.roundness > 0.0) || !(draw.reach > 0.0) || !cache_->closed(draw.source)) return false;
     const heap::Optics optics = heap::optics_of(draw.look, draw.reach * of.thickness_over_reach());
     return optics.clear() && optics.scatters_little();
   }
 
-  float radius_of(const Draw& draw) { return static_cast<float>(draw.reach * shape(*draw.source).radius_over_reach); }
+  float radius_of(const Draw& draw) { return static_cast<float>(draw.reach * shape(draw).radius_over_reach); }
 
-  void add(const scene::MeshPointer& mesh, const scene::Material& material, const glm::vec4& ball) {
+  void add(const Shape& shape, const scene::Material& material, const glm::vec4& ball) {
     roles.emplace_back();
-    const double radius = ball.w * shape(*mesh).radius_over_reach;
-    if (!shape(*mesh).grain || !(radius > 0.0)) return;
-    roles.back().ball = shape(*mesh).roundness > roundness_of_balls;
-    add_grain(shape(*mesh), material, ball, static_cast<float>(radius));
+    const double radius = ball.w * shape.radius_over_reach;
+    if (!shape.grain || !(radius > 0.0)) return;
+    roles.back().ball = shape.roundness > roundness_of_balls;
+    add_grain(shape, material, ball, static_cast<float>(radius));
   }
 
-  void add_pane(const Draw& draw, const glm::vec4& ball) {
+  void add_pane(const Draw& draw, const glm::vec4& ball, const glm::dvec3& anchor) {
     roles.emplace_back();
     roles.back().pane = true;
-    add_grain(shape(*draw.source), draw.look, ball, pane_over_reach * ball.w);
+    add_grain(shape(draw), draw.look, ball, pane_over_reach * ball.w);
+    grains.panes.push_back({draw.source, to_heap_of(draw, anchor), *roles.back().grain, heap::glass_of(draw.look)});
   }
 
   /// `radius`: of the sphere that it is to others.
@@ -202,8 +228,7 @@ class Gatherer {
     roles.emplace_back();
     if (!(draw.reach > 0.0)) return;
     roles.back().wall = static_cast<std::uint32_t>(grains.walls.size());
-    glm::dmat4 to_heap = draw.object_to_world;
-    to_heap[3] -= glm::dvec4(anchor, 0.0);
+    const glm::dmat4 to_heap = to_heap_of(draw, anchor);
     const std::uint32_t kind = grains.kind(heap::optics_of(draw.look, rounded(draw.reach, radii_an_octave)));
     const bool has_lights = draw.look.finish && draw.look.finish->faces_are_lights;
     grains.walls.push_back({draw.source, to_heap, kind, glm::vec3(radiance_of(draw)), has_lights});
@@ -219,6 +244,7 @@ class Gatherer {
 
   DeviceCache* cache_;
   std::map<const scene::Mesh*, Shape> shapes_;
+  std::map<const Draw*, Shape> stretched_;
   heap::Grains alike_;  // whose kinds are those that kinds_ are told by
   std::vector<Kind> kinds_;
 };

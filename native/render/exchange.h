@@ -65,6 +65,9 @@ class Exchange {
   /// ends.
   bool tells_straight() const { return any() && !solving_->heap().straight_elsewhere; }
 
+  /// Whether light goes through glass that is thin all over.
+  bool any_panes() const { return any() && !solving_->heap().grains.panes.empty(); }
+
   /// Whether more will become known, after which other things may be asked of models than now.
   bool awaits_more() const { return solving_ != nullptr && !solving_->news().final; }
 

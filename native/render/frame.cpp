@@ -160,7 +160,7 @@ Sample Frame::begin_sample(const GoOn& go_on, bool hurried) {
   if (unwrapping_) return sample;
   // Of what light goes between it is known otherwise what is seen behind.
   const bool behind = !exchange_.tells_straight() && content_->any_shows_behind();
-  sample.straight_through = behind && traced;
+  sample.straight_through = (behind || exchange_.any_panes()) && traced;
   sample.mirrors = arrays_.mirrors(*content_, traced, lighting_.world().shines(), behind,
                                    [&](std::size_t unit) { return sample.asks_model(unit); });
   if (sample.mirrors == Mirrors::hindered && !targets_->mirror)

@@ -16,15 +16,27 @@ namespace {
 // Of a draw's radius: how far from where a ray met it before it may meet it again.
 constexpr float clearance = 1e-4F;
 
+// Of light through glass, that it has a logarithm.
+constexpr float least_passed = 1e-30F;
+
 // Behind more surfaces than these nothing is left.
 constexpr int most_met = 64;
 
-bool enters(const Draw& draw, const casting::Hit& hit, const glm::vec3& direction) {
+/// The cosine between the outward normal of what was met and the way back: positive where a ray comes in.
+float cosine_at(const Draw& draw, const casting::Hit& hit, const glm::vec3& direction) {
   const glm::uvec3& corners = draw.source->triangles()[hit.triangle];
   const auto place = [&](int corner) { return glm::dvec3(draw.source->positions()[corners[corner]]); };
   const glm::dmat3 to_world(draw.object_to_world);
   const glm::dvec3 across = glm::cross(to_world * (place(1) - place(0)), to_world * (place(2) - place(0)));
-  return (glm::dot(across, glm::dvec3(direction)) < 0.0) == (glm::determinant(to_world) > 0.0);
+  const double outwards = glm::determinant(to_world) < 0.0 ? -1.0 : 1.0;
+  return static_cast<float>(-outwards * glm::dot(glm::normalize(across), glm::dvec3(direction)));
+}
+
+void move_to(const Draw& draw, const casting::Hit& hit, casting::SingleRay& ray) {
+  ray.origin += hit.distance * ray.direction;
+  ray.farthest -= hit.distance;
+  ray.from = hit.number;
+  ray.own = clearance * static_cast<float>(draw.radius);
 }
 
 }  // namespace
@@ -33,23 +45,38 @@ glm::vec3 StraightThrough::Way::left() const {
   return glm::exp(-glm::max(depth + length * glm::max(inside, 0.0F), 0.0F));
 }
 
-const Draw* StraightThrough::thin(const casting::Hit& hit) const {
+std::optional<bool> StraightThrough::go_on(const casting::Hit& hit, Way& way, casting::SingleRay& ray) const {
   const std::size_t in_arrays = content_.instances() != nullptr ? content_.instances()->count() : 0;
-  if (hit.number < in_arrays) return nullptr;
+  if (hit.number < in_arrays) return std::nullopt;
   const Draw& draw = content_.draws()[hit.group];
-  return draw.material->shows_behind() ? &draw : nullptr;
+  if (exchange_.any_panes() && exchange_.roles()[in_arrays + hit.group].pane) return go_on_pane(draw, hit, way, ray);
+  if (exchange_.tells_straight() || !draw.material->shows_behind()) return std::nullopt;
+  return go_on_thin(draw, hit, way, ray);
 }
 
-void StraightThrough::go_on(const Draw& draw, const casting::Hit& hit, Way& way, casting::SingleRay& ray) const {
+bool StraightThrough::go_on_thin(const Draw& draw, const casting::Hit& hit, Way& way, casting::SingleRay& ray) const {
   way.length += hit.distance;
   const glm::vec3 sigma_t(draw.look.scale * (draw.look.sigma_a + draw.look.sigma_s));
-  const float sign = enters(draw, hit, ray.direction) ? 1.0F : -1.0F;
+  const bool enters = cosine_at(draw, hit, ray.direction) > 0.0F;
+  const float sign = enters ? 1.0F : -1.0F;
   way.inside += sign * sigma_t;
   way.depth -= sign * way.length * sigma_t;
-  ray.origin += hit.distance * ray.direction;
-  ray.farthest -= hit.distance;
-  ray.from = hit.number;
-  ray.own = clearance * static_cast<float>(draw.radius);
+  move_to(draw, hit, ray);
+  return enters;
+}
+
+bool StraightThrough::go_on_pane(const Draw& draw, const casting::Hit& hit, Way& way, casting::SingleRay& ray) const {
+  way.length += hit.distance;
+  const float cosine = cosine_at(draw, hit, ray.direction);
+  move_to(draw, hit, ray);
+  if (!(cosine > 0.0F)) return false;
+  const std::optional<casting::Hit> other = cast_.first_hit(ray);
+  if (!other || other->number != hit.number) return true;
+  const glm::vec3 passed = heap::sheet(heap::glass_of(draw.look), cosine, other->distance).passed;
+  way.depth -= glm::log(glm::max(passed, least_passed));
+  way.length += other->distance;
+  move_to(draw, *other, ray);
+  return true;
 }
 
 glm::vec3 StraightThrough::left(casting::SingleRay ray) const {
@@ -62,9 +89,7 @@ glm::vec3 StraightThrough::left(casting::SingleRay ray) const {
       if (in_light) way.length += ray.farthest;
       return way.left();
     }
-    const Draw* draw = thin(*hit);
-    if (draw == nullptr) return glm::vec3(0.0F);
-    go_on(*draw, *hit, way, ray);
+    if (!go_on(*hit, way, ray)) return glm::vec3(0.0F);
   }
   return glm::vec3(0.0F);
 }
@@ -79,12 +104,11 @@ std::optional<casting::Hit> StraightThrough::stopped(casting::SingleRay ray, flo
     here.length += hit->distance;
     const glm::vec3 left = here.left();
     if (entered && (left.r + left.g + left.b) / 3.0F <= drawn) return entered;
-    const Draw* draw = thin(*hit);
-    if (draw != nullptr) go_on(*draw, *hit, way, ray);
+    const std::optional<bool> enters = go_on(*hit, way, ray);
     hit->distance = here.length;
-    if (draw == nullptr) return hit;
+    if (!enters) return hit;
     // What it comes into last stops it, if anything does.
-    if (way.depth != glm::max(way.depth, here.depth)) entered = hit;
+    if (*enters) entered = hit;
   }
   return entered;
 }

@@ -132,7 +132,7 @@ TEST(Walls, AreKnownWhereverTheirSurfaceIs) {
     transport::Random random(1, 0);
     for (std::uint32_t number = 0; number < grains.walls.size(); ++number) {
       const Wall& wall = grains.walls[number];
-      const std::vector<glm::vec3> positions = wall.positions();
+      const std::vector<glm::vec3> positions = places_of(*wall.mesh, wall.to_heap);
       for (const glm::uvec3& triangle : wall.mesh->triangles())
         for (int i = 0; i < 2000 / static_cast<int>(wall.mesh->triangles().size()) + 4; ++i) {
           const float along = std::sqrt(random.uniform());

@@ -78,7 +78,7 @@ void ShadowPass::cast_on_device(const Sample& sample, const ArrayVisibility& arr
 bool ShadowPass::cast(const Sample& sample, const ArrayVisibility& arrays, const SeenSurfaces& seen,
                       const std::function<bool(std::size_t)>& asks, const std::vector<ShadowEye>& eyes,
                       CastShadows& shadows) {
-  const StraightThrough through(arrays.tree(), sample.content);
+  const StraightThrough through(arrays.tree(), sample.content, sample.exchange);
   return shadows.cast(arrays.tree(), sample.content, seen, asks, eyes, sample.straight_through ? &through : nullptr,
                       sample.index, sample.go_on);
 }
@@ -107,7 +107,7 @@ bool ShadowPass::update_maps(const Sample& sample, const ArrayVisibility& arrays
   const auto draw = [&](const glm::dmat4& to_clip, const ShadowEye& eye, gl::TextureArray& maps, int layer,
                         const gl::Texture& depth) {
     if (sample.cast || through) {
-      const StraightThrough straight(arrays.tree(), content);
+      const StraightThrough straight(arrays.tree(), content, sample.exchange);
       const ThroughToMap straight_on{through ? &straight : nullptr, static_cast<std::size_t>(layer), sample.index};
       if (!cast_shadow_map(arrays.tree(), content, to_clip, eye, straight_on, resolution, texels, sample.go_on))
         return false;
