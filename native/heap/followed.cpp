@@ -282,11 +282,19 @@ Gather::All Gather::walked_in(const SeenFacet& seen, const std::optional<End>& a
 
 std::optional<Gather::All> Gather::look_at_all(const SeenFacet& seen, const Facets& facets, int rays,
                                                transport::Random& random) const {
+  Ray through{};
+  std::optional<All> all = look_at_all_but_world(seen, facets, rays, random, through);
+  if (all) show_what_is_behind(through, *all);
+  return all;
+}
+
+std::optional<Gather::All> Gather::look_at_all_but_world(const SeenFacet& seen, const Facets& facets, int rays,
+                                                         transport::Random& random, Ray& through) const {
   const std::optional<End> across = end_across(seen.grain, seen.place, -seen.towards, facets);
   if (is_transparent(seen.grain) && !across) return std::nullopt;
   All all = walked_in(seen, across, facets, rays, random);
-  Ray through{seen.place - (across ? across->distance : 0.0F) * seen.towards, -seen.towards,
-              left_across_seen(seen.grain, across)};
+  through = {seen.place - (across ? across->distance : 0.0F) * seen.towards, -seen.towards,
+             left_across_seen(seen.grain, across)};
   const std::optional<Meeting> wall =
       across && across->wall ? facets.inside(seen.grain, seen.place, -seen.towards) : std::nullopt;
   Behind behind;
@@ -296,7 +304,6 @@ std::optional<Gather::All> Gather::look_at_all(const SeenFacet& seen, const Face
   if (const int walks = behind.walks(rays, random))
     behind.show(walked_in(behind.seen, behind.across, facets, walks, random), all);
   all.others = glm::max(all.others, 0.0F);
-  show_what_is_behind(through, all);
   return all;
 }
 

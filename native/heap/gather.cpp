@@ -135,7 +135,8 @@ Gather::Through Gather::look_into(const SeenFacet& seen, const Facets& facets, c
                                   transport::Random& random) const {
   Through sum;
   follow_look(seen, facets, how, random, sum);
-  if (how.whole) return sum;
+  // What a pane lets through is not what a ball in its middle does.
+  if (how.whole || pane(seen.grain) != nullptr) return sum;
   const float mu = std::clamp(glm::dot(seen.normal, seen.towards), 0.0F, 1.0F);
   const GrainTable& table = *space_.kind(seen.grain).from_light;
   sum.others += table.lobe_at(mu) *
@@ -204,14 +205,17 @@ void Gather::follow_look(SeenFacet seen, const Facets& facets, const Look& how, 
     }
     const std::optional<Meeting> meeting =
         passage->wall ? passage->wall : facets.beyond(seen.grain, passage->place, passage->direction);
-    if (!meeting) {
+    const auto see_world = [&](const glm::vec3& left) {
       const bool shown = !first || straight || (how.whole && (passage->scattered || facets.finish(seen.grain).shown));
       if (!shown) return;
       const bool mirrors = first && !passage->entered;
       const bool as_it_is =
           (how.alone && !(asks_lights && straight)) || (mirrors && facets.finish(seen.grain).roughness < rough);
       const glm::vec3 world = world_along(passage->direction, as_it_is);
-      (passage->scattered ? sum.scattered : mirrors ? sum.mirrored : sum.lights) += weight * world;
+      (passage->scattered ? sum.scattered : mirrors ? sum.mirrored : sum.lights) += left * world;
+    };
+    if (!meeting) {
+      see_world(weight);
       return;
     }
     // What is scattered shows no longer where others are clear.
@@ -220,6 +224,14 @@ void Gather::follow_look(SeenFacet seen, const Facets& facets, const Look& how, 
       if (meeting->wall && (sees_surfaces || !heap_.grains.walls[meeting->number].has_lights))
         behind += weight * heap_.grains.walls[meeting->number].radiance;
       Ray ray{passage->place, passage->direction, weight};
+      if (!meeting->wall && heap_.grains.kinds[space_.grains()[meeting->number].kind].followed()) {
+        const SeenFacet there{meeting->number, meeting->place, meeting->normal, -passage->direction};
+        if (const std::optional<All> all = look_at_all_but_world(there, facets, 1, random, ray)) {
+          behind += weight * (all->others + all->scattered);
+          see_world(weight * ray.weight);
+          return;
+        }
+      }
       if (const std::optional<Source> source = space_.source(*meeting, ray, random))
         behind += ray.weight / source->met *
                   glm::max(light_->seats->light_at(light_->sent, source->number, source->normal, true), 0.0F);
@@ -321,18 +333,22 @@ glm::vec3 Gather::passed_towards(std::uint32_t grain, const glm::vec3& place, co
   return space_.passed(ray, reach);
 }
 
+const Pane* Gather::pane(std::uint32_t grain) const {
+  const auto found = std::find_if(heap_.grains.panes.begin(), heap_.grains.panes.end(),
+                                  [grain](const Pane& one) { return one.grain == grain; });
+  return found != heap_.grains.panes.end() ? &*found : nullptr;
+}
+
 std::optional<Meeting> Gather::beyond_panes(std::uint32_t grain, glm::vec3 place, const glm::vec3& direction,
                                             bool mirrored, const Facets& facets, glm::vec3& left) const {
-  const std::vector<Pane>& panes = heap_.grains.panes;
   for (int crossed = 0;; ++crossed) {
     std::optional<Meeting> meeting = facets.beyond(grain, place, direction);
     if (!meeting || meeting->wall || crossed == most_crossed) return meeting;
-    const auto pane =
-        std::find_if(panes.begin(), panes.end(), [&](const Pane& one) { return one.grain == meeting->number; });
-    if (pane == panes.end()) return meeting;
+    const Pane* of = pane(meeting->number);
+    if (of == nullptr) return meeting;
     const std::optional<End> end = facets.end(meeting->number, meeting->place, direction);
     const float way = end ? end->distance : 0.0F;
-    const Sheet glass = sheet(pane->glass, std::max(-glm::dot(meeting->normal, direction), 0.0F), way);
+    const Sheet glass = sheet(of->glass, std::max(-glm::dot(meeting->normal, direction), 0.0F), way);
     left *= mirrored ? glass.left() : glass.passed;
     grain = meeting->number;
     place = meeting->place + way * direction;

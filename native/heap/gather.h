@@ -167,6 +167,8 @@ class Gather {
   /// The same of a sun's disc by a surface smooth enough to be a mirror of it: `sun`: its number.
   glm::vec3 mirrored_disc(const SeenFacet& seen, const Facets& facets, std::size_t sun,
                           const glm::vec3& irradiance) const;
+  /// What a grain stands for, or null.
+  const Pane* pane(std::uint32_t grain) const;
   /// What is met from a grain's surface on, straight through panes, of whose light `left` loses what they reflect and
   /// absorb; only what they absorb if `mirrored`, as if what they reflect saw the same.
   std::optional<Meeting> beyond_panes(std::uint32_t grain, glm::vec3 place, const glm::vec3& direction, bool mirrored,
@@ -179,6 +181,9 @@ class Gather {
   /// What a world without a picture sends to the end of it.
   glm::vec3 even_world(const Ray& ray) const;
   Ray ray_through(std::uint32_t grain, const glm::vec3& normal, const glm::vec3& towards) const;
+  /// look_at_all() but for the world behind it, where `through` leaves the heap.
+  std::optional<All> look_at_all_but_world(const SeenFacet& seen, const Facets& facets, int rays,
+                                           transport::Random& random, Ray& through) const;
   /// The world or the film, where a straight way through a grain has left the heap.
   void show_what_is_behind(const Ray& through, All& all) const;
   /// One direction of each light, as it comes to a grain.

@@ -31,6 +31,13 @@ Surface surface_of(const scene::Material& material) {
 
 }  // namespace
 
+bool Optics::followed() const {
+  // Mean free paths to the radius: in thicker ones that costs more than the maps and shadows of a model. Between cosine
+  // lobes the model is as near.
+  constexpr double most = 20.0;
+  return transparent() && std::max({sigma_t.r, sigma_t.g, sigma_t.b}) <= most;
+}
+
 bool Optics::clear() const {
   constexpr double least_crossing = 0.01;
   const double thinnest = std::min({sigma_t.r, sigma_t.g, sigma_t.b});

@@ -30,6 +30,9 @@ struct Optics {
   /// Whether light may go straight through without meeting anything.
   bool transparent() const { return surface == Surface::index_matched; }
 
+  /// Whether light is followed to each scattering in what is seen of it.
+  bool followed() const;
+
   /// Whether its surface refracts and 1 % of the light or more goes through its middle, in some channel.
   bool clear() const;
 

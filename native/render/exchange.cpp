@@ -87,15 +87,6 @@ double rounded(double radius, double an_octave) {
 // thick, a spoon.
 constexpr float wall_over_grain = 6.0F;
 
-// Mean free paths to the radius of a grain. Light is followed to each scattering in what is seen: in thicker ones that
-// costs more than the maps and shadows of a model. Between cosine lobes the model is as near.
-constexpr double most_followed = 20.0;
-
-bool is_followed(const heap::Optics& optics) {
-  const glm::dvec3& sigma_t = optics.sigma_t;
-  return optics.transparent() && std::max({sigma_t.r, sigma_t.g, sigma_t.b}) <= most_followed;
-}
-
 glm::dmat4 to_heap_of(const Draw& draw, const glm::dvec3& anchor) {
   glm::dmat4 to_heap = draw.object_to_world;
   to_heap[3] -= glm::dvec4(anchor, 0.0);
@@ -312,7 +303,8 @@ void Exchange::set(DeviceCache& cache, const Content& content, const scene::Scen
   const heap::Grains& grains = gathered.grains;
   const bool heaped = arrays && grains.grains.size() > 1;
   follows_ = (heaps || !exchanges) && arrays;
-  const bool follows = follows_ && std::any_of(grains.kinds.begin(), grains.kinds.end(), is_followed);
+  const bool follows =
+      follows_ && std::any_of(grains.kinds.begin(), grains.kinds.end(), std::mem_fn(&heap::Optics::followed));
   const bool lit = exchanges ? heaped || beside || clear || !grains.walls.empty() : heaped && follows;
   if (grains.grains.empty() || !lit) {
     solving_.reset();
@@ -348,7 +340,7 @@ bool Exchange::gathers_all_of(std::size_t number, bool traced) const {
   if (gather_->sees_into(*grain)) return traced && whole_[number];
   if (!gather_->sees_all(*grain)) return false;
   const heap::Grains& grains = solving_->heap().grains;
-  return gathers_ || (follows_ && is_followed(grains.kinds[grains.grains[*grain].kind]));
+  return gathers_ || (follows_ && grains.kinds[grains.grains[*grain].kind].followed());
 }
 
 bool Exchange::take_news() {
