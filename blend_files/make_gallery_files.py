@@ -23,7 +23,8 @@ OUR_SAMPLES = 8
 @dataclasses.dataclass(frozen=True)
 class Heap:
     """One picture. grains: (kind of shape, preset, changes of it) of each shape; count of grains and their radius in
-    mm. ground: its colour. light: a function of a scene. samples: of Cycles' for each of SEEDS."""
+    mm. ground: its colour. light: a function of a scene. samples: of Cycles' for each of SEEDS. glass: its colour, of a
+    jar that they are in."""
 
     name: str
     sentence: str
@@ -35,6 +36,7 @@ class Heap:
     samples: int
     roundness: float = 0.3
     segments: int = 10
+    glass: tuple = ()
 
     @property
     def reference(self):
@@ -134,10 +136,50 @@ HEAPS = (
     Heap("salt", "table salt under a thin cloud", 3 * (("salt", "salt", {}),), 400, 0.25, (0.1, 0.12, 0.16), soft, 64,
          roundness=0.15),
     Heap("sugar", "sugar by a window", 3 * (("sugar", "sugar", {}),), 300, 0.4, (0.2, 0.11, 0.06), window, 64),
+    Heap("jar", "sugar in a jar by a window", 3 * (("sugar", "sugar", {}),), 500, 0.4, (0.2, 0.11, 0.06), window, 64,
+         glass=(1.0, 1.0, 1.0)),
+    Heap("green_jar", "sand in a green jar under a thin cloud", 3 * (("sand", "sand", MATCHED),), 500, 0.5,
+         (0.42, 0.36, 0.3), soft, 64, glass=(0.75, 0.93, 0.8)),
 )
 
 
 # Scenes
+
+JAR = (0.7, 1.5, 0.06)
+"""Inner radius, height and thickness of its glass, in Blender units."""
+
+
+def jar(colour):
+    """A jar of glass, round at its edges; smooth all over, as a closed surface without sharp edges may be."""
+    radius, height, thick = JAR
+    rounds = np.linspace(0.0, 0.5 * math.pi, 6)
+    foot, inside, rim = 1.5 * thick, 2.5 * thick, 0.5 * thick
+    bottom = [(radius + thick - foot * (1.0 - math.sin(t)), foot * (1.0 - math.cos(t))) for t in rounds]
+    top = [(radius + rim + rim * math.cos(t), height - rim + rim * math.sin(t)) for t in 2.0 * rounds]
+    floor = [(radius - inside * (1.0 - math.cos(t)), thick + inside * (1.0 - math.sin(t))) for t in rounds]
+    around = np.linspace(0.0, 2.0 * math.pi, 96, endpoint=False)
+    rings = [(r * math.cos(a), r * math.sin(a), z) for r, z in (*bottom, *top, *floor) for a in around]
+    count = len(around)
+    faces = [(count * ring + side, count * ring + (side + 1) % count, count * (ring + 1) + (side + 1) % count,
+              count * (ring + 1) + side) for ring in range(len(rings) // count - 1) for side in range(count)]
+    ends = tuple(range(count))
+    faces += [ends[::-1], tuple(len(rings) - count + end for end in ends)]
+    mesh = bpy.data.meshes.new("Jar")
+    mesh.from_pydata(rings, [], faces)
+    mesh.polygons.foreach_set("use_smooth", [True] * len(faces))
+    mesh.materials.append(parts.plain_material("Glass", colour, "ShaderNodeBsdfGlass"))
+    return parts.add_object("Jar", mesh, Matrix.Translation((0.0, 0.0, 1e-3)))
+
+
+def surface_of(thing):
+    """What grains fall into."""
+    from mesograin.grains import pile
+
+    mesh = thing.data
+    mesh.calc_loop_triangles()
+    places = np.array([thing.matrix_world @ vertex.co for vertex in mesh.vertices])
+    return pile.Surface(places, np.array([each.vertices for each in mesh.loop_triangles]))
+
 
 def grain_material(preset, changes, millimetres_per_unit):
     """A grain, and Cycles' nodes that mean the same."""
@@ -172,12 +214,15 @@ def pour(heap):
         shapes.append(bpy.data.objects.new(data.name, data))
     fallen = [kinds.make(kind, seed=number, segments=heap.segments, roundness=heap.roundness)
               for number, (kind, _preset, _changes) in enumerate(heap.grains)]
-    placings = pile.settle(fallen, heap.count, size, seed=1)
+    vessel = jar(heap.glass) if heap.glass else None
+    placings = pile.settle(fallen, heap.count, size, seed=1, surface=vessel and surface_of(vessel))
     scene.collection.objects.link(objects.add_pile(placings, shapes, "Heap"))
     parts.add_ground(40.0, parts.plain_material("Ground", heap.ground))
     heap.light()
     reach = float(np.percentile(np.hypot(*placings.middles[:, :2].T), 90.0))
     top = float(placings.middles[:, 2].max())
+    if vessel:
+        reach, top = 1.1 * JAR[1], JAR[1]
     look_at(reach, top)
 
 

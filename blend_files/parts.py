@@ -35,13 +35,13 @@ def add_object(name, data, matrix=Matrix()):
     return new
 
 
-def plain_material(name, colour):
-    """Of Blender's own nodes: a diffuse surface that is no grain."""
+def plain_material(name, colour, shader="ShaderNodeBsdfDiffuse"):
+    """Of Blender's own nodes: a surface that is no grain."""
     material = bpy.data.materials.new(name)
     material.use_nodes = True
     nodes = material.node_tree.nodes
     nodes.clear()
-    output, surface = nodes.new("ShaderNodeOutputMaterial"), nodes.new("ShaderNodeBsdfDiffuse")
+    output, surface = nodes.new("ShaderNodeOutputMaterial"), nodes.new(shader)
     surface.inputs["Color"].default_value = (*colour, 1.0)
     material.node_tree.links.new(surface.outputs[0], output.inputs["Surface"])
     material.diffuse_color = (*colour, 1.0)
