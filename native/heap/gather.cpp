@@ -334,9 +334,10 @@ glm::vec3 Gather::passed_towards(std::uint32_t grain, const glm::vec3& place, co
 }
 
 const Pane* Gather::pane(std::uint32_t grain) const {
-  const auto found = std::find_if(heap_.grains.panes.begin(), heap_.grains.panes.end(),
-                                  [grain](const Pane& one) { return one.grain == grain; });
-  return found != heap_.grains.panes.end() ? &*found : nullptr;
+  const std::vector<Pane>& panes = heap_.grains.panes;
+  const auto found = std::lower_bound(panes.begin(), panes.end(), grain,
+                                      [](const Pane& one, std::uint32_t of) { return one.grain < of; });
+  return found != panes.end() && found->grain == grain ? &*found : nullptr;
 }
 
 std::optional<Meeting> Gather::beyond_panes(std::uint32_t grain, glm::vec3 place, const glm::vec3& direction,

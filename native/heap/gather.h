@@ -72,6 +72,9 @@ class Gather {
   /// Whether that is so of any grain.
   bool sees_into_any() const { return !light_->scattered.empty(); }
 
+  /// Whether a look may find lights, unscattered, that few others do.
+  bool finds_by_chance() const { return sees_into_any() && (!heap_.lights.empty() || image_); }
+
   /// What is seen of a clear grain.
   struct Through {
     glm::vec3 others{0.0F};  ///< of what grains and walls send

@@ -31,7 +31,7 @@ struct Grains {
   std::vector<Grain> grains;
   std::vector<Optics> kinds;
   std::vector<Wall> walls;
-  std::vector<Pane> panes;
+  std::vector<Pane> panes;  ///< in the order of the grains that they are
 
   /// The number of a kind of these optics, added if there is none.
   std::uint32_t kind(const Optics& optics);

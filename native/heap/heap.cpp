@@ -162,7 +162,7 @@ bool Space::meets_pane(Ray& ray, float far, transport::Random& random) const {
     if (const std::optional<PaneSurface> other = neighbourhood_.first_pane(ray.origin, ray.direction, onwards, far)) {
       const float cosine = -glm::dot(met->normal, ray.direction);
       const Sheet glass = sheet(panes_[met->pane].glass, cosine, other->distance - met->distance);
-      const float share = mean(glass.reflected) / mean(glass.reflected + glass.passed);
+      const float share = mean(glass.reflected) / std::max(mean(glass.left()), std::numeric_limits<float>::min());
       if (random.uniform() < share) {
         ray.origin += before(*met, ray.origin) * ray.direction;
         ray.direction += 2.0F * cosine * met->normal;

@@ -114,6 +114,15 @@ TEST(Panes, ColourWhatStandsInThem) {
   }
 }
 
+TEST(Panes, AreNumbersAtTheExtremes) {
+  for (const float eta : {0.6F, 1.0F, 1.0000001F, 1e4F})
+    for (const float sigma_a : {0.0F, 1e-12F, 1e12F}) {
+      const HeapLight light = solved(ball_in_glass(lambert(0.5), {glm::vec3(sigma_a), eta}));
+      const float sent = light.sent[0].channels[0].w;
+      EXPECT_TRUE(std::isfinite(sent) && sent >= 0.0F && sent < 0.52F) << eta << ", " << sigma_a << ": " << sent;
+    }
+}
+
 TEST(Panes, FaceOutwardsInMirrorImages) {
   const Glass green{glm::vec3(2.0F, 0.2F, 1.0F), 1.5F};
   Heap heap = ball_in_glass(lambert(0.5), green);

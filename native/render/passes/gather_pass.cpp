@@ -173,8 +173,9 @@ bool GatherPass::run(const Sample& sample, const ArrayVisibility& arrays, Surfac
     std::vector<std::vector<glm::vec4>*> noisy{&others_, &lights_, &scattered_};
     if (clear) noisy.push_back(&mirrored_);
     if (!denoiser_.run(seen.size, sample.index, likenesses_, noisy, deviation, sample.go_on)) return false;
-    if (clear && !denoiser_.run(seen.size, sample.index, likenesses_, {&chance_},
-                                deviation_by_chance(gather->smallest_cone()), sample.go_on))
+    if (clear && gather->finds_by_chance() &&
+        !denoiser_.run(seen.size, sample.index, likenesses_, {&chance_}, deviation_by_chance(gather->smallest_cone()),
+                       sample.go_on))
       return false;
   }
   // They have no noise, and edges.
