@@ -75,13 +75,13 @@ Gather::All Gather::walked_in(std::uint32_t grain, const glm::vec3& place, const
         of.ask(of.reflected(leaves_at, outcome->weight), leaves_at, random);
       }
       if (!of.any()) continue;
-      Ray ray{space_.place(seen, of.place()) + aside, of.to_light(), glm::vec3(1.0F)};
+      Ray ray{space_.place(seen, of.place()) + aside, of.to_light(), glm::vec3(1.0F), false, grain};
       all.scattered += of.asked() * space_.passed(ray, of.reach());
     }
     if (!outcome) continue;
     const glm::vec3 leaves_at =
         space_.this_side(seen.middle + place, space_.place(seen, frame * outcome->normal) + aside);
-    Ray ray{leaves_at, frame * outcome->direction, outcome->weight};
+    Ray ray{leaves_at, frame * outcome->direction, outcome->weight, false, grain};
     if (const std::optional<glm::vec3> sent = sent_along(ray, random))
       all.others += *sent;
     else

@@ -329,7 +329,7 @@ glm::vec3 Gather::passed_towards(std::uint32_t grain, const glm::vec3& place, co
   const std::optional<Meeting> meeting = beyond_panes(grain, place, to_light, false, facets, left);
   if (!meeting || glm::distance(meeting->place, place) >= reach) return left;
   if (meeting->wall || !heap_.grains.kinds[space_.grains()[meeting->number].kind].transparent()) return glm::vec3(0.0F);
-  Ray ray{place, to_light, glm::vec3(1.0F)};
+  Ray ray{place, to_light, glm::vec3(1.0F), false, grain};
   return space_.passed(ray, reach);
 }
 

@@ -100,7 +100,8 @@ Neighbourhood::Neighbourhood(const Grains& grains) {
   device_ = std::move(device);
 }
 
-std::optional<Meeting> Neighbourhood::first(const glm::vec3& origin, const glm::vec3& direction) const {
+std::optional<Meeting> Neighbourhood::first(const glm::vec3& origin, const glm::vec3& direction,
+                                            std::uint32_t from) const {
   float near = 0.0F;
   constexpr int most_left = 64;
   for (int left = 0; left < most_left; ++left) {
@@ -113,6 +114,11 @@ std::optional<Meeting> Neighbourhood::first(const glm::vec3& origin, const glm::
     if (glm::dot(normal, direction) < 0.0F)
       return Meeting{false, ray.hit.primID, glm::vec3(sphere) + sphere.w * normal, normal};
     // The far side of one that the ray has started in.
+    const glm::vec3 out = origin - glm::vec3(sphere);
+    if (ray.hit.primID != from && glm::dot(out, direction) < 0.0F && glm::length(out) > 0.0F) {
+      const glm::vec3 there = glm::normalize(out);
+      return Meeting{false, ray.hit.primID, glm::vec3(sphere) + sphere.w * there, there};
+    }
     near = ray.ray.tfar + 1e-6F * (std::abs(ray.ray.tfar) + sphere.w);
   }
   return std::nullopt;

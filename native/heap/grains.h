@@ -45,6 +45,9 @@ bool same_walls(const std::vector<Wall>& a, const std::vector<Wall>& b);
 /// The same of grains, walls and panes.
 bool same_places(const Grains& a, const Grains& b);
 
+/// In place of a grain's number.
+inline constexpr std::uint32_t nobody = ~0U;
+
 /// Which grain or wall a ray meets, and where.
 struct Meeting {
   bool wall;
@@ -68,8 +71,10 @@ class Neighbourhood {
  public:
   explicit Neighbourhood(const Grains& grains);
 
-  /// The first grain that a ray comes to from outside, or wall; grains that it starts in are not met.
-  std::optional<Meeting> first(const glm::vec3& origin, const glm::vec3& direction) const;
+  /// The first grain that a ray comes to from outside, or wall. A grain that it starts in, and goes deeper into, is met
+  /// where it starts: the balls of grains that are none reach into each other where those touch. Of `from`, whose own
+  /// surface it leaves, that is not so.
+  std::optional<Meeting> first(const glm::vec3& origin, const glm::vec3& direction, std::uint32_t from = nobody) const;
 
   /// Where a ray first meets any wall within `reach`.
   std::optional<Meeting> first_wall(const glm::vec3& origin, const glm::vec3& direction, float reach) const;

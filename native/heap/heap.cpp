@@ -119,6 +119,7 @@ void Space::cross(Ray& ray, const Meeting& meeting, float cosine) const {
   const Grain& grain = grains_[meeting.number];
   ray.origin = place(grain, meeting.normal + 2.0F * cosine * ray.direction);
   ray.crossed = true;
+  ray.from = nobody;
 }
 
 std::optional<Source> Space::source(const Meeting& meeting, Ray& ray, transport::Random& random) const {
@@ -179,7 +180,7 @@ bool Space::meets_pane(Ray& ray, float far, transport::Random& random) const {
 
 std::optional<Source> Space::follow(Ray& ray, transport::Random& random) const {
   for (int crossed = 0; crossed < most_crossed; ++crossed) {
-    const std::optional<Meeting> meeting = neighbourhood_.first(ray.origin, ray.direction);
+    const std::optional<Meeting> meeting = neighbourhood_.first(ray.origin, ray.direction, ray.from);
     const float far = meeting ? glm::distance(ray.origin, meeting->place) : far_away;
     if (meets_pane(ray, far, random)) continue;
     if (!meeting) return std::nullopt;
@@ -206,7 +207,7 @@ glm::vec3 Space::seen_along(Ray& ray, const Field& sent, transport::Random& rand
   glm::vec3 seen(0.0F);
   for (int along = 0; along < most_crossed; ++along) {
     if (std::max({ray.weight.r, ray.weight.g, ray.weight.b}) < nothing) break;
-    const std::optional<Meeting> meeting = neighbourhood_.first(ray.origin, ray.direction);
+    const std::optional<Meeting> meeting = neighbourhood_.first(ray.origin, ray.direction, ray.from);
     ray.weight *=
         passed_panes(ray.origin, ray.direction, meeting ? glm::distance(ray.origin, meeting->place) : far_away, true);
     if (!meeting) return seen;
@@ -233,7 +234,7 @@ glm::vec3 Space::passed(Ray& ray, float reach) const {
   const glm::vec3 start = ray.origin;
   glm::vec3 left(1.0F);
   for (int crossed = 0; crossed < most_crossed; ++crossed) {
-    const std::optional<Meeting> meeting = neighbourhood_.first(ray.origin, ray.direction);
+    const std::optional<Meeting> meeting = neighbourhood_.first(ray.origin, ray.direction, ray.from);
     if (!meeting || glm::distance(start, meeting->place) > reach)
       return left * passed_panes(start, ray.direction, reach, false);
     if (meeting->wall) break;

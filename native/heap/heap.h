@@ -47,7 +47,8 @@ struct Ray {
   glm::vec3 origin;  ///< of one that was followed: where it has come to
   glm::vec3 direction;
   glm::vec3 weight;
-  bool crossed = false;  ///< whether it has gone straight through a grain, or a pane has mirrored it
+  bool crossed = false;         ///< whether it has gone straight through a grain, or a pane has mirrored it
+  std::uint32_t from = nobody;  ///< the grain that it leaves by a surface which is not its ball's
 };
 
 /// What sends out the light that a ray looks for: a grain at a normal, or a node of the walls' patches.
