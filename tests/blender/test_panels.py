@@ -24,6 +24,8 @@ HALF, WHOLE = 115, 160
 # On a screen 1280 wide, the width of the Properties editor; there, what Blender leaves of it for what a list is called,
 # and for a number or a switch.
 NARROW, BESIDE_LIST, IN_FIELD = 190, 42, 100
+# The height of what is not seen.
+HIDDEN = 0.001
 
 
 class Layout:
@@ -48,6 +50,8 @@ class Layout:
 
     def prop(self, owner, name, text=None, expand=False, **_):
         declared = owner.bl_rna.properties[name]
+        if vars(self).get("scale_y") == HIDDEN:
+            return
         if self.use_property_split:
             self.split.append(name)
             if self.use_property_decorate:

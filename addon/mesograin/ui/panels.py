@@ -196,9 +196,15 @@ def _choose_profile(layout, grain):
     drew."""
     menu = {"menu": MESOGRAIN_MT_profiles.bl_idname, "text": _profile_label(grain)}
     if layout.use_property_split:
-        row = layout.row(heading="Profile")
+        column = layout.column(align=True)
+        row = column.row(heading="Profile")
         row.menu(**menu)
-        row.label(icon="BLANK1")  # where the others have their dot, which finds no button of the property here
+        row.prop_decorator(grain, "profile")
+        # The dot is of a property's button, and a menu is none: of this one, which takes no room.
+        hidden = column.row()
+        hidden.use_property_split = hidden.use_property_decorate = False
+        hidden.scale_y = 0.001
+        hidden.prop(grain, "profile", text="")
         return
     column = layout.column(align=True)
     column.label(text="Profile")
