@@ -86,8 +86,8 @@ def test_a_sun_shines_through_a_pane(render, below, colour):
 
 @pytest.mark.parametrize("below, within", [(ground, 0.02), (sugar, 0.02), (heap, 0.08)])
 def test_what_hardly_refracts_hides_nothing(render, below, within):
-    """Of what is opaque, what others see of it is seen: at the pole of a ball under a sun 1/16 too much (its light to the
-    second order)."""
+    """Of what is opaque, what others see of it is seen: at the pole of a ball under a sun 1/16 too much (its light to
+    the second order)."""
     below()
     shine(1.0, CLEAR, eta=1.001)
     through = render()[..., :3]
