@@ -1,7 +1,6 @@
 // The order of a sample's passes, and what of the last one still holds for the next.
 #include "render/frame.h"
 
-#include <algorithm>
 #include <utility>
 
 #include "base/error.h"
@@ -12,8 +11,8 @@
 namespace mesograin::render {
 namespace {
 
-// How many directions of the world light one sample; where each costs a grain its own light map, one.
-constexpr int most_world_directions = 4;
+// How many directions of the world light one sample.
+constexpr int world_directions = 4;
 
 // How long shading may go on without a question whether it should, in milliseconds.
 constexpr double longest_strip = 40.0;
@@ -131,9 +130,6 @@ scene::Camera Frame::seen_through(std::uint32_t index) const {
 Sample Frame::begin_sample(const GoOn& go_on, bool hurried) {
   cache_.begin_sample();
   const auto index = static_cast<std::uint32_t>(added_to());
-  const std::vector<Draw>& draws = content_->draws();
-  const bool own_maps =
-      std::any_of(draws.begin(), draws.end(), [](const Draw& draw) { return draw.light_maps != nullptr; });
   const bool cast = arrays_.casts(*content_);
   const bool traced = arrays_.traces(*content_, hurried);
   const bool gathers = !unwrapping_ && exchange_.gather() != nullptr && (exchange_.gathers_all() || traced);
@@ -149,7 +145,7 @@ Sample Frame::begin_sample(const GoOn& go_on, bool hurried) {
                 .seed = seed_,
                 // Uniform over the pixel: the box filter, one pixel wide.
                 .jitter = glm::vec2((2.0 * r2_point(index, seeded_offset(seed_)) - 1.0) / glm::dvec2(size_)),
-                .lights = lighting_.sample(index, seed_, own_maps ? 1 : most_world_directions),
+                .lights = lighting_.sample(index, seed_, world_directions),
                 .cast = cast,
                 .device_rays = arrays_.casts_on_device(*content_),
                 .traced = traced,

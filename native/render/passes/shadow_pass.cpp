@@ -31,7 +31,7 @@ bool crosses_into_others(const Sample& sample) {
   if (!sample.straight_through || sample.unwrapping != nullptr) return false;
   int below = 0;
   for (std::size_t unit = 0; unit < sample.content.units(); ++unit)
-    if (!is_opaque(sample.content.material(unit))) ++below;
+    if (!is_opaque(sample.content.material(unit)) && sample.asks_model(unit)) ++below;
   return below > 1;
 }
 
