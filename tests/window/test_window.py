@@ -19,6 +19,7 @@ LAUNCHES = {  # what is checked, in which environment, on a screen of which size
     "monkey": ("checks_monkey", {}, SMALLEST, []),
     "heap": ("checks_heap", {}, SMALL, SIMULATED),
     "pile": ("checks_pile", {}, SMALL, SIMULATED),
+    "keys": ("checks_keys", {}, TALL, SIMULATED),
     "compare": ("checks_compare", {}, TALL, SIMULATED),
     "bake": ("checks_bake", {}, TALLER, SIMULATED),
     "preview": ("checks_preview", {}, TALLER, SIMULATED),

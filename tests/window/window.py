@@ -216,11 +216,20 @@ class Window:
         yield 0.05
         return at
 
-    def press(self, area, key):
+    def press(self, area, key, **held):
+        """A key, with `ctrl`, `shift` or `alt` held where they are True."""
         window, at = self._window(), (yield from self.point_at(area))
         for value in ("PRESS", "RELEASE"):
-            window.event_simulate(type=key, value=value, **at)
+            window.event_simulate(type=key, value=value, **at, **held)
             yield 0.05
+
+    def write(self, words):
+        """Types letters, spaces and quotes; the mouse stays where it is."""
+        for letter in words:
+            key = {" ": "SPACE", "'": "QUOTE"}.get(letter, letter.upper())
+            self._window().event_simulate(type=key, value="PRESS", unicode=letter)
+            self._window().event_simulate(type=key, value="RELEASE")
+            yield 0.02
 
     # Pixels
 

@@ -44,8 +44,13 @@ class MESOGRAIN_OT_select_named(bpy.types.Operator):
 def draw(layout, context, sentence):
     """A button for each thing that the sentence names."""
     for thing in find(sentence, context):
-        layout.operator(MESOGRAIN_OT_select_named.bl_idname, text=f"Select '{thing.name}'",
-                        icon="RESTRICT_SELECT_OFF").name = thing.name
+        draw_button(layout, thing.name)
+
+
+def draw_button(layout, name):
+    """The button that selects an object."""
+    layout.operator(MESOGRAIN_OT_select_named.bl_idname, text=f"Select '{name}'",
+                    icon="RESTRICT_SELECT_OFF").name = name
 
 
 register, unregister = bpy.utils.register_classes_factory((MESOGRAIN_OT_select_named,))

@@ -28,6 +28,7 @@ class MESOGRAIN_OT_bake(StartOperator, bpy.types.Operator):
 
 class MESOGRAIN_OT_cancel_bake(CancelOperator, bpy.types.Operator):
     bl_idname = "mesograin.cancel_bake"
+    bl_label = "Cancel Bake"
     bl_description = "End the bake; nothing is written"
     session = session
 

@@ -22,6 +22,7 @@ class MESOGRAIN_OT_compare(StartOperator, bpy.types.Operator):
 
 class MESOGRAIN_OT_cancel_compare(CancelOperator, bpy.types.Operator):
     bl_idname = "mesograin.cancel_compare"
+    bl_label = "Cancel Comparison"
     bl_description = "End the comparison at once; references that are rendered stay in the cache"
     session = session
 

@@ -1,7 +1,8 @@
 # What the buttons of the Match to Picture panel do.
 import bpy
 
-from ..active_material import OnActiveMaterial
+from ...schema import models
+from ..active_material import OnActiveMaterial, active_material
 from ..side_task.operators import CancelOperator, ShowPictureOperator, StartOperator
 from .session import session
 
@@ -22,7 +23,8 @@ class MESOGRAIN_OT_match(StartOperator, bpy.types.Operator):
 
     @classmethod
     def poll(cls, context):
-        return getattr(context, "material", None) is not None and super().poll(context)
+        material = active_material(context)
+        return material is not None and models.CHOICES[material.mesograin.model].translucent and super().poll(context)
 
     def execute(self, context):
         if bpy.app.background:
@@ -33,6 +35,7 @@ class MESOGRAIN_OT_match(StartOperator, bpy.types.Operator):
 
 class MESOGRAIN_OT_cancel_match(CancelOperator, bpy.types.Operator):
     bl_idname = "mesograin.cancel_match"
+    bl_label = "Cancel Match"
     bl_description = "End the match at once; what was drawn is remembered, and the next one goes on from there"
     session = session
 

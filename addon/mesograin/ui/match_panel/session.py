@@ -3,6 +3,7 @@ from ...studies.background.launch import launch
 from ...studies.match import files, of_blender
 from ...studies.match.run import MatchError
 from ...studies.match.target import TargetError
+from ..active_material import active_material
 from ..side_task import pictures
 from ..side_task.job_session import JobSession
 from . import properties
@@ -19,7 +20,7 @@ class MatchSession(JobSession):
         if not asked.parameters:
             raise MatchError("Nothing is searched for: choose at least one of sigma_a, sigma_s and g.")
         of_blender.target(asked.image)  # what is wrong with it is said at once
-        return launch("match", str(out), **properties.arguments(scene), material=context.material.name_full,
+        return launch("match", str(out), **properties.arguments(scene), material=active_material(context).name_full,
                       memory=str(out))
 
     def show(self, _results, folder):

@@ -25,8 +25,6 @@ class StartOperator:
 
 
 class CancelOperator:
-    bl_label = "Cancel"
-
     @classmethod
     def poll(cls, _context):
         return cls.session.running

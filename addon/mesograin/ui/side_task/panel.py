@@ -24,7 +24,7 @@ def draw_task(layout, context, session, start, cancel, unknown, detail="", **but
                              f"about {duration(left)} left" if left is not None else unknown)
         if detail:
             panels.draw_sentence(column, context, detail, icon="NONE")
-        layout.operator(cancel.bl_idname, icon="CANCEL")
+        layout.operator(cancel.bl_idname, text="Cancel", icon="CANCEL")
     else:
         row = layout.row()
         row.scale_y = 1.4
