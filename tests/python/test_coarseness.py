@@ -92,6 +92,24 @@ def test_a_scene_that_becomes_slow_amid_a_drag_is_followed():
         assert seconds[3] >= FIRST and seconds[-1] == COARSEST
 
 
+def test_a_sharp_picture_may_still_be_under_way_when_a_coarse_one_is_asked_for():
+    """And the coarse one take longer, as of a scene that has become slow."""
+    coarseness = Coarseness()
+    coarseness.divisor()
+    for divisor, seconds in ((1, 0.1), (4, 0.5), (1, 3.0)):
+        coarseness.note(divisor, seconds)
+    assert coarseness.divisor() == COARSEST
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_samples_of_any_kind_may_come_in_any_order(seed):
+    drawn, coarseness = random.Random(seed), Coarseness()
+    for _ in range(2000):
+        if drawn.random() < 0.3:
+            assert 1 <= coarseness.divisor() <= COARSEST
+        coarseness.note(drawn.choice((1, 1, 2, 4, COARSEST)), 10.0 ** drawn.uniform(-4.0, 1.0))
+
+
 def test_pictures_become_finer_to_the_last():
     for divisor in range(2, COARSEST + 1):
         steps = [divisor]

@@ -37,8 +37,9 @@ class Coarseness:
 
     def _note_sharp(self, seconds):
         # Other work of the machine only adds to what a sample takes.
-        least = seconds if self._changed else min(self._sharp, seconds)
-        if self._sharp is not None and not (least <= SAME * self._sharp and self._sharp <= SAME * least):
+        before = seconds if self._sharp is None else self._sharp
+        least = seconds if self._changed else min(before, seconds)
+        if not (least <= SAME * before and before <= SAME * least):
             self._forget()
         self._sharp, self._changed, self._least = least, False, 1
         self._coarse = sorted(self._coarse)[:MANY]
