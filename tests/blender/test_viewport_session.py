@@ -463,6 +463,43 @@ def test_an_error_of_what_was_shown_before_is_not_that_of_what_is_shown(drag, na
     session.stop()
 
 
+def test_a_view_that_cannot_become_sharp_says_so_and_is_asked_anew_by_the_next_redraw(drag, native):
+    _, session = drag(sample_seconds=0.2, redraw_seconds=None)
+    deadline = time.monotonic() + 60.0
+    while not session.waits or session._divisor == 1:
+        assert time.monotonic() < deadline
+        session.advance(1)
+
+    class Small:
+        """A native.View without memory for more."""
+
+        class Taking:
+            def wait(self, seconds=None):
+                return True
+
+            def result(self):
+                raise native.Error("Out of memory: close something.")
+
+        def __init__(self, view):
+            self._view = view
+
+        def __getattr__(self, name):
+            return getattr(self._view, name)
+
+        def start_camera(self, *arguments):
+            return Small.Taking()
+
+    view, session._view = session._view, Small(session._view)
+    with pytest.raises(native.Error, match="Out of memory"):
+        while True:
+            session.look()
+    for _ in range(3):
+        session.look()
+    session._view = view
+    session.set_camera(native.Camera.look_at((0.0, 0.0, 9.0), (0.0, 0.0, 0.0), (0.0, 1.0, 0.0), 45.0), *SIZE)
+    assert settled(session, 1)[-1].shape[:2] == SIZE[::-1]
+
+
 def test_no_thread_of_python_draws(drag):
     # One beside an operator that looks something up in an overridden context crashes Blender before Python 3.12.
     before = set(threading.enumerate())
@@ -511,3 +548,42 @@ def test_transport_is_waited_for_by_nobody_and_comes_into_the_picture(native, bl
         np.testing.assert_allclose(shown[-1], view.read(), atol=1e-5)
     finally:
         session.stop()
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_whatever_comes_when_the_last_change_is_shown(drag, native, monkeypatch, seed):
+    """Samples of any duration, scenes and cameras taken soon or late, and regions of any size."""
+    _, session = drag(sample_seconds=0.0, redraw_seconds=0.0)
+    drawn, grain = random.Random(seed), bpy.data.materials["Translucent"].mesograin
+    cameras = [native.Camera.look_at((0.0, 0.0, eye), (0.0, 0.0, 0.0), (0.0, 1.0, 0.0), 45.0) for eye in (9.0, 11.0)]
+    times, camera, size = (0.0, 0.01, 0.05, 0.4), cameras[0], SIZE
+
+    def start(view, samples):
+        return Slow(view.start(samples, read=True), drawn.choice(times))
+
+    monkeypatch.setattr(viewport, "_start", start)
+    session._view = Late(session._view)
+    for step in range(150):
+        what = drawn.randrange(6)
+        if what == 0:
+            grain.reflectance = (reflectance(step % CHANGES),) * 3
+            session.set_scene(export.read_scene(bpy.context.evaluated_depsgraph_get(), meshes.MeshCache()))
+        elif what == 1:
+            camera = drawn.choice(cameras)
+        elif what == 2:
+            size = drawn.choice((SIZE, (SIZE[0] // 2, SIZE[1]), (1, 1)))
+        elif what == 3:
+            session.look()
+        elif what == 4:
+            time.sleep(drawn.random() ** 3 * 2.0 * viewport.STILL_SECONDS)
+        session.set_camera(camera, *size)
+        picture = session.advance(4)
+        assert picture is None or (np.isfinite(picture).all() and picture.ndim == 3)
+    times = (0.0,)
+    session.set_camera(cameras[0], *SIZE)
+    last = settled(session, 4)[-1]
+    right = native.View(*SIZE)
+    right.set_scene(export.scene_from_depsgraph(bpy.context.evaluated_depsgraph_get())[0])
+    right.set_camera(cameras[0])
+    right.render(4)
+    np.testing.assert_allclose(last, right.read(), atol=1e-5)

@@ -199,6 +199,8 @@ class Session:
         """Goes over from a coarse picture to a finer one, or to further samples of it, unless changes come yet."""
         if not self.settling or self._taking is not None or self._task is not None or self._fade is not None:
             return
+        if self._camera is None:  # the view could not take it: the next redraw asks anew
+            return
         now = time.perf_counter()
         self._still = self._still or now
         if now - self._still < STILL_SECONDS:
