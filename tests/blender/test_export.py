@@ -227,6 +227,74 @@ def test_a_slot_that_is_gone_is_the_last_one(made):
     assert instance.material.name == "Only"
 
 
+def test_slots_that_are_gone_do_not_split_a_mesh(made):
+    cube = add_cube()
+    cube.data.materials.append(bpy.data.materials.new("Only"))
+    cube.data.polygons.foreach_set("material_index", [0, 1, 2, 3, 4, 5])
+    cube.data.update()
+    assert [instance.material.name for instance in read_scene().instances] == ["Only"]
+    assert [len(triangles) for _, _, triangles, _ in made] == [12]
+    cube.data.materials.clear()
+    assert len(read_scene().instances) == 1
+
+
+def test_slots_of_one_material_are_one_part(made):
+    cube = add_cube()
+    red, green = (bpy.data.materials.new(name) for name in ("Red", "Green"))
+    for material in (red, green, red, None, None):
+        cube.data.materials.append(material)
+    cube.data.polygons.foreach_set("material_index", [0, 1, 2, 3, 4, 2])
+    cube.data.update()
+    values = read_scene()
+    assert [instance.material.name for instance in values.instances] == ["Red", "Green", "(none)"]
+    assert [len(triangles) for _, _, triangles, _ in made] == [6, 2, 4]
+
+
+def test_a_cache_knows_slots_that_come_and_go(made):
+    cube = add_cube()
+    red, green = (bpy.data.materials.new(name) for name in ("Red", "Green"))
+    cube.data.polygons.foreach_set("material_index", [0, 0, 0, 1, 1, 1])
+    cache = meshes.MeshCache()
+
+    def worn():
+        values = export.read_scene(bpy.context.evaluated_depsgraph_get(), cache)
+        return [instance.material.name for instance in values.instances]
+
+    cube.data.materials.append(red)
+    assert worn() == ["Red"]
+    cube.data.materials.append(green)
+    assert worn() == ["Red", "Green"]
+    cube.material_slots[1].link = "OBJECT"
+    cube.material_slots[1].material = red
+    assert worn() == ["Red"]
+    cube.material_slots[1].link = "DATA"
+    assert worn() == ["Red", "Green"]
+    bpy.context.view_layer.material_override = green
+    assert worn() == ["Green"]
+    assert len(made) == 3
+
+
+def test_two_grains_on_one_body_are_said_and_two_bodies_are_not():
+    cube = add_cube()
+    for name in ("Red", "Green"):
+        cube.data.materials.append(bpy.data.materials.new(name))
+        bpy.data.materials[name].mesograin.model = "model_2"
+    cube.data.polygons.foreach_set("material_index", [0, 0, 0, 1, 1, 1])
+    cube.data.update()
+    [sentence] = [each for each in read_scene().warnings if "several materials" in each]
+    assert cube.name in sentence
+    cube.data = bpy.data.meshes.new("Two")
+    cube.data.from_pydata([*CUBE, *((x + 5.0, y, z) for x, y, z in CUBE)], [],
+                          [*CUBE_FACES, *(tuple(8 + each for each in face) for face in CUBE_FACES)])
+    for name in ("Red", "Green"):
+        cube.data.materials.append(bpy.data.materials[name])
+    cube.data.polygons.foreach_set("material_index", [0] * 6 + [1] * 6)
+    cube.data.update()
+    values = read_scene()
+    assert len(values.instances) == 2
+    assert not [each for each in values.warnings if "several materials" in each]
+
+
 def test_materials_linked_to_the_object_win(made):
     cube = add_cube()
     cube.data.materials.append(bpy.data.materials.new("OfMesh"))

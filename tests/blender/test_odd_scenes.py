@@ -67,10 +67,19 @@ def empty_the_slot():
 def name_slots_that_are_gone():
     mesh = bpy.data.objects["Sphere"].data
     mesh.polygons.foreach_set("material_index", [number % 7 for number in range(len(mesh.polygons))])
+    mesh.update()
+
+
+def wear_one_material_in_two_slots():
+    mesh = bpy.data.objects["Sphere"].data
+    mesh.materials.append(mesh.materials[0])
+    mesh.polygons.foreach_set("material_index", [number % 2 for number in range(len(mesh.polygons))])
+    mesh.update()
 
 
 @pytest.mark.parametrize("change", [add_things_that_are_no_grain, add_objects_without_extent, turn_inside_out,
-                                    empty_the_slot, name_slots_that_are_gone])
+                                    empty_the_slot, name_slots_that_are_gone,
+                                    wear_one_material_in_two_slots])
 def test_what_is_not_rendered_changes_nothing(scene, compare, change):
     before = compare()
     change()

@@ -450,7 +450,7 @@ class _Reader:
         """heaps.Group of a shape that can be drawn, else None."""
         if not meshes.is_shape(shape):
             return None
-        parts = self._cache.parts(shape)
+        parts = self._cache.parts(shape, self._override)
         if not any(part.has_area for part in parts) or any(part.broken_uvs for part in parts):
             return None
         parts = [part for part in parts if self._has_surface(shape, part.slot)]
@@ -459,6 +459,8 @@ class _Reader:
         for sentence in left_out.sentences(shape):
             self._warn(sentence)
         materials = [self._coloured(self._material(shape, part.slot, many=True), shape, part.mesh) for part in parts]
+        for part, material in zip(parts, materials):
+            self._warn_of_cut(part, material, shape.name)
         if any(material.finish and material.finish.radiance for material in materials):
             self._warn(f"Instances of '{shape.name}' shine, but on nothing: only objects of their own are lights to "
                        "others.")
@@ -527,7 +529,7 @@ class _Reader:
                            budgets.tolerance(scene.mesograin))
 
     def _read_drawable(self, evaluated_object, matrix_world):
-        parts = self._cache.parts(evaluated_object)
+        parts = self._cache.parts(evaluated_object, self._override)
         if not parts:
             if evaluated_object.type == "META":
                 return  # a family of metaballs is drawn with its first member
@@ -557,6 +559,7 @@ class _Reader:
                 continue
             material = self._coloured(self._material(evaluated_object, part.slot), evaluated_object, part.mesh)
             material = material.at_scale(meshes.scale(matrix_world))
+            self._warn_of_cut(part, material, evaluated_object.name)
             if self._read_mesh_lights(evaluated_object, matrix_world, part.slot, material):
                 material = material.of_lights()
             self._instances.append(InstanceValues(evaluated_object.name, part.mesh, material, to_world,
@@ -567,7 +570,8 @@ class _Reader:
         radiance = material.finish and material.finish.radiance
         if not radiance:
             return False
-        found = mesh_lights.read(evaluated_object, matrix_world, slot, radiance)
+        worn = meshes.slots_worn(evaluated_object, self._override)
+        found = mesh_lights.read(evaluated_object, matrix_world, slot, worn, radiance)
         if found is None:
             self._warn(f"Object '{evaluated_object.name}' shines, but on nothing: only up to {mesh_lights.MOST_FACES} "
                        "rectangular faces are lights to others.")
@@ -619,7 +623,13 @@ class _Reader:
         """The native.Mesh of a slot of a shape."""
         if not meshes.is_shape(evaluated_object):
             return None
-        return next((part.mesh for part in self._cache.parts(evaluated_object) if part.slot == slot), None)
+        parts = self._cache.parts(evaluated_object, self._override)
+        return next((part.mesh for part in parts if part.slot == slot), None)
+
+    def _warn_of_cut(self, part, material, name):
+        if part.is_cut and models.CHOICES[dict(material.values)["model"]].translucent:
+            self._warn(f"Object '{name}' wears several materials on one body, so light does not go from one's part of "
+                       "it to the other's and its brightness is wrong: give all its faces the same grain.")
 
     def _has_surface(self, evaluated_object, slot):
         """Whether faces are more than the border of a volume, or of nothing: a surface in their place would hide what

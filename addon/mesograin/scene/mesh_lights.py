@@ -1,7 +1,7 @@
 # Meshes that shine on others: each rectangle of one is an area light, as Cycles lights with emission.
 import numpy as np
 
-from . import lights
+from . import lights, meshes
 
 MOST_FACES = 6
 """More would cost each pixel too much."""
@@ -10,13 +10,13 @@ APART = 1e-4
 """How far in front of its face a light is, of its size: the face does not stand in its own light."""
 
 
-def read(evaluated_object, matrix_world, slot, radiance):
-    """[lights.PlacedLightValues] of the faces with a material slot that send out radiance, linear RGB; None if they are
-    more than a few, or no rectangles."""
+def read(evaluated_object, matrix_world, slot, worn, radiance):
+    """[lights.PlacedLightValues] of the faces that have a slot of meshes.slots_worn and send out radiance, linear RGB;
+    None if they are more than a few, or no rectangles."""
     mesh = evaluated_object.to_mesh()
     try:
-        last = len(evaluated_object.material_slots) - 1
-        faces = [face for face in mesh.polygons if min(face.material_index, last) == min(slot, last)]
+        slots = meshes.slots_of_faces([face.material_index for face in mesh.polygons], worn)
+        faces = [face for face, of_face in zip(mesh.polygons, slots) if of_face == slot]
         if not 0 < len(faces) <= MOST_FACES:
             return None
         to_world = np.array(matrix_world)

@@ -1,4 +1,4 @@
-# Evaluated Blender geometry as native meshes, one for each material slot; what did not change is neither read nor sent.
+# Evaluated Blender geometry as native meshes, one for each material; what did not change is neither read nor sent.
 import hashlib
 import math
 import typing
@@ -31,7 +31,21 @@ def used_slots(shape, count):
         return list(range(max(count, 1)))
     slots = np.empty(len(polygons), dtype=np.int32)
     polygons.foreach_get("material_index", slots)
-    return np.unique(np.minimum(slots, max(count - 1, 0))).tolist()
+    return np.unique(np.clip(slots, 0, max(count - 1, 0))).tolist()
+
+
+def slots_worn(evaluated_object, override=None):
+    """For each slot of an object, the first one with the same material, so that what looks the same is one body; () if
+    it has none. override: a bpy.types.Material that a view layer puts in place of all."""
+    first = {}
+    return tuple(first.setdefault(override or slot.material, number)
+                 for number, slot in enumerate(evaluated_object.material_slots))
+
+
+def slots_of_faces(named, worn):
+    """What faces that name slots, integers (n,), have of `slots_worn`; those beyond the last have the last, as in
+    Blender and Cycles."""
+    return np.array(worn or (0,), dtype=np.int32)[np.clip(named, 0, max(len(worn) - 1, 0))]
 
 
 THINNEST = 1e-7
@@ -55,13 +69,15 @@ def is_finite(matrix_world):
 
 
 class MeshPart(typing.NamedTuple):
-    """The triangles of one material slot; `mesh` is a native Mesh and equal parts share it. has_area: of any triangle.
-    broken_uvs: whether there were UVs, but some that are no numbers; the mesh then has none."""
+    """The triangles of one material; `slot` is the first that has it, `mesh` a native Mesh, which equal parts share.
+    has_area: of any triangle. broken_uvs: whether there were UVs, but some that are no numbers; the mesh then has none.
+    is_cut: whether it goes on in another part."""
 
     slot: int
     mesh: object
     has_area: bool
     broken_uvs: bool
+    is_cut: bool = False
 
 
 # Equal content is one native mesh, wherever it comes from: undo, a second viewport or a final render resend nothing.
@@ -81,12 +97,13 @@ class MeshCache:
     def forget(self):
         self._by_address.clear()
 
-    def parts(self, evaluated_object):
-        """The MeshParts of an evaluated object, none if it has no faces. Raises native.Error naming the object if its
-        coordinates are not finite."""
-        key = _address(evaluated_object)
+    def parts(self, evaluated_object, override=None):
+        """The MeshParts of an evaluated object, none if it has no faces. override: as of `slots_worn`. Raises
+        native.Error naming the object if its coordinates are not finite."""
+        worn = slots_worn(evaluated_object, override)
+        key = (*_address(evaluated_object), worn)
         if key not in self._by_address:
-            self._by_address[key] = _read_object(evaluated_object)
+            self._by_address[key] = _read_object(evaluated_object, worn)
         return self._by_address[key]
 
 
@@ -96,17 +113,17 @@ def _address(evaluated_object):
     return (data,) if evaluated_object.type == "MESH" else (data, evaluated_object.original.as_pointer())
 
 
-def _read_object(evaluated_object):
+def _read_object(evaluated_object, worn):
     mesh = evaluated_object.to_mesh()
     if mesh is None:
         return ()
     try:
-        return _read_mesh(mesh, evaluated_object.name)
+        return _read_mesh(mesh, evaluated_object.name, worn)
     finally:
         evaluated_object.to_mesh_clear()
 
 
-def _read_mesh(mesh, name):
+def _read_mesh(mesh, name, worn):
     if not mesh.polygons:
         return ()
     compat.calculate_corners(mesh)
@@ -116,19 +133,30 @@ def _read_mesh(mesh, name):
     triangles = of_loop[triangles]
     slots = np.empty(len(mesh.loop_triangles), dtype=np.int32)
     mesh.loop_triangles.foreach_get("material_index", slots)
+    slots = slots_of_faces(slots, worn)
     used = np.unique(slots)
     if len(used) == 1:
         return (_part(name, used[0], corners, triangles, broken_uvs),)
     parts = []
-    for slot in used:
+    for slot, is_cut in zip(used, _are_cut(mesh, slots, used)):
         kept, compact = np.unique(triangles[slots == slot], return_inverse=True)
         kept_corners = [None if array is None else array[kept] for array in corners]
-        parts.append(_part(name, slot, kept_corners, compact.reshape(-1, 3), broken_uvs))
+        parts.append(_part(name, slot, kept_corners, compact.reshape(-1, 3), broken_uvs, is_cut))
     return tuple(parts)
 
 
-def _part(name, slot, corners, triangles, broken_uvs):
-    return MeshPart(int(slot), _native_mesh(name, corners, triangles), _has_area(corners[0], triangles), broken_uvs)
+def _part(name, slot, corners, triangles, broken_uvs, is_cut=False):
+    mesh = _native_mesh(name, corners, triangles)
+    return MeshPart(int(slot), mesh, _has_area(corners[0], triangles), broken_uvs, is_cut)
+
+
+def _are_cut(mesh, slots, used):
+    """Of each slot in use, whether its triangles share vertices with another's."""
+    vertices = np.empty((len(mesh.loop_triangles), 3), dtype=np.int32)
+    mesh.loop_triangles.foreach_get("vertices", vertices.ravel())
+    of_slots = [np.unique(vertices[slots == slot]) for slot in used]
+    shared = np.bincount(np.concatenate(of_slots)) > 1
+    return [bool(shared[each].any()) for each in of_slots]
 
 
 def _has_area(positions, triangles):
