@@ -13,6 +13,7 @@
 #include "python/bindings.h"
 #include "python/vectors.h"
 #include "scene/advice.h"
+#include "scene/bodies.h"
 #include "scene/camera.h"
 #include "scene/scene.h"
 
@@ -62,6 +63,21 @@ std::shared_ptr<scene::Mesh> mesh_of(const Drawn& drawn) {
   return std::const_pointer_cast<scene::Mesh>(drawn.mesh);
 }
 
+template <typename Number>
+std::span<const Number> numbers_of(const Array<Number>& array) {
+  return {array.data(), static_cast<std::size_t>(array.size())};
+}
+
+template <typename Number, typename Matrices>
+Array<Number> to_array_of_matrices(const Matrices& matrices) {
+  Array<Number> array({matrices.size(), std::size_t{4}, std::size_t{4}});
+  Number* number = array.mutable_data();
+  for (const glm::dmat4& matrix : matrices)
+    for (int row = 0; row < 4; ++row)
+      for (int column = 0; column < 4; ++column) *number++ = static_cast<Number>(matrix[column][row]);
+  return array;
+}
+
 void bind_mesh_and_instance(py::module_& module) {
   py::class_<scene::Mesh, std::shared_ptr<scene::Mesh>>(
       module, "Mesh", "A triangle mesh. Its arrays are copied and never change, so it is sent to the device only once.")
@@ -79,7 +95,22 @@ void bind_mesh_and_instance(py::module_& module) {
             return py::make_tuple(to_rows<float>(mesh.positions()), to_rows<float>(mesh.uvs()),
                                   to_rows<std::uint32_t>(mesh.triangles()));
           },
-          "Copies of its positions (n, 3), UVs (n, 2), or (0, 2) if it has none, and indices (t, 3).");
+          "Copies of its positions (n, 3), UVs (n, 2), or (0, 2) if it has none, and indices (t, 3).")
+      .def(
+          "bodies",
+          [](const scene::Mesh& mesh, const Array<std::uint32_t>& vertices, bool copies) {
+            std::vector<std::pair<std::shared_ptr<scene::Mesh>, Array<double>>> found;
+            for (const scene::Bodies& each : scene::bodies_of(mesh, numbers_of(vertices), copies))
+              found.emplace_back(mesh_of(each), to_array_of_matrices<double>(each.placings));
+            return found;
+          },
+          py::arg("vertices"), py::arg("copies") = true,
+          "[(Mesh, (m, 4, 4) float64)] of a mesh of many grains: each closed surface, facing outwards, and where it "
+          "stands in the whole; none if there are fewer than two, unless it is one that is inside out. What is open "
+          "comes last, as one; cavities belong to what is around them. "
+          "vertices: (n,) uint32, for each position the number of its vertex; surfaces that touch share none. copies: "
+          "whether copies of one body are placings of it; else each has a mesh in its own place. Raises Error unless "
+          "there are as many vertices as positions.");
 
   py::class_<scene::Instance>(module, "Instance", "A mesh with its material at its place in the world.")
       .def(py::init([](std::shared_ptr<scene::Mesh> mesh, const scene::Material& material,
@@ -121,11 +152,6 @@ void bind_advice(py::module_& module) {
       "are per.");
 }
 
-template <typename Number>
-std::span<const Number> numbers_of(const Array<Number>& array) {
-  return {array.data(), static_cast<std::size_t>(array.size())};
-}
-
 // Blender's are of single precision: no copy is made of them in double.
 scene::Transforms to_transforms(const py::array& array) {
   if (array.ndim() != 3 || array.shape(1) != 4 || array.shape(2) != 4)
@@ -133,16 +159,6 @@ scene::Transforms to_transforms(const py::array& array) {
                 array.ndim() > 0 ? array.shape(array.ndim() - 1) : 0);
   if (py::isinstance<py::array_t<float>>(array)) return scene::Transforms::of_rows(numbers_of(Array<float>(array)));
   return scene::Transforms::of_rows(numbers_of(Array<double>(array)));
-}
-
-template <typename Number>
-Array<Number> to_array_of_matrices(const scene::Transforms& matrices) {
-  Array<Number> array({matrices.size(), std::size_t{4}, std::size_t{4}});
-  Number* number = array.mutable_data();
-  for (const glm::dmat4 matrix : matrices)
-    for (int row = 0; row < 4; ++row)
-      for (int column = 0; column < 4; ++column) *number++ = static_cast<Number>(matrix[column][row]);
-  return array;
 }
 
 void bind_transforms(py::module_& module) {

@@ -6,11 +6,11 @@
 #include <cstdint>
 #include <glm/geometric.hpp>
 #include <map>
-#include <numeric>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "scene/pieces.h"
 #include "scene/welding.h"
 
 namespace mesograin::scene {
@@ -18,22 +18,6 @@ namespace {
 
 // Of the mesh's reach: how far a neighbour's corner may stand above a triangle's plane.
 constexpr double tolerance = 1e-5;
-
-// Which of the vertices hang together by edges.
-class Pieces {
- public:
-  explicit Pieces(std::size_t vertices) : parents_(vertices) { std::iota(parents_.begin(), parents_.end(), 0U); }
-
-  void join(std::uint32_t a, std::uint32_t b) { parents_[of(a)] = of(b); }
-
-  std::uint32_t of(std::uint32_t vertex) {
-    while (parents_[vertex] != vertex) vertex = parents_[vertex] = parents_[parents_[vertex]];
-    return vertex;
-  }
-
- private:
-  std::vector<std::uint32_t> parents_;
-};
 
 }  // namespace
 

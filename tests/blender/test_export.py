@@ -59,6 +59,9 @@ def made(monkeypatch, native):
         def __init__(self, *arguments):
             arrays.append(arguments)
 
+        def bodies(self, *_):
+            return ()
+
     class Recording:
         Mesh, Error, Transforms = Recorder, native.Error, native.Transforms
 

@@ -107,7 +107,7 @@ def test_a_model_is_chosen_by_size_and_shape(material, native, paths, is_cube, m
 
 def test_an_open_cube_is_told_from_a_closed_one(material, native):
     thing = grain_object(material, 6.0 * sorted(material.mesograin_look.mean_free_path)[1], True)
-    volume, area, closed = look._shape(thing)
+    volume, area, closed = look._look_at(thing).shape
     assert closed and 36.0 * np.pi * volume**2 / area**3 == pytest.approx(np.pi / 6.0, rel=1e-6)
     bpy.ops.object.mode_set(mode="EDIT")
     bpy.ops.mesh.select_all(action="DESELECT")
@@ -116,7 +116,7 @@ def test_an_open_cube_is_told_from_a_closed_one(material, native):
     bpy.ops.object.mode_set(mode="EDIT")
     bpy.ops.mesh.delete(type="FACE")
     bpy.ops.object.mode_set(mode="OBJECT")
-    assert not look._shape(thing)[2] and look.advise(material, thing, 1.0).model == "model_3"
+    assert not look._look_at(thing).shape[2] and look.advise(material, thing, 1.0).model == "model_3"
 
 
 def drawn_models():
@@ -150,7 +150,7 @@ def test_auto_of_a_heap_goes_by_its_middle_grain(material, native, large, model)
     placings[large:, :3, :3] *= paths[1]
     transforms = native_module.get().Transforms(placings)
     heap = heaps.HeapValues("Heap", heaps.sphere(), export.material_values(material, 1.0), transforms)
-    drawn = automatic.with_model(heap, advice.TOLERANCE)
+    [drawn] = automatic.with_models([heap], advice.TOLERANCE)
     assert dict(drawn.material.values)["model"] == model and drawn.placings == heap.placings
 
 

@@ -76,7 +76,7 @@ def note_object(material, thing, depsgraph):
         with contextlib.suppress(native_module.get().Error):
             parts = meshes.MeshCache().parts(evaluated)
         worn = slots and any(slots[min(part.slot, len(slots) - 1)] == material for part in parts)
-        _last_read = key, [part.mesh for part in parts] if worn else []
+        _last_read = key, own_grain.of_parts(parts) if worn else []
     to_world = tuple(number for row in thing.matrix_world for number in row)
     per_unit = depsgraph.scene.mesograin.millimetres_per_unit
     if _last_read[1] and own_grain.keep(material.name, _last_read[1], to_world, per_unit):

@@ -23,6 +23,16 @@ def keep(material, meshes, to_world, millimetres_per_unit):
     return grain != before
 
 
+def of_parts(parts):
+    """native.Meshes of the grain that a shape of these meshes.MeshParts is; of one that is many, the first of those of
+    which it has the most."""
+    for part in parts:
+        bodies = part.bodies()
+        if bodies:
+            return [max(bodies, key=lambda body: len(body[1]))[0]]
+    return [part.mesh for part in parts]
+
+
 def keep_all(values):
     """Notes a grain of each material of an export.SceneValues: the first object that wears it, or the typical one of an
     array. Gives the names of the materials whose grain is another than before."""

@@ -12,23 +12,52 @@ _shapes = weakref.WeakKeyDictionary()  # {native.Mesh: {linear part of a transfo
 MOST_SHAPES = 64
 """Of one mesh that are remembered; turned copies of it have one each."""
 
+WALKED = "transport"
+MOST_WALKED = 32
+"""Shapes of one material, as *Add Pile* makes at most: each takes seconds before it can be drawn."""
+OF_MANY = "model_3", advice.ANGULAR["model_3"]
+"""What serves more, and its error."""
+
 
 def asked(material):
     """Whether an export.MaterialValues leaves its model to be chosen."""
     return ("model", models.AUTO.name) in material.values
 
 
-def with_model(drawn, tolerance):
-    """An export.InstanceValues or heaps.HeapValues with the model that serves it, if it is AUTO. tolerance: in %.
+def with_models(things, tolerance):
+    """export.InstanceValues and heaps.HeapValues, each with the model that serves it if it is AUTO. tolerance: in %.
     Raises native.Error that names the material."""
-    if not asked(drawn.material):
-        return drawn
-    return dataclasses.replace(drawn, material=_with_model(drawn.material, advised(drawn, tolerance)[0]))
+    return [drawn if advised is None else dataclasses.replace(drawn, material=_with_model(drawn.material, advised[0]))
+            for drawn, advised in zip(things, advice_for(things, tolerance))]
 
 
-def advised(drawn, tolerance):
-    """(name, measured error in %) of the model that serves a drawn thing whose model is AUTO. Raises as with_model."""
-    return _advise(drawn.material, shape(drawn.mesh, drawn.typical()), tolerance)
+def advice_for(things, tolerance):
+    """(name, measured error in %) of the model that serves each of the things drawn, None where that is not AUTO.
+    Raises as with_models."""
+    found = _advised_alone(things, tolerance)
+    numerous = _of_many_shapes(things, found)
+    return [OF_MANY if advised and advised[0] == WALKED and drawn.material.name in numerous else advised
+            for drawn, advised in zip(things, found)]
+
+
+def of_many_shapes(things, tolerance):
+    """{name: how many shapes wear it} of AUTO's materials that OF_MANY serves, as light would be walked in each shape
+    for too long. Raises as with_models."""
+    return _of_many_shapes(things, _advised_alone(things, tolerance))
+
+
+def _advised_alone(things, tolerance):
+    return [_advise(drawn.material, shape(drawn.mesh, drawn.typical()), tolerance) if asked(drawn.material) else None
+            for drawn in things]
+
+
+def _of_many_shapes(things, found):
+    shapes = {}
+    for drawn, advised in zip(things, found):
+        # What is clear shows what is behind by no other model, and nothing is walked in it.
+        if advised and advised[0] == WALKED and any(dict(drawn.material.values)["sigma_s"]):
+            shapes.setdefault(drawn.material.name, set()).add(drawn.mesh)
+    return {name: len(worn) for name, worn in shapes.items() if len(worn) > MOST_WALKED}
 
 
 @functools.lru_cache(maxsize=256)

@@ -1,5 +1,6 @@
 # From Blender's dependency graph to the native module's scene and camera: plain values, copied, nothing borrowed.
 import array
+import contextlib
 import dataclasses
 import functools
 import itertools
@@ -27,6 +28,7 @@ class MaterialValues:
     finish: object = None  # plain_materials.FinishValues, of what is no grain
     tint: object = None  # linear RGB that is left of light which crosses coloured glass once
     absorption: object = None  # sigma_a that does so, of the shape's own space
+    is_plain: bool = False  # it is no grain
 
     def multiplied(self, factors):
         """The material with some of its colours multiplied. factors: {parameter: 3 numbers}."""
@@ -121,9 +123,9 @@ class SceneValues:
         """The scene with a model in place of each AUTO: what is drawn. Raises as `to_native`."""
         if not any(automatic.asked(material) for material in self.materials):
             return self
-        return dataclasses.replace(self, **{
-            field: tuple(automatic.with_model(drawn, self.tolerance) for drawn in getattr(self, field))
-            for field in ("instances", "heaps")})
+        drawn = automatic.with_models((*self.instances, *self.heaps), self.tolerance)
+        count = len(self.instances)
+        return dataclasses.replace(self, instances=tuple(drawn[:count]), heaps=tuple(drawn[count:]))
 
     @functools.cached_property
     def models_drawn(self):
@@ -136,8 +138,8 @@ class SceneValues:
     def error_of_models(self):
         """What the models of AUTO for single things were measured to be off at most, in %; None if there are none.
         Raises as `to_native`."""
-        return max((automatic.advised(drawn, self.tolerance)[1] for drawn in self.instances
-                    if automatic.asked(drawn.material)), default=None)
+        return max((advised[1] for advised in automatic.advice_for(self.instances, self.tolerance) if advised),
+                   default=None)
 
     def to_native(self, materials=None):
         """The native Scene. materials: {MaterialValues: native.Material} that are made already; takes in the others.
@@ -276,7 +278,7 @@ def material_values(material, millimetres_per_unit, reading=None):
     if material is None:
         values, finish = plain_materials.of_no_material()
         return MaterialValues("(none)", tuple({**dict(_default_parameters(millimetres_per_unit)), **values}.items()),
-                              finish)
+                              finish, is_plain=True)
     values = dict(_parameters(material.mesograin, millimetres_per_unit))
     # By hand, a choice of what the grain lies in changes eta at once; of an animated one Blender tells nobody.
     said, eta = material.mesograin_look, parameters.PARAMETERS["eta"]
@@ -284,13 +286,15 @@ def material_values(material, millimetres_per_unit, reading=None):
     if not plain_materials.is_plain(material):
         return MaterialValues(material.name_full, tuple(values.items()))
     reading = reading or plain_materials.read(material)
-    return MaterialValues(material.name_full, tuple({**values, **reading.values}.items()), reading.finish, reading.tint)
+    return MaterialValues(material.name_full, tuple({**values, **reading.values}.items()), reading.finish, reading.tint,
+                          is_plain=True)
 
 
-def read_scene(depsgraph, cache, varied=True):
+def read_scene(depsgraph, cache, varied=True, unwrapped=None):
     """SceneValues of an evaluated dependency graph; `cache` spares reading meshes twice. varied: whether instances have
-    colours of their own, which a comparison's other side does not know."""
-    reader = _Reader(depsgraph, cache, varied)
+    colours of their own, which a comparison's other side does not know. unwrapped: the name of an object of which no
+    grain stands for its copies, as each has UVs of its own."""
+    reader = _Reader(depsgraph, cache, varied, unwrapped=unwrapped)
     reader.read_all(depsgraph)
     return reader.scene_values(depsgraph.scene)
 
@@ -332,6 +336,8 @@ def with_new_materials(values, depsgraph):
                  and values.world == surroundings.read(scene, _world_side(depsgraph), depsgraph.view_layer)[0])
     if not changed or not as_before or any(heap.factors and heap.material.name in changed for heap in values.heaps):
         return None
+    if any(material.is_plain and material.name in changed for material in values.materials):
+        return None  # what becomes a grain is read as its bodies
     return values.with_materials(lambda material: changed.get(material.name, material))
 
 
@@ -373,7 +379,7 @@ def _in_slot(evaluated_object, slot):
 class _Reader:
     """Collects what one pass over the instances finds; complaints come once, however often an object is instanced."""
 
-    def __init__(self, depsgraph, cache, varied, before=None):
+    def __init__(self, depsgraph, cache, varied, before=None, unwrapped=None):
         self._millimetres_per_unit = depsgraph.scene.mesograin.millimetres_per_unit
         # An artist who drags waits for what is painted.
         self._side = textures.COARSE if depsgraph.mode == "VIEWPORT" else textures.SIDE
@@ -382,6 +388,7 @@ class _Reader:
         self._override = depsgraph.view_layer_eval.material_override if varied else None
         self._cache = cache
         self._varied = varied
+        self._unwrapped = unwrapped
         self._materials = before._materials if before else {}
         # {key of a material: the input that says the reflectance of each instance}
         self._by_instance = before._by_instance if before else {}
@@ -464,8 +471,22 @@ class _Reader:
         if any(material.finish and material.finish.radiance for material in materials):
             self._warn(f"Instances of '{shape.name}' shine, but on nothing: only objects of their own are lights to "
                        "others.")
-        return heaps.Group(shape.name, [heaps.Part(part.mesh, material, self._variation(shape, part.slot))
-                                        for part, material in zip(parts, materials)])
+        return heaps.Group(shape.name, [each for part, material in zip(parts, materials)
+                                        for each in self._parts_of(shape, part, material)])
+
+    def _parts_of(self, shape, part, material):
+        """[heaps.Part] of an instanced shape's meshes.MeshPart: one, or one of each of its bodies."""
+        variation = self._variation(shape, part.slot)
+        bodies = () if shape.name == self._unwrapped else self._bodies(shape, part)
+        return [heaps.Part(mesh, material, variation, placings)
+                for mesh, placings in bodies] or [heaps.Part(part.mesh, material, variation)]
+
+    def _bodies(self, shape, part):
+        """MeshPart.bodies of grains; () of what is none, as a jar of two sheets."""
+        material = self._worn(shape, part.slot)
+        if material is None or plain_materials.is_plain(material):
+            return ()
+        return part.bodies(copies=shape.name != self._unwrapped)
 
     def _read(self, shape, matrix_world):
         if meshes.is_shape(shape):
@@ -490,19 +511,20 @@ class _Reader:
         """Few placings become instances, which can be chosen one by one; many become heaps."""
         found = []
         for group in self._groups:
-            values, lost = group.values()
+            parts, bodies, lost = group.values()
             if lost:
                 self._warn(f"{lost} instances of '{group.name}' are scaled to nothing or have a place that is no "
                            "number, so they are not drawn.")
             # Those of several parts stand at the same placings.
-            objects = [next(self._objects) for _ in values[0].each()] if len(values) > 1 and len(
-                values[0]) < heaps.MANY else itertools.repeat(None)
-            for heap in values:
+            objects = [next(self._objects) for _ in parts[0].each()] if len(parts) > 1 and len(
+                parts[0]) < heaps.MANY else itertools.repeat(None)
+            for heap, wholes in (*((part, objects) for part in parts),
+                                 *((body, itertools.repeat(None)) for body in bodies)):
                 if len(heap) >= heaps.MANY:
                     found.append(heap)
                     continue
                 self._instances.extend(InstanceValues(heap.name, heap.mesh, material, placing, object=whole)
-                                       for placing, material, whole in zip(heap.each(), heap.materials(), objects))
+                                       for placing, material, whole in zip(heap.each(), heap.materials(), wholes))
         return tuple(found)
 
     def places(self):
@@ -512,6 +534,7 @@ class _Reader:
 
     def scene_values(self, scene):
         gathered = self._gather()
+        self._warn_of_many_shapes((*self._instances, *gathered), budgets.tolerance(scene.mesograin))
         if not self._instances and not gathered:
             self._warn("There is nothing to draw: add a mesh that is visible in renders.")
         around, sentences = surroundings.read(scene, self._world_side, self._layer)
@@ -527,6 +550,14 @@ class _Reader:
         return SceneValues(tuple(self._instances), (*self._lights, *around.suns), tuple(self._warnings), around,
                            gathered, self._millimetres_per_unit, scene.mesograin.exchange, scene.mesograin.denoise,
                            budgets.tolerance(scene.mesograin))
+
+    def _warn_of_many_shapes(self, things, tolerance):
+        # Errors are said where the models are chosen.
+        with contextlib.suppress(native_module.get().Error):
+            for name, shapes in automatic.of_many_shapes(things, tolerance).items():
+                label = models.CHOICES[automatic.OF_MANY[0]].label
+                self._warn(f"Material '{name}' is worn by {shapes} grains of different shape, and following light in "
+                           f"each takes long: Auto draws them by {label}. Choose Transport to wait for it.")
 
     def _read_drawable(self, evaluated_object, matrix_world):
         parts = self._cache.parts(evaluated_object, self._override)
@@ -558,12 +589,24 @@ class _Reader:
             if not self._has_surface(evaluated_object, part.slot):
                 continue
             material = self._coloured(self._material(evaluated_object, part.slot), evaluated_object, part.mesh)
+            bodies = self._bodies(evaluated_object, part)
+            if bodies:
+                self._read_bodies(evaluated_object.name, bodies, material, to_world, part.broken_uvs)
+                continue
             material = material.at_scale(meshes.scale(matrix_world))
             self._warn_of_cut(part, material, evaluated_object.name)
             if self._read_mesh_lights(evaluated_object, matrix_world, part.slot, material):
                 material = material.of_lights()
             self._instances.append(InstanceValues(evaluated_object.name, part.mesh, material, to_world,
                                                   part.broken_uvs, whole))
+
+    def _read_bodies(self, name, bodies, material, to_world, broken_uvs):
+        if name == self._unwrapped:
+            self._instances.extend(InstanceValues(name, mesh, material, to_world, broken_uvs) for mesh, _ in bodies)
+            return
+        group = heaps.Group(name, [heaps.Part(mesh, material, placings=placings) for mesh, placings in bodies])
+        group.place(np.array(to_world).reshape(1, 4, 4))
+        self._groups.append(group)
 
     def _read_mesh_lights(self, evaluated_object, matrix_world, slot, material):
         """Whether there are any."""

@@ -54,15 +54,17 @@ class HeapValues:
 
 @dataclasses.dataclass(frozen=True)
 class Part:
-    """One of a shape's material slots. variation: colours.Variation of its material, or None."""
+    """The faces of a shape that wear one material, or one of the bodies that they are. variation: colours.Variation of
+    its material, or None. placings: (m, 4, 4) float64, where a body stands in the shape; None for what is no body."""
 
     mesh: object  # native.Mesh
     material: object  # export.MaterialValues
     variation: object = None
+    placings: object = None
 
 
 class Group:
-    """Where one shape stands. parts: a Part for each of the shape's material slots; none if it is not drawn.
+    """Where one shape stands. parts: Parts that make it up; none if it is not drawn.
     varies: whether a part's colours differ from placing to placing; at_random: by the random number of each, perhaps;
     attributes: names of those of instancers by which they do."""
 
@@ -79,21 +81,34 @@ class Group:
         self._placings, self._each = placings, each
 
     def values(self):
-        """([HeapValues], how many placings have no extent or are no numbers)."""
+        """([HeapValues] of parts, [HeapValues] of bodies, how many placings have no extent or are no numbers)."""
         placings = self._placings
         drawn = _drawable(placings)
         kept = placings if drawn.all() else placings[drawn]
         left_out = len(placings) - len(kept)
         if len(kept) == 0:
-            return [], left_out
-        shared = native_module.get().Transforms(kept)
-        return [HeapValues(self.name, part.mesh, _at_mean_scale(part.material, kept), shared,
-                           self._factors(part, drawn)) for part in self._parts], left_out
+            return [], [], left_out
+        parts, bodies = [], []
+        native = native_module.get()
+        shared = native.Transforms(kept)
+        for part in self._parts:
+            material, factors = _at_mean_scale(part.material, kept), self._factors(part, drawn)
+            if part.placings is None:
+                parts.append(HeapValues(self.name, part.mesh, material, shared, factors))
+            else:
+                each = (kept[:, None].astype(np.float64) @ part.placings).reshape(-1, 4, 4).astype(np.float32)
+                bodies.append(HeapValues(self.name, part.mesh, material, native.Transforms(each), factors))
+        return parts, bodies, left_out
 
     def _factors(self, part, drawn):
         if part.variation is None or self._each is None:
             return ()
-        return part.variation.factors({name: values[drawn] for name, values in self._each.items()})
+        factors = part.variation.factors({name: values[drawn] for name, values in self._each.items()})
+        if part.placings is None:
+            return factors
+        times = len(part.placings)
+        return tuple((name, np.frombuffer(numbers, dtype=np.float32).reshape(-1, 3).repeat(times, axis=0).tobytes())
+                     for name, numbers in factors)
 
 
 def _at_mean_scale(material, placings):

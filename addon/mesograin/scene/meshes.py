@@ -71,13 +71,23 @@ def is_finite(matrix_world):
 class MeshPart(typing.NamedTuple):
     """The triangles of one material; `slot` is the first that has it, `mesh` a native Mesh, which equal parts share.
     has_area: of any triangle. broken_uvs: whether there were UVs, but some that are no numbers; the mesh then has none.
-    is_cut: whether it goes on in another part."""
+    is_cut: whether it goes on in another part. vertices: (n,) uint32, of each of the mesh's positions the number of its
+    vertex."""
 
     slot: int
     mesh: object
     has_area: bool
     broken_uvs: bool
-    is_cut: bool = False
+    is_cut: bool
+    vertices: object
+
+    def bodies(self, copies=True):
+        """[(native.Mesh, (m, 4, 4) float64)] of a mesh of many grains, or of one that is inside out, as
+        native.Mesh.bodies has it."""
+        known = _bodies.setdefault(self.mesh, {})
+        if copies not in known:
+            known[copies] = self.mesh.bodies(self.vertices, copies)
+        return known[copies]
 
 
 # Equal content is one native mesh, wherever it comes from: undo, a second viewport or a final render resend nothing.
@@ -85,6 +95,7 @@ class MeshPart(typing.NamedTuple):
 NORMAL_TOLERANCE = 1e-5
 _by_content = weakref.WeakValueDictionary()
 _normals = weakref.WeakKeyDictionary()
+_bodies = weakref.WeakKeyDictionary()  # {native.Mesh: {copies: MeshPart.bodies}}
 
 
 class MeshCache:
@@ -127,7 +138,7 @@ def _read_mesh(mesh, name, worn):
     if not mesh.polygons:
         return ()
     compat.calculate_corners(mesh)
-    corners, of_loop, broken_uvs = _corners(mesh)
+    corners, vertices, of_loop, broken_uvs = _corners(mesh)
     triangles = np.empty((len(mesh.loop_triangles), 3), dtype=np.int32)
     mesh.loop_triangles.foreach_get("loops", triangles.ravel())
     triangles = of_loop[triangles]
@@ -136,18 +147,18 @@ def _read_mesh(mesh, name, worn):
     slots = slots_of_faces(slots, worn)
     used = np.unique(slots)
     if len(used) == 1:
-        return (_part(name, used[0], corners, triangles, broken_uvs),)
+        return (_part(name, used[0], corners, vertices, triangles, broken_uvs),)
     parts = []
     for slot, is_cut in zip(used, _are_cut(mesh, slots, used)):
         kept, compact = np.unique(triangles[slots == slot], return_inverse=True)
         kept_corners = [None if array is None else array[kept] for array in corners]
-        parts.append(_part(name, slot, kept_corners, compact.reshape(-1, 3), broken_uvs, is_cut))
+        parts.append(_part(name, slot, kept_corners, vertices[kept], compact.reshape(-1, 3), broken_uvs, is_cut))
     return tuple(parts)
 
 
-def _part(name, slot, corners, triangles, broken_uvs, is_cut=False):
-    mesh = _native_mesh(name, corners, triangles)
-    return MeshPart(int(slot), mesh, _has_area(corners[0], triangles), broken_uvs, is_cut)
+def _part(name, slot, corners, vertices, triangles, broken_uvs, is_cut=False):
+    mesh = _native_mesh(name, corners, vertices, triangles)
+    return MeshPart(int(slot), mesh, _has_area(corners[0], triangles), broken_uvs, is_cut, vertices)
 
 
 def _are_cut(mesh, slots, used):
@@ -169,9 +180,9 @@ def _has_area(positions, triangles):
 
 
 def _corners(mesh):
-    """((positions, normals, UVs or None), rows, broken), one row for each corner that differs from its vertex' first
-    one: flat faces and UV seams share no vertices. rows: which one each loop has. broken: as a MeshPart's
-    `broken_uvs`."""
+    """((positions, normals, UVs or None), vertices, rows, broken), one row for each corner that differs from its
+    vertex' first one: flat faces and UV seams share no rows. vertices: which one each row is of. rows: which one each
+    loop has. broken: as a MeshPart's `broken_uvs`."""
     positions = np.empty((len(mesh.vertices), 3), dtype=np.float32)
     mesh.vertices.foreach_get("co", positions.ravel())
     vertex_of_corner = np.empty(len(mesh.loops), dtype=np.int32)
@@ -187,7 +198,9 @@ def _corners(mesh):
         uvs = None
     normals = smooth_normals.settle(mesh, compat.corner_normals(mesh))
     kept, of_loop = _weld(vertex_of_corner, normals, uvs)
-    return (positions[vertex_of_corner[kept]], normals[kept], None if uvs is None else uvs[kept]), of_loop, broken
+    vertices = vertex_of_corner[kept]
+    corners = (positions[vertices], normals[kept], None if uvs is None else uvs[kept])
+    return corners, vertices.astype(np.uint32), of_loop, broken
 
 
 def _weld(vertex, *values):
@@ -206,12 +219,12 @@ def _weld(vertex, *values):
     return np.flatnonzero(~same), position[np.where(same, twin, numbers)]
 
 
-def _native_mesh(name, corners, triangles):
+def _native_mesh(name, corners, vertices, triangles):
     native = native_module.get()
     positions, normals, uvs = corners
     triangles = np.ascontiguousarray(triangles, dtype=np.uint32)
     digest = hashlib.blake2b(digest_size=16)
-    for array in (positions, uvs, triangles):
+    for array in (positions, uvs, vertices, triangles):
         digest.update(b"none" if array is None else np.ascontiguousarray(array))
     key = digest.digest()
     mesh = _by_content.get(key)

@@ -1,4 +1,6 @@
 # A grain as an artist says it: material.mesograin_look, kept in step with material.mesograin by being computed from it.
+import typing
+
 import bpy
 import numpy as np
 from bpy.props import EnumProperty, FloatProperty, FloatVectorProperty, PointerProperty
@@ -114,73 +116,109 @@ def _is_on(material, thing):
 
 
 def grain_size(material, thing, millimetres_per_unit):
-    """mm of a bpy.types.Object of this material, in its longest direction; 0 of what is none."""
-    return max(thing.dimensions) * millimetres_per_unit if _is_on(material, thing) else 0.0
+    """mm of a grain of this material that a bpy.types.Object is or has many of, in its longest direction; 0 of what is
+    none."""
+    return max(_sizes(thing)) * millimetres_per_unit if _is_on(material, thing) else 0.0
 
 
 def hint(material, thing, millimetres_per_unit):
-    """A sentence on how thick a bpy.types.Object of this material is for light; empty where there is nothing to say."""
+    """A sentence on how thick a bpy.types.Object of this material is for light, or one of the grains that it has; empty
+    where there is nothing to say."""
     if not _is_on(material, thing):
         return ""
     paths = _paths(material.mesograin_look)
-    sizes = [size * millimetres_per_unit for size in thing.dimensions]
+    sizes = [size * millimetres_per_unit for size in _sizes(thing)]
     thick = thick_layer.thickness(sizes, paths)
     if not thick > 0.0 or sorted(paths)[1] >= thick_layer.LONGEST:
         return ""
     return f"{thick:.2g} mean free paths thick: {thick_layer.looks(thick)}."
 
 
-def _shape(thing):
-    """(volume, area, whether it is closed) of a mesh object in the scene's units."""
+class Seen(typing.NamedTuple):
+    """A mesh object before its modifiers, or a grain of the middle size of those that it has, in the scene's units."""
+
+    shape: tuple  # volume, area, whether it is closed
+    sizes: tuple  # along the object's axes
+    is_one_of_many: bool
+
+
+def _look_at(thing):
+    """Seen; None of what encloses nothing."""
     if thing is None or thing.type != "MESH" or not thing.data.polygons:
         return None
     mesh = thing.data
     mesh.calc_loop_triangles()
-    corners = np.empty(3 * len(mesh.loop_triangles), dtype=np.int32)
-    mesh.loop_triangles.foreach_get("vertices", corners)
-    places = np.empty(3 * len(mesh.vertices), dtype=np.float32)
-    mesh.vertices.foreach_get("co", places)
+    corners = np.empty((len(mesh.loop_triangles), 3), dtype=np.int32)
+    mesh.loop_triangles.foreach_get("vertices", corners.ravel())
+    places = np.empty((len(mesh.vertices), 3), dtype=np.float32)
+    mesh.vertices.foreach_get("co", places.ravel())
+    places, corners, is_many = _middle_body(places, corners)
     linear = np.array(thing.matrix_world.to_3x3(), dtype=np.float64)
-    a, b, c = (places.reshape(-1, 3).astype(np.float64) @ linear.T)[corners.reshape(-1, 3)].transpose(1, 0, 2)
+    a, b, c = (places.astype(np.float64) @ linear.T)[corners].transpose(1, 0, 2)
     normals = np.cross(b - a, c - a)
     volume = abs(np.einsum("ij,ij->", a, normals)) / 6.0
     area = 0.5 * np.linalg.norm(normals, axis=1).sum()
-    edges = np.sort(corners.reshape(-1, 3)[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+    edges = np.sort(corners[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
     closed = bool((np.unique(edges, axis=0, return_counts=True)[1] == 2).all())
-    return (volume, area, closed) if volume > 0.0 and area > 0.0 else None
+    if not (volume > 0.0 and area > 0.0):
+        return None
+    sizes = np.ptp(places, axis=0) * np.linalg.norm(linear, axis=0)
+    copied = any(modifier.type == "ARRAY" for modifier in thing.modifiers)
+    return Seen((volume, area, closed), tuple(map(float, sizes)), is_many or copied)
 
 
-_seen = {}  # {key of a mesh object: its shape}, for the last one: panels are drawn often
+def _middle_body(places, corners):
+    """(places, corners) of that body of a mesh which is of the middle size, and whether it has more."""
+    try:
+        bodies = native_module.get().Mesh(places, None, corners.astype(np.uint32)).bodies(np.arange(len(places)))
+    except _sentences():
+        bodies = ()
+    if not bodies:
+        return places, corners, False
+    one_by_one = [(mesh, placing) for mesh, placings in bodies for placing in placings]
+    by_size = sorted(one_by_one, key=lambda body: native_module.get().shape_of(*body)[0])
+    mesh, placing = by_size[len(by_size) // 2]
+    own, _, triangles = mesh.arrays()
+    return own @ placing[:3, :3].T + placing[:3, 3], triangles.astype(np.int32), len(by_size) > 1
 
 
-def _shape_as_seen(thing):
-    """_shape, but of a mesh as it was when its numbers were others."""
+_seen = {}  # {key of a mesh object: what was Seen}, for the last one: panels are drawn often
+
+
+def _as_seen(thing):
+    """_look_at, but of a mesh as it was when its numbers were others."""
     if thing is None or thing.type != "MESH":
         return None
     key = (thing.name_full, thing.data.name_full, len(thing.data.vertices), len(thing.data.polygons),
-           *map(tuple, thing.matrix_world.to_3x3()))
+           len(thing.modifiers), *map(tuple, thing.matrix_world.to_3x3()))
     if key not in _seen:
         _seen.clear()
-        _seen[key] = _shape(thing)
+        _seen[key] = _look_at(thing)
     return _seen[key]
 
 
-def advise(material, thing, millimetres_per_unit, tolerance=advice.TOLERANCE, shape_of=_shape):
-    """advice.Advice for a mesh object of this material; None for what has no volume or none of it. tolerance: in %."""
-    shape = shape_of(thing) if thing is not None and _is_on(material, thing) else None
-    if shape is None:
+def _sizes(thing):
+    seen = _as_seen(thing)
+    return seen.sizes if seen is not None and seen.is_one_of_many else tuple(thing.dimensions)
+
+
+def advise(material, thing, millimetres_per_unit, tolerance=advice.TOLERANCE, look_at=_look_at):
+    """advice.Advice for a mesh object of this material, or the grains that it has; None for what has no volume or none
+    of it. tolerance: in %."""
+    seen = look_at(thing) if thing is not None and _is_on(material, thing) else None
+    if seen is None:
         return None
     try:
         native = native_module.get()
         grain = export.material_values(material, millimetres_per_unit).to_native(native)
-        return advice.advise(native, grain, *shape, tolerance)
+        return advice.advise(native, grain, *seen.shape, tolerance)
     except _sentences():
         return None
 
 
 def advise_as_seen(material, thing, millimetres_per_unit, tolerance):
     """advise, fast enough for a panel."""
-    return advise(material, thing, millimetres_per_unit, tolerance, _shape_as_seen)
+    return advise(material, thing, millimetres_per_unit, tolerance, _as_seen)
 
 
 class MESOGRAIN_OT_choose_model(OnActiveMaterial, bpy.types.Operator):

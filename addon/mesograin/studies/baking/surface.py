@@ -41,7 +41,7 @@ class Surface:
     def __init__(self, depsgraph, name, size, view_from=VIEW_FROM[0], overrides=None, parts=1,
                  exchange=None):
         native = native_module.get()
-        scene = export.read_scene(depsgraph, meshes.MeshCache())
+        scene = export.read_scene(depsgraph, meshes.MeshCache(), unwrapped=name)
         instances = _instances(scene, name)
         if any(scene.instances[index].broken_uvs for index in instances):
             raise BakeError(f"Object '{name}' has UVs that are no numbers: unwrap it anew (UV > Unwrap in Edit Mode).")
@@ -221,7 +221,8 @@ def _there_are(names):
 
 
 def _instances(scene, name):
-    """Indices of the instances that make up the first placing of an object: one for each material slot in use."""
+    """Indices of the instances that make up the first placing of an object: one for each material
+    slot in use, or for each grain of one."""
     placings = {}
     for index, instance in enumerate(scene.instances):
         if instance.name == name:
