@@ -36,6 +36,8 @@ constexpr double least_albedo = 1e-9;
 // Mean free paths across a grain that nothing to be seen crosses unscattered. Its edges, and without refraction its
 // rim, are thin, however thick it is: one that nothing were seen through would be lined in black.
 constexpr double most_clear = 60.0;
+// Of what a body may be across: where its mean chord is shorter, light leaves it and enters it again across a hollow.
+constexpr double hollow = 0.5;
 
 // Whether light is followed through single facets: into a thinner medium they would reflect much of it wholly, to one
 // another.
@@ -327,6 +329,7 @@ MaterialInputs prototype_inputs(const scene::Material& material, const StoredTra
   inputs.uniforms["stored.sigma_t"] = glm::vec3(sigma_t);
   inputs.uniforms["stored.albedo"] = glm::vec3(stored_medium(material).albedo);
   if (stored.convex) inputs.defines.emplace_back("CONVEX");
+  if (!stored.convex && stored.mean_chord < hollow) inputs.defines.emplace_back("HOLLOW");
   if (is_walked(material)) {
     add_forward(material, stored, inputs);
     if (stored.has_unscattered) inputs.volumes["smooth_slopes"] = smooth_slopes_volume(stored);

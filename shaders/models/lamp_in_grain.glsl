@@ -13,8 +13,9 @@
 #include "scene/grain.glsl"
 
 #ifdef LAMP_IN_GRAIN
-const int COLLISIONS = 32;      // of all walks of a sample together
-const float LEAST_LEFT = 0.02;  // a walk that keeps less ends
+const int COLLISIONS = 32;              // of all walks of a sample together
+const float LEAST_LEFT = 0.02;          // a walk that keeps less ends
+const int MOST_PIECES_OF_A_FLIGHT = 3;  // between which it is outside
 
 struct LampAbout {
   DeviceLight lamp;
@@ -48,6 +49,23 @@ vec3 any_direction(vec2 random) {
   float height = 1.0 - 2.0 * random.x;
   float ring = sqrt(max(1.0 - height * height, 0.0));
   return vec3(ring * cos(2.0 * PI * random.y), ring * sin(2.0 * PI * random.y), height);
+}
+
+// Moves a place on by a flight through the grain, whose gaps do not count; false where that ends beyond it.
+bool flies_to(inout vec3 place, vec3 direction, float flight) {
+#ifdef HOLLOW
+  for (int piece = 0; piece < MOST_PIECES_OF_A_FLIGHT; ++piece) {
+    float way = way_through(place, direction, flight);
+    if (way >= flight) break;
+    flight -= way;
+    place += way * direction;
+    float gap = way_to_next_entry(place, direction);
+    if (gap < 0.0) return false;
+    place += gap * direction;
+  }
+#endif
+  place += flight * direction;
+  return distance_at(place) < 0.0;
 }
 
 // The irradiance of the parallel light of which as much that was scattered more than once comes back along a ray from `start` as of the lamp.
@@ -86,9 +104,10 @@ Spectrum worth_of_lamp(vec3 start, vec3 inwards, vec3 to_light, int collisions, 
     vec3 density = sigma_t * exp(-sigma_t * flight);
     left *= 3.0 * stored.albedo * density / max(dot(density / bound, vec3(1.0)), 1e-20);
 #endif
-    place += flight * direction;
-    if (!begins) {
-      if (distance_at(place) >= 0.0) {
+    if (begins) {
+      place += flight * direction;
+    } else {
+      if (!flies_to(place, direction, flight)) {
         begins = true;
         continue;
       }

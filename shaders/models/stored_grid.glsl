@@ -43,6 +43,7 @@ float way_to_box(vec3 place, vec3 direction) {
 
 const float FAR = 1e6;
 const float SHORTEST_STEP = 0.3;  // of the way between nodes
+const float ROUNDED_OFF = 2.0;    // ways between nodes: as far into a sharp edge the grid may tell that a place is outside
 
 #ifdef CONVEX
 // How far it is until a line leaves the grain, or `longest` if that is less. Along a line the distance from a convex body grows ever faster:
@@ -73,14 +74,17 @@ float way_through(vec3 place, vec3 direction, float longest) {
   return max(way_out(place, direction, longest), min(shortest, longest));
 #else
   float furthest = min(way_to_box(place, direction), longest);  // beyond the box the grid tells nothing
+  float rounded_off = ROUNDED_OFF * shortest_spacing();
   float way = shortest;
   float before = 0.0;
   float below = 0.0;
+  bool inside = false;
   // By steps as long as the surface is away.
   for (int i = 0; i < 48; ++i) {
     if (way >= furthest) return furthest;
     float above = distance_at(place + way * direction);
-    if (above >= 0.0 && i > 0) return mix(before, way, below / max(below + above, 1e-6));
+    if (above >= 0.0 && (inside || way > rounded_off)) return inside ? mix(before, way, below / max(below + above, 1e-6)) : min(shortest, furthest);
+    inside = inside || above < 0.0;
     below = max(-above, 0.0);
     before = way;
     way += max(below, shortest);
@@ -101,6 +105,7 @@ float way_to_next_entry(vec3 place, vec3 direction) {
     float above = distance_at(place + way * direction);
     if (above > shortest) outside = true;
     if (outside && above <= 0.0) return mix(way - max(before, shortest), way, before / max(before - above, 1e-9));
+    if (above < -shortest) return way;  // it was hardly outside, along the surface
     before = max(above, 0.0);
     way += max(above, shortest);
   }

@@ -8,6 +8,7 @@
 //   WALKED               light scatters forwards or backwards: what similarity does not tell is found by walks
 //   FACETS               the surface is rough: each sample looks through one of its facets
 //   CONVEX               no line leaves the grain and enters it again
+//   HOLLOW               much of what leaves it enters it again
 //   MANY_TERMS           more products than the fewest: the grain is not of the thickest
 //   MORE_TERMS           more of them still: it is thick, and not of the thickest, and WALKED
 //   MOST_TERMS           most of them: it is as thick, and not WALKED
