@@ -9,7 +9,7 @@ from mathutils import Euler, Matrix, Vector
 from test_export import add_object
 
 from mesograin.engine import material_preview, own_grain
-from mesograin.scene import export, heaps, meshes
+from mesograin.scene import automatic, export, heaps, meshes
 from mesograin.studies.baking import surface
 from mesograin.ui import look
 
@@ -235,3 +235,22 @@ def test_auto_does_not_walk_in_hundreds_of_shapes(grain, monkeypatch):
     values = read()
     assert {dict(each.material.values)["model"] for each in values.with_models_chosen().instances[1:]} == {"transport"}
     assert not [each for each in values.warnings if "different shape" in each]
+
+
+def test_the_shape_of_a_turned_copy_is_known(native):
+    random = np.random.default_rng(6)
+    mesh = heaps.sphere()
+    asked = []
+    with pytest.MonkeyPatch.context() as patch:
+        told = native.shape_of
+        patch.setattr(native, "shape_of", lambda *arguments: asked.append(arguments) or told(*arguments))
+        stretched = Matrix.Diagonal((1.0, 2.0, 0.5, 1.0))
+        for number in range(12):
+            placing = (Matrix.Translation(random.uniform(-5.0, 5.0, 3)) @ Euler(random.uniform(0.0, 6.0, 3)).to_matrix()
+                       .to_4x4() @ Matrix.Diagonal((*(random.uniform(0.1, 9.0),) * 3, 1.0))
+                       @ (stretched if number % 2 else Matrix()))
+            to_world = tuple(each for row in placing for each in row)
+            volume, area, closed = automatic.shape(mesh, to_world)
+            expected = told(mesh, np.array(to_world).reshape(4, 4))
+            assert (volume, area) == pytest.approx(expected[:2], rel=1e-4) and closed == expected[2]
+    assert len(asked) <= 2

@@ -1,6 +1,8 @@
 # The model AUTO: which one it is for a drawn thing, by its mesh, its size and its medium.
 import dataclasses
 import functools
+import math
+import operator
 import weakref
 
 import numpy as np
@@ -8,9 +10,9 @@ import numpy as np
 from .. import native_module
 from ..schema import advice, models
 
-_shapes = weakref.WeakKeyDictionary()  # {native.Mesh: {linear part of a transform: its (volume, area, closed)}}
+_shapes = weakref.WeakKeyDictionary()  # {native.Mesh: {_stretch's key: its (volume, area, closed) at scale 1}}
 MOST_SHAPES = 64
-"""Of one mesh that are remembered; turned copies of it have one each."""
+"""Of one mesh that are remembered; copies of it that are stretched have one each."""
 
 WALKED = "transport"
 MOST_WALKED = 32
@@ -75,9 +77,22 @@ def _with_model(material, model):
 def shape(mesh, to_world):
     """(volume, area, whether it is closed) of a native.Mesh. to_world: 16 numbers, row by row."""
     known = _shapes.setdefault(mesh, {})
-    linear = tuple(to_world[row * 4 + column] for row in range(3) for column in range(3))
-    if linear not in known:
+    stretch, scale = _stretch(to_world)
+    if stretch not in known:
         if len(known) >= MOST_SHAPES:
             known.clear()
-        known[linear] = native_module.get().shape_of(mesh, np.array(to_world, dtype=np.float64).reshape(4, 4))
-    return known[linear]
+        matrix = np.array(to_world, dtype=np.float64).reshape(4, 4)
+        matrix[:3, :3] /= scale
+        known[stretch] = native_module.get().shape_of(mesh, matrix)
+    volume, area, closed = known[stretch]
+    return volume * scale**3, area * scale**2, closed
+
+
+def _stretch(to_world):
+    """(key, scale) of a transform: what is turned, moved, mirrored or scaled evenly has the key of what is not."""
+    x, y, z = ((to_world[column], to_world[4 + column], to_world[8 + column]) for column in range(3))
+    products = [sum(map(operator.mul, one, other)) for one, other in ((x, x), (y, y), (z, z), (x, y), (y, z), (z, x))]
+    squared = (products[0] + products[1] + products[2]) / 3.0
+    if not 0.0 < squared < math.inf:
+        return tuple(products), 1.0
+    return tuple(round(product / squared, 5) for product in products), math.sqrt(squared)
