@@ -170,16 +170,23 @@ def _look_at(thing):
 def _middle_body(places, corners):
     """(places, corners) of that body of a mesh which is of the middle size, and whether it has more."""
     try:
-        bodies = native_module.get().Mesh(places, None, corners.astype(np.uint32)).bodies(np.arange(len(places)))
+        native = native_module.get()
+        bodies = native.Mesh(places, None, corners.astype(np.uint32)).bodies(np.arange(len(places)))
     except _sentences():
         bodies = ()
     if not bodies:
         return places, corners, False
-    one_by_one = [(mesh, placing) for mesh, placings in bodies for placing in placings]
-    by_size = sorted(one_by_one, key=lambda body: native_module.get().shape_of(*body)[0])
-    mesh, placing = by_size[len(by_size) // 2]
+    # Of copies it is asked once, however many there are.
+    volumes = np.concatenate([native.shape_of(mesh)[0] * np.abs(np.linalg.det(placings[:, :3, :3]))
+                              for mesh, placings in bodies])
+    number = int(np.argsort(volumes, kind="stable")[len(volumes) // 2])
+    for mesh, placings in bodies:
+        if number < len(placings):
+            break
+        number -= len(placings)
     own, _, triangles = mesh.arrays()
-    return own @ placing[:3, :3].T + placing[:3, 3], triangles.astype(np.int32), len(by_size) > 1
+    linear, place = placings[number, :3, :3], placings[number, :3, 3]
+    return own @ linear.T + place, triangles.astype(np.int32), len(volumes) > 1
 
 
 _seen = {}  # {key of a mesh object: what was Seen}, for the last one: panels are drawn often
