@@ -8,6 +8,7 @@ from cycles_scenes import depsgraph, make_sphere
 from mathutils import Euler, Matrix, Vector
 from test_export import add_object
 
+from mesograin import compat
 from mesograin.engine import material_preview, own_grain
 from mesograin.scene import automatic, export, heaps, meshes
 from mesograin.studies.baking import surface
@@ -65,6 +66,46 @@ def join(copies):
     with bpy.context.temp_override(active_object=copies[0], object=copies[0], selected_editable_objects=copies,
                                    selected_objects=copies):
         bpy.ops.object.join()
+
+
+def factors_of(values):
+    """By what sigma_a of each grain is multiplied, in the order in which they are read."""
+    own = np.array((0.05, 0.1, 0.4))
+    single = [np.array(dict(each.material.values)["sigma_a"]) / own for each in values.instances]
+    many = [np.frombuffer(dict(heap.factors)["sigma_a"], dtype=np.float32).reshape(-1, 3) for heap in values.heaps]
+    return np.vstack([*single, *many])
+
+
+@pytest.mark.parametrize("count", (5, 100))
+def test_grains_of_one_object_vary_in_colour_each_by_itself(grain, count):
+    settings = grain.data.materials[0].mesograin_colours
+    settings.vary, settings.colour_from, settings.colour_to = True, (0.5, 1.0, 1.0), (1.5, 1.0, 1.0)
+    repeat(grain, count, (0.7, 0.0, 0.0))
+    found = factors_of(read())
+    assert len(found) == count and len(np.unique(found[:, 0])) == count
+    assert 0.5 <= found[:, 0].min() < 0.9 and 1.1 < found[:, 0].max() <= 1.5
+    np.testing.assert_allclose(found[:, 1:], 1.0, rtol=1e-5)
+    grain.modifiers["Array"].count = count + 1
+    np.testing.assert_allclose(factors_of(read())[:count], found, rtol=1e-5)
+    assert not read(varied=False).heaps or not read(varied=False).heaps[0].factors
+
+
+def test_bodies_of_instances_vary_and_other_objects_differ(grain):
+    settings = grain.data.materials[0].mesograin_colours
+    settings.vary = True
+    repeat(grain, 30, (0.7, 0.0, 0.0))
+    other = add_object("Other", grain.data)
+    other.location = (0.0, 5.0, 0.0)
+    repeat(other, 30, (0.7, 0.0, 0.0))
+    found = factors_of(read())
+    assert len(found) == 60 and len(np.unique(np.round(found[:, 0], 5))) > 55
+    instancer = add_object("Instancer", bpy.data.meshes.new("points"))
+    instancer.data.from_pydata([(0.0, 0.0, 0.0), (0.0, 9.0, 0.0), (0.0, 0.0, 9.0)], [], [])
+    instancer.instance_type = "VERTS"
+    other.parent = instancer
+    bpy.context.view_layer.update()
+    found = factors_of(read())
+    assert len(found) == 2 * 30 + 3 * 30 and len(np.unique(np.round(found[:, 0], 5))) > 135
 
 
 def test_an_array_is_its_grains(grain):
@@ -155,9 +196,17 @@ def test_instances_of_an_object_of_many(grain):
     assert not values.instances and [len(heap) for heap in values.heaps] == [34 * 3]
 
 
-def test_grains_of_one_instance_have_its_colour(grain):
-    colours = grain.data.materials[0].mesograin_colours
-    colours.vary, colours.source = True, "RANGE"
+@pytest.mark.parametrize("source", ("RANGE", "NODES"))
+def test_nodes_tell_the_colour_of_an_instance_and_a_range_that_of_its_grains(grain, source):
+    material = grain.data.materials[0]
+    material.mesograin_colours.vary, material.mesograin_colours.source = True, source
+    compat.use_nodes(material)
+    tree = material.node_tree
+    tree.nodes.clear()
+    diffuse, info, end = map(tree.nodes.new,
+                             ("ShaderNodeBsdfDiffuse", "ShaderNodeObjectInfo", "ShaderNodeOutputMaterial"))
+    tree.links.new(diffuse.outputs[0], end.inputs["Surface"])
+    tree.links.new(info.outputs["Random"], diffuse.inputs["Color"])
     repeat(grain, 3, (0.7, 0.0, 0.0))
     collection = bpy.data.collections.new("Row")
     bpy.context.scene.collection.objects.unlink(grain)
@@ -171,8 +220,9 @@ def test_grains_of_one_instance_have_its_colour(grain):
     assert factors and all(len(numbers) == 3 * heaps.MANY for numbers in factors.values())
     for numbers in factors.values():
         of_rows = [numbers[rows == row] for row in range(heaps.MANY)]
-        assert all((each == each[0]).all() for each in of_rows)
-        assert len({each[0].tobytes() for each in of_rows}) > heaps.MANY // 2
+        shared = source == "NODES"
+        assert all((each == each[0]).all() == (shared or (numbers == 1.0).all()) for each in of_rows)
+        assert len({each[0].tobytes() for each in of_rows}) > heaps.MANY // 2 or (numbers == 1.0).all()
 
 
 def test_a_bake_is_of_all_grains_at_their_own_uvs(grain):

@@ -20,6 +20,7 @@ class Variation:
 
     ranges: tuple
     at_random = True
+    of_bodies = True  # each grain of an object of many has its own; what nodes and attributes tell is the object's
     attributes = frozenset()
 
     def factors(self, each):
@@ -38,6 +39,7 @@ class NodeVariation:
     socket: object
     own: dict
     at_random = True
+    of_bodies = False
 
     @property
     def attributes(self):
@@ -57,6 +59,7 @@ class AttributeVariation:
 
     names: tuple
     at_random = False
+    of_bodies = False
 
     @property
     def attributes(self):
@@ -115,7 +118,8 @@ class ColourProperties(bpy.types.PropertyGroup):
     """`material.mesograin_colours`: the range in which instances of a heap lie, evenly and at random."""
 
     vary: BoolProperty(name="Vary Grains", default=False, **_COMMON,
-                       description="Give each of many instances a colour of its own; sand is never of one colour")
+                       description="Give each of many instances, or of the grains of one object, a colour of its "
+                                     "own; sand is never of one colour")
     source: EnumProperty(name="Source", default="RANGE", **_COMMON, items=(
         ("RANGE", "Range", "Evenly and at random between two ends"),
         ("NODES", "Nodes", "What the colour of the material's Cycles surface is for each: Object Info's Random along a "

@@ -591,7 +591,8 @@ class _Reader:
             material = self._coloured(self._material(evaluated_object, part.slot), evaluated_object, part.mesh)
             bodies = self._bodies(evaluated_object, part)
             if bodies:
-                self._read_bodies(evaluated_object.name, bodies, material, to_world, part.broken_uvs)
+                variation = self._variation(evaluated_object, part.slot)
+                self._read_bodies(evaluated_object.name, bodies, material, variation, to_world, part.broken_uvs)
                 continue
             material = material.at_scale(meshes.scale(matrix_world))
             self._warn_of_cut(part, material, evaluated_object.name)
@@ -600,12 +601,15 @@ class _Reader:
             self._instances.append(InstanceValues(evaluated_object.name, part.mesh, material, to_world,
                                                   part.broken_uvs, whole))
 
-    def _read_bodies(self, name, bodies, material, to_world, broken_uvs):
+    def _read_bodies(self, name, bodies, material, variation, to_world, broken_uvs):
         if name == self._unwrapped:
             self._instances.extend(InstanceValues(name, mesh, material, to_world, broken_uvs) for mesh, _ in bodies)
             return
-        group = heaps.Group(name, [heaps.Part(mesh, material, placings=placings) for mesh, placings in bodies])
-        group.place(np.array(to_world).reshape(1, 4, 4))
+        if variation is not None and not variation.of_bodies:
+            variation = None
+        group = heaps.Group(name, [heaps.Part(mesh, material, variation, placings) for mesh, placings in bodies])
+        group.place(np.array(to_world).reshape(1, 4, 4),
+                    {"random": np.array((node_colours.random_of(name),), dtype=np.float32)})
         self._groups.append(group)
 
     def _read_mesh_lights(self, evaluated_object, matrix_world, slot, material):

@@ -91,8 +91,8 @@ class Group:
         parts, bodies = [], []
         native = native_module.get()
         shared = native.Transforms(kept)
-        for part in self._parts:
-            material, factors = _at_mean_scale(part.material, kept), self._factors(part, drawn)
+        for number, part in enumerate(self._parts):
+            material, factors = _at_mean_scale(part.material, kept), self._factors(number, part, drawn)
             if part.placings is None:
                 parts.append(HeapValues(self.name, part.mesh, material, shared, factors))
             else:
@@ -100,15 +100,18 @@ class Group:
                 bodies.append(HeapValues(self.name, part.mesh, material, native.Transforms(each), factors))
         return parts, bodies, left_out
 
-    def _factors(self, part, drawn):
+    def _factors(self, number, part, drawn):
         if part.variation is None or self._each is None:
             return ()
-        factors = part.variation.factors({name: values[drawn] for name, values in self._each.items()})
-        if part.placings is None:
-            return factors
-        times = len(part.placings)
-        return tuple((name, np.frombuffer(numbers, dtype=np.float32).reshape(-1, 3).repeat(times, axis=0).tobytes())
-                     for name, numbers in factors)
+        each = {name: values[drawn] for name, values in self._each.items()}
+        if part.placings is not None:
+            times = len(part.placings)
+            each = {name: values.repeat(times, axis=0) for name, values in each.items()}
+            if part.variation.of_bodies:
+                # As many numbers however many follow: a pile that grows by a grain keeps its colours.
+                own = np.random.default_rng(number).random(times, dtype=np.float32)
+                each["random"] = (each["random"] + np.tile(own, np.count_nonzero(drawn))) % np.float32(1.0)
+        return part.variation.factors(each)
 
 
 def _at_mean_scale(material, placings):
