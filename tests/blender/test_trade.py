@@ -11,6 +11,7 @@ import bpy
 import numpy as np
 import pytest
 from cycles_scenes import REFEREE, make_sphere
+from test_export import add_object
 
 from mesograin import native_module
 from mesograin.cycles import shot
@@ -57,6 +58,7 @@ def test_every_point_is_measured_and_taken_over(tmp_path, native, monkeypatch):
     ]
     by_name = {point["name"]: point for point in found["points"]}
     assert found["complete"] and found["front"] and len(found["summary"]) == 2
+    assert found["from_nothing"] == [], "nothing that a grain alone would have to find"
     assert [text for text in found["definitions"].values() if re.search(r"[a-z]_[a-z]", text)] == [], "no keys"
     first, refined = by_name["model_1.samples1"], by_name["model_1.samples3"]
     assert first["milliseconds"] == first["frame_ms"] > 0.0
@@ -83,6 +85,41 @@ def test_every_point_is_measured_and_taken_over(tmp_path, native, monkeypatch):
 
     trade(tmp_path, settings={"scale": 2.0})
     assert len(begun) == 4, "what was measured on another material is not taken over"
+
+
+def make_heap(side=8):
+    """Balls at the vertices of a grid, which light goes between."""
+    material = make_sphere(SUNS, segments=16, rings=8, sigma_s=(4.0, 4.0, 4.0), sigma_a=(0.2, 0.2, 0.2))
+    ball = bpy.data.objects["Sphere"]
+    row = [(number + 0.5) * 2.0 / side - 1.0 for number in range(side)]
+    mesh = bpy.data.meshes.new("Places")
+    mesh.from_pydata([(x, y, 0.0) for x in row for y in row], [], [])
+    carrier = add_object("Places", mesh)
+    carrier.instance_type = "VERTS"
+    ball.scale = (0.9 / side,) * 3
+    ball.parent = carrier
+    bpy.context.view_layer.update()
+    return material
+
+
+def test_a_heap_has_a_picture_that_began_from_nothing(tmp_path, monkeypatch):
+    make_heap()
+    asked = {"models": ("model_1", "model_2"), "samples": (1,), "exchange": "heaps"}
+    found = trade(tmp_path, **asked)
+    firsts = {first["name"]: first for first in found["from_nothing"]}
+    assert list(firsts) == ["model_1", "model_2"]
+    for point in found["points"][:2]:
+        first = firsts[point["model"]]
+        assert first["milliseconds"] > point["frame_ms"] and point["exchange_ms"] > 0.0
+        assert first["error"] == pytest.approx(point["error"], rel=0.3), "light between grains is in it"
+        assert (tmp_path / "out" / first["picture"]).is_file()
+    sentences = [entry["sentence"] for entry in found["summary_from_nothing"]]
+    assert len(sentences) == 2 and all("nothing known of light between grains" in each for each in sentences)
+    without = trade(tmp_path / "without", models=("model_2",), samples=(1,), exchange="off")
+    assert without["from_nothing"] == [] and without["points"][0]["error"] > 1.3 * firsts["model_2"]["error"]
+
+    monkeypatch.setattr(ours.Ours, "from_nothing", lambda *_: pytest.fail("it was measured"))
+    assert trade(tmp_path, **asked)["from_nothing"] == found["from_nothing"]
 
 
 def test_no_point_pays_for_the_start_of_cycles(tmp_path, monkeypatch):

@@ -3,6 +3,7 @@
 
 import dataclasses
 import statistics
+import time
 
 from ... import native_module
 from ...cycles import beside
@@ -10,6 +11,9 @@ from ...engine import stated_error
 from ...scene import export, lights, meshes
 from ...schema import models
 
+
+LOOKS_EVERY = 0.002
+"""Seconds from one look for news of light to the next."""
 
 SEEDS = 4
 """Our picture is the mean of this many parts of independent noise, whose spread tells how far it is sampled out."""
@@ -34,7 +38,7 @@ class Ours:
         # What is behind the grains is no part of a comparison: Cycles' film is transparent, too.
         self._scene = dataclasses.replace(scene, world=scene.world.before_film())
         self._views = self._all_views = [native.View(*size, seed=seed) for seed in range(parts)]
-        self._camera = export.camera_from_scene(depsgraph, *size, sharp=True)
+        self._size, self._camera = size, export.camera_from_scene(depsgraph, *size, sharp=True)
         self.warnings = scene.warnings
 
     def parameters(self, chosen, direct=False):
@@ -85,12 +89,36 @@ class Ours:
             else light for light in self._scene.lights
         )
 
+    def _lit(self, chosen, least_sun, direct):
+        return dataclasses.replace(self._with(chosen, direct), lights=self._lights(least_sun),
+                                   exchange="off" if direct else self._scene.exchange)
+
+    def from_nothing(self, chosen, least_sun=0.0, taps=None):
+        """(milliseconds, (h, w, 4) float32) of the first picture with light between grains in it, of one sample, as a
+        viewport shows it that has just been opened: nothing of that light is known, and what is found first is refined
+        later. None where no light goes between grains. Arguments as `begin` has them, which must follow."""
+        nothing = dataclasses.replace(self._scene, instances=(), heaps=()).to_native()
+        for view in self._all_views:
+            view.set_scene(nothing)  # so that none holds what another model had found
+        scene = self._lit(chosen, least_sun, False)
+        started = time.perf_counter()
+        view = native_module.get().View(*self._size, patient=False)
+        if taps:
+            view.set_taps(taps)
+        view.set_scene(scene.to_native())
+        view.set_camera(self._camera)
+        view.render(1)
+        while (exchange := view.statistics()["exchange"]) and not exchange["milliseconds"]:
+            while not view.take_news():
+                time.sleep(LOOKS_EVERY)
+            view.render(1)
+        return exchange and (1000.0 * (time.perf_counter() - started), view.read())
+
     def begin(self, chosen, least_sun=0.0, taps=None, direct=False):
         """Starts a picture without samples. chosen: the case's choice of parameters. least_sun: radians; narrower suns
         are widened to this. taps: of model 3, for each sample; None as they were. direct: without light between
         grains."""
-        scene = dataclasses.replace(self._with(chosen, direct), lights=self._lights(least_sun),
-                                    exchange="off" if direct else self._scene.exchange).to_native()
+        scene = self._lit(chosen, least_sun, direct).to_native()
         self._views = self._all_views
         for view in self._views:
             if taps:

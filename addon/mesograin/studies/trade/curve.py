@@ -61,33 +61,42 @@ def summary(points):
     `traced_time`), `ratio` and `sentence`.
     """
     entries = []
-    tracer = next((point["model"] for point in points if point["side"] == "traced"), None)
     for model in dict.fromkeys(point["model"] for point in points if point["side"] == "mesograin"):
         own = [at for at, point in enumerate(points) if point["side"] == "mesograin" and point["model"] == model]
         least = min(points[at]["error"] for at in own)
         chosen = min(
             (at for at in own if points[at]["error"] <= NEAR_BEST * least), key=lambda at: points[at]["milliseconds"]
         )
-        error = points[chosen]["error"]
-        theirs, known = traced_time(points, error)
-        entry = {
-            "point": chosen,
-            "error": error,
-            "milliseconds": points[chosen]["milliseconds"],
-            "traced_milliseconds": theirs,
-            "traced_known": known,
-            "ratio": theirs / points[chosen]["milliseconds"] if theirs else None,
-        }
-        entries.append({**entry, "sentence": _sentence(points[chosen], entry, tracer)})
+        count = points[chosen]["samples"]
+        setting = f"{count} sample{'s' if count > 1 else ''}"
+        entries.append({"point": chosen, **_beside_traced(points[chosen], points, setting)})
     return sorted(entries, key=lambda entry: (entry["error"], entry["milliseconds"]))
 
 
-def _sentence(point, entry, tracer):
-    count = f"{point['samples']} sample{'s' if point['samples'] > 1 else ''}"
+def from_nothing(first, points):
+    """The entry of a picture that began without anything known of light, as `summary` has one; first: as a point, with
+    one sample."""
+    return _beside_traced(first, points, "1 sample, nothing known of light between grains before it")
+
+
+def _beside_traced(point, points, setting):
+    theirs, known = traced_time(points, point["error"])
+    entry = {
+        "error": point["error"],
+        "milliseconds": point["milliseconds"],
+        "traced_milliseconds": theirs,
+        "traced_known": known,
+        "ratio": theirs / point["milliseconds"] if theirs else None,
+    }
+    tracer = next((each["model"] for each in points if each["side"] == "traced"), None)
+    return {**entry, "sentence": _sentence(point, entry, setting, tracer)}
+
+
+def _sentence(point, entry, setting, tracer):
     taps = f" of {point['taps']} taps" if point["taps"] else ""
     known = entry["traced_known"]
     off = _share(entry["error"]) if point["resolved"] else f"at most {_share(entry['error'])}"
-    ours = f"{labels.of_model(point['model'])} with {count}{taps}: {off} at {duration(entry['milliseconds'])}"
+    ours = f"{labels.of_model(point['model'])} with {setting}{taps}: {off} at {duration(entry['milliseconds'])}"
     if known is None:
         return f"{ours}."
     if known == "below":

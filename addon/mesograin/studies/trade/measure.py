@@ -46,6 +46,10 @@ DEFINITIONS = {
     ),
     "further_ms": "the same of a sample that refines such a frame; the median of as many",
     "exchange_ms": "milliseconds that light between grains took to be solved, once before the first sample; 0 if none",
+    "from_nothing": (
+        "the first picture with light between grains in it, as a viewport shows it that has just been opened: its"
+        " milliseconds hold all that had to be found for it"
+    ),
     "noise_floor": "the error that a perfect picture would score, because the converged render is noisy itself",
     "front": "no other point is both faster and nearer to the converged render",
 }
@@ -134,6 +138,7 @@ def _measure(request, depsgraph, progress):
             "notes": list(truth.notes),
         },
         "points": [],
+        "from_nothing": [],
     }
     book = _Book(results, output, truth, mask, _fingerprint(request, results, truth))
 
@@ -176,6 +181,14 @@ def _measure_model(request, ours, chosen, taps, book, progress, provenance):
         progress.end(learn=False)
         return
     kind = kinds.KINDS[request.reference]
+    if not kind.direct and not book.has_first(setting):
+        first = ours.from_nothing(chosen, kind.least_sun, taps)
+        if first is not None:
+            milliseconds, image = first
+            picture = f"{setting}.from_nothing"
+            book.picture(picture, image, {**provenance, "model": model, "samples": 1, "taps": taps})
+            book.add_first(setting, image, picture, side="mesograin", model=model, taps=taps, samples=1,
+                           milliseconds=milliseconds)
     ours.begin(chosen, kind.least_sun, taps, kind.direct)
     images = {}
     for name, count in missing.items():
@@ -203,20 +216,28 @@ class _Book:
         itself = native_module.get().compare(truth.mean, *truth.images, mask=mask)
         results["reference"]["noise_floor"] = itself["noise_floor"][results["reference"]["judged_by"]]
         results["reference"]["mask"] = itself["mask"]
-        self._known = {}
+        self._known, self._known_first = {}, {}
         try:
             earlier = json.loads((output.folder / RESULTS).read_text(encoding="utf-8"))
             if earlier.get("fingerprint") == fingerprint:
                 self._known = {point["name"]: point for point in earlier["points"]}
+                self._known_first = {first["name"]: first for first in earlier["from_nothing"]}
         except (OSError, ValueError, KeyError, AttributeError, TypeError):
             pass  # nothing there, or nothing of ours
 
     def has(self, name):
         """Whether a point was measured before and its picture is there; if so, it is taken over."""
-        if name not in self._known or not (self._output.folder / self._known[name]["picture"]).is_file():
+        return self._has(name, self._known, "points")
+
+    def has_first(self, setting):
+        """The same of the picture of a setting that began from nothing."""
+        return self._has(setting, self._known_first, "from_nothing")
+
+    def _has(self, name, known, of):
+        if name not in known or not (self._output.folder / known[name]["picture"]).is_file():
             return False
-        if self._known[name] not in self._results["points"]:
-            self._results["points"].append(self._known[name])
+        if known[name] not in self._results[of]:
+            self._results[of].append(known[name])
             self._write()
         return True
 
@@ -224,14 +245,19 @@ class _Book:
         self._output.write_exr(f"pictures/{name}.exr", pixels, provenance)
 
     def add(self, name, image, **point):
+        self._results["points"].append(self._judged(name, image, name, point))
+        self._write()
+
+    def add_first(self, setting, image, picture, **point):
+        self._results["from_nothing"].append(self._judged(setting, image, picture, point))
+        self._write()
+
+    def _judged(self, name, image, picture, point):
         metrics = native_module.get().compare(image, *self._truth.images, mask=self._mask)
         kept = {name: metrics[name] for name in METRICS}
         judged_by = self._results["reference"]["judged_by"]
-        self._results["points"].append(
-            {"name": name, **point, **curve.place(metrics, metrics["noise_floor"], judged_by), "metrics": kept,
-             "picture": f"pictures/{name}.exr"}
-        )
-        self._write()
+        return {"name": name, **point, **curve.place(metrics, metrics["noise_floor"], judged_by), "metrics": kept,
+                "picture": f"pictures/{picture}.exr"}
 
     def finish(self):
         self._results["complete"] = True
@@ -242,6 +268,8 @@ class _Book:
         order = curve.front(points)
         self._results["front"] = [points[at]["name"] for at in order]
         self._results["summary"] = curve.summary(points)
+        self._results["summary_from_nothing"] = [curve.from_nothing(first, points)
+                                                 for first in self._results["from_nothing"]]
         self._output.write_text(RESULTS, json.dumps(self._results, indent=1, allow_nan=False) + "\n")
         self._output.write_text("trade.csv", _csv(points, set(self._results["front"])))
 
