@@ -20,6 +20,13 @@ def corner_normals(mesh):
     return normals
 
 
+def bend_corner_normals(mesh, normals):
+    """Gives the corners of `mesh` these normals, as corner_normals() gives them, of their own."""
+    if hasattr(mesh, "use_auto_smooth"):
+        mesh.use_auto_smooth = True
+    mesh.normals_split_custom_set(normals.tolist())
+
+
 def set_pass_pixels(render_pass, pixels):
     """Fills a render pass from (h, w, 4) float32 with row 0 at the bottom, in one copy; `rect = ...` takes seconds."""
     try:

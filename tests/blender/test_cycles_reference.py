@@ -239,6 +239,23 @@ def test_a_file_that_is_not_this_reference_is_rendered_again(native, counted, tm
     assert len(counted) == 2 and reference.render(depsgraph(), **base).cached
 
 
+@pytest.mark.parametrize("kind", ("volume_index_matched", "volume_lambert"))
+def test_light_leaves_a_volume_by_flat_faces_that_came_in_by_smooth_ones(kind):
+    make_sphere(FRONT, segments=16, rings=8, sigma_s=(2.0, 2.0, 2.0))
+    faces = bpy.data.objects["Sphere"].data.polygons
+
+    def rendered(smooth):
+        faces.foreach_set("use_smooth", smooth)
+        bpy.data.objects["Sphere"].data.update()
+        (image,) = reference.render(depsgraph(), kind, (24, 24), samples=16, seeds=(1,)).images
+        return image[..., :3].astype(float)
+
+    mixed, flat = rendered(np.arange(len(faces)) % 2 == 0), rendered(np.zeros(len(faces), dtype=bool))
+    # Where nothing refracts, normals are nothing to light. Else they are other ones, and the paths, too.
+    bound = 1e-5 if kind == "volume_index_matched" else 0.1
+    assert np.abs(mixed - flat).sum() <= bound * flat.sum()
+
+
 def test_objects_that_are_no_shapes_are_in_nobodys_way(counted):
     make_sphere(FRONT, segments=16, rings=8)
     collection = bpy.context.scene.collection

@@ -118,8 +118,8 @@ class ColourProperties(bpy.types.PropertyGroup):
     """`material.mesograin_colours`: the range in which instances of a heap lie, evenly and at random."""
 
     vary: BoolProperty(name="Vary Grains", default=False, **_COMMON,
-                       description="Give each of many instances, or of the grains of one object, a colour of its "
-                                     "own; sand is never of one colour")
+                       description="Give each of many instances, or of the grains of one object, a colour of its own; "
+                                   "sand is never of one colour")
     source: EnumProperty(name="Source", default="RANGE", **_COMMON, items=(
         ("RANGE", "Range", "Evenly and at random between two ends"),
         ("NODES", "Nodes", "What the colour of the material's Cycles surface is for each: Object Info's Random along a "

@@ -177,11 +177,12 @@ def _measure_model(request, ours, chosen, taps, book, progress, provenance):
     setting = f"{model}.taps{taps}" if taps else model
     names = {f"{setting}.samples{count}": count for count in request.samples}
     missing = {name: count for name, count in names.items() if not book.has(name)}
+    first_known = book.has_first(setting)
     if not missing:
         progress.end(learn=False)
         return
     kind = kinds.KINDS[request.reference]
-    if not kind.direct and not book.has_first(setting):
+    if not kind.direct and not first_known:
         first = ours.from_nothing(chosen, kind.least_sun, taps)
         if first is not None:
             milliseconds, image = first
