@@ -1,6 +1,8 @@
 # From Cycles' nodes to a grain and back: what is written is read again, what artists build is what Cycles walks in.
 import bpy
 import pytest
+from cycles_scenes import make_sphere
+
 from mesograin import compat
 from mesograin.cycles import inversion, nodes, reading
 from mesograin.scene import export
@@ -84,6 +86,14 @@ def test_what_is_lost_is_said(native):
     tree.links.new(texture.outputs["Fac"], node.inputs["Roughness"])
     lost = " ".join(conversion.to_grain(material, 1.0))
     assert "75%" in lost and "metal" in lost and "Roughness" in lost
+
+
+def test_faces_that_keep_light_in_cycles_are_said(native):
+    material = make_sphere([], segments=8, rings=4, model="model_2", boundary="index_matched")
+    assert conversion.to_cycles(material, 1.0) == []
+    bpy.data.objects["Sphere"].data.polygons[0].use_smooth = False
+    (said,) = conversion.to_cycles(material, 1.0)
+    assert "'Sphere'" in said and "flat faces" in said
 
 
 def test_what_a_principled_material_does_beside_the_walk_is_lost_and_said(native):

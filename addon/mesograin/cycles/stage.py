@@ -6,9 +6,8 @@ import bpy
 import numpy
 from mathutils import Matrix
 
-from .. import compat
 from ..scene import export, lights, meshes, surroundings
-from . import instancing, lighting, settings
+from . import instancing, lighting, settings, shading
 
 
 class StageError(Exception):
@@ -129,7 +128,7 @@ class Stage:
             if not mesh.polygons:
                 return
             self._meshes[key] = mesh
-            _shade_alike(mesh)
+            shading.shade_alike(mesh)
             mesh.materials.clear()
             for material in materials:
                 mesh.materials.append(self._material(material))
@@ -170,19 +169,6 @@ class Stage:
         if key not in self._materials:
             self._materials[key] = self._own(self._build_material(source))
         return self._materials[key]
-
-
-def _shade_alike(mesh):
-    """Cycles tells smooth faces of a material from flat ones, and light that has come into a volume by one kind never
-    leaves it by the other. So all become smooth, with the normals that they had."""
-    smooth = numpy.empty(len(mesh.polygons), dtype=bool)
-    mesh.polygons.foreach_get("use_smooth", smooth)
-    if smooth.all() or not smooth.any():
-        return
-    compat.calculate_corners(mesh)
-    normals = compat.corner_normals(mesh)
-    mesh.polygons.foreach_set("use_smooth", numpy.ones_like(smooth))
-    compat.bend_corner_normals(mesh, normals)
 
 
 def _keep_shadows_smooth(made):

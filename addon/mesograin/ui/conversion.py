@@ -1,7 +1,7 @@
 # From Cycles' nodes to a grain and back, so that switching engines shows the same material.
 import bpy
 
-from ..cycles import nodes, reading, recipes
+from ..cycles import nodes, reading, recipes, shading
 from ..cycles.grain_values import GrainValues
 from ..scene import export
 from ..schema import models, parameters
@@ -54,7 +54,16 @@ def to_cycles(material, millimetres_per_unit):
                 node.inputs["Roughness"].default_value = grain.roughness**0.5
     if kind == "volume_dielectric":
         lost.append("light through glass, which Cycles finds only by caustics: use wide lights")
+    if kind.startswith("volume"):
+        lost.extend(f"light in '{name}', which Cycles never lets out by flat faces where it came in by smooth ones: "
+                    "shade all of them one way" for name in _shaded_both_ways(material)[:1])
     return lost
+
+
+def _shaded_both_ways(material):
+    """Names of the objects that wear a material on such faces."""
+    return [thing.name for thing in bpy.data.objects if thing.type == "MESH" and shading.both_ways(thing.data)
+            and any(slot.material == material for slot in thing.material_slots)]
 
 
 class _Converts(OnActiveMaterial):
