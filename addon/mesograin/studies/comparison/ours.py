@@ -109,9 +109,13 @@ class Ours:
         view.set_camera(self._camera)
         view.render(1)
         while (exchange := view.statistics()["exchange"]) and not exchange["milliseconds"]:
-            while not view.take_news():
+            awaited = view.awaited
+            if view.take_news():
+                view.render(1)
+            elif awaited:
                 time.sleep(LOOKS_EVERY)
-            view.render(1)
+            else:
+                return None  # it could not be found, which a patient view will say
         return exchange and (1000.0 * (time.perf_counter() - started), view.read())
 
     def begin(self, chosen, least_sun=0.0, taps=None, direct=False):
