@@ -54,16 +54,18 @@ def to_cycles(material, millimetres_per_unit):
                 node.inputs["Roughness"].default_value = grain.roughness**0.5
     if kind == "volume_dielectric":
         lost.append("light through glass, which Cycles finds only by caustics: use wide lights")
-    if kind.startswith("volume"):
-        lost.extend(f"light in '{name}', which Cycles never lets out by flat faces where it came in by smooth ones: "
-                    "shade all of them one way" for name in _shaded_both_ways(material)[:1])
+    keeps_light = _shaded_both_ways(material) if kind.startswith("volume") else None
+    if keeps_light:
+        lost.append(f"light in '{keeps_light}', which Cycles never lets out by flat faces where it came in by smooth "
+                    "ones: shade all of them one way")
     return lost
 
 
 def _shaded_both_ways(material):
-    """Names of the objects that wear a material on such faces."""
-    return [thing.name for thing in bpy.data.objects if thing.type == "MESH" and shading.both_ways(thing.data)
-            and any(slot.material == material for slot in thing.material_slots)]
+    """The name of an object that wears a material on such faces, or None; each mesh is looked at once."""
+    worn = {thing.data: thing.name for thing in bpy.data.objects
+            if thing.type == "MESH" and any(slot.material == material for slot in thing.material_slots)}
+    return next((name for mesh, name in worn.items() if shading.both_ways(mesh)), None)
 
 
 class _Converts(OnActiveMaterial):
