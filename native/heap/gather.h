@@ -12,6 +12,7 @@
 #include "heap/exchange.h"
 #include "heap/facet_walk.h"
 #include "heap/heap.h"
+#include "heap/inner_light.h"
 #include "transport/random.h"
 
 namespace mesograin::heap {
@@ -48,6 +49,7 @@ class Gather {
     glm::vec3 straight{0.0F};   ///< of these what is seen straight through it
     glm::vec3 met{1.0F};        ///< of light on the straight way through it, what does not cross
     glm::vec3 scattered{0.0F};  ///< lights and the world, scattered in it
+    glm::vec3 steady{0.0F};     ///< what its inner light tells of both
     glm::vec3 world{0.0F};      ///< straight through it
     float film = 0.0F;          ///< the share of a transparent film, which is seen instead; the mean of the channels
   };
@@ -59,6 +61,17 @@ class Gather {
 
   /// The same through its own facets, and past those of others; nothing, where it does not end behind that place.
   std::optional<All> look_at_all(const SeenFacet& seen, const Facets& facets, int rays,
+                                 transport::Random& random) const;
+
+  /// Whether a polynomial tells the light in a grain well enough: it scatters evenly and is not so thick that light
+  /// stays below its surface.
+  bool tells_inner_light(std::uint32_t grain) const;
+
+  /// Adds so many walks that begin all over the surface of such a grain.
+  void learn(std::uint32_t grain, const Facets& facets, int walks, transport::Random& random, InnerLight& light) const;
+
+  /// look_at_all() where that is known; nothing, where it does not end behind that place, or at a wall.
+  std::optional<All> look_at_all(const SeenFacet& seen, const Facets& facets, const InnerLight& light,
                                  transport::Random& random) const;
 
   /// Of a heap that exchanges no light: what lights do in the grain that is seen straight through this one.
@@ -220,6 +233,9 @@ class Gather {
   /// crosses it straight: the mean of so many walks.
   All walked_in(const SeenFacet& seen, const std::optional<End>& across, const Facets& facets, int walks,
                 transport::Random& random) const;
+  /// The same where its inner light is known.
+  All seen_in(const SeenFacet& seen, const End& across, const InnerLight& light, const Facets& facets,
+              transport::Random& random) const;
   /// The same in its ball; `place`: from its middle.
   All walked_in(std::uint32_t grain, const glm::vec3& place, const glm::vec3& normal, const glm::vec3& towards,
                 int walks, transport::Random& random) const;

@@ -397,7 +397,7 @@ void Exchange::find_gather() {
   const bool wanted =
       (gathers_ || shows_more_) && known_ && heap::same_places(known_->grains(), solving_->heap().grains);
   if (!wanted) gather_.reset();
-  if (wanted && !gather_) gather_ = std::make_unique<const heap::Gather>(*known_->heap, known_->light);
+  if (wanted && !gather_) gather_ = std::make_shared<const heap::Gather>(*known_->heap, known_->light);
   // What grains are made of, and lights, are seen to change at once, in the light that others sent before.
   if (wanted && gather_->heap() != solving_->heap() && alike(gather_->heap().grains, solving_->heap().grains))
     gather_ = gather_->among(solving_->heap());

@@ -86,7 +86,7 @@ class Exchange {
   }
 
   /// What gathers light for each pixel, or for those that show clear grains; null where it is not to be.
-  const heap::Gather* gather() const { return gather_.get(); }
+  const std::shared_ptr<const heap::Gather>& gather() const { return gather_; }
   bool gathers_all() const { return gathers_; }
 
   /// Whether all grains are about as round as a sphere.
@@ -129,7 +129,7 @@ class Exchange {
   bool gathers_ = false;
   bool follows_ = false;     // light into what is seen of an array's grains, where that is cheap
   bool shows_more_ = false;  // gathering, of some grains
-  std::unique_ptr<const heap::Gather> gather_;
+  std::shared_ptr<const heap::Gather> gather_;
   std::vector<std::pair<std::size_t, std::size_t>> alike_;  // objects of one unit: the first, and after the last
   std::vector<bool> whole_;  // of objects, where clear ones are looked into: no model is asked of their unit
   std::shared_ptr<const heap::Solving> solving_;

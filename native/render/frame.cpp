@@ -22,8 +22,12 @@ constexpr std::uint32_t lens_seed = 0x30000U;
 
 }  // namespace
 
-Frame::Frame(DeviceCache& cache, int width, int height, std::uint32_t seed)
-    : cache_(cache), size_(width, height), seed_(seed), targets_(std::make_unique<Targets>(width, height, false)) {
+Frame::Frame(DeviceCache& cache, int width, int height, std::uint32_t seed, bool patient)
+    : cache_(cache),
+      size_(width, height),
+      seed_(seed),
+      patient_(patient),
+      targets_(std::make_unique<Targets>(width, height, false)) {
   shade_.set_taps(default_taps);
 }
 
@@ -151,6 +155,7 @@ Sample Frame::begin_sample(const GoOn& go_on, bool hurried) {
                 .traced = traced,
                 .gathers = gathers,
                 .denoises = scene_.denoise,
+                .learns = !patient_ && cast,
                 .pixels_at_once = pixels_at_once_,
                 .go_on = go_on};
   if (unwrapping_) return sample;

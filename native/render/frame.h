@@ -50,7 +50,7 @@ struct PortionSum {
 /// Lives on the context's thread.
 class Frame {
  public:
-  Frame(DeviceCache& cache, int width, int height, std::uint32_t seed);
+  Frame(DeviceCache& cache, int width, int height, std::uint32_t seed, bool patient);
 
   void resize(int width, int height);
   void set_scene(scene::Scene scene);
@@ -151,6 +151,7 @@ class Frame {
   DeviceCache& cache_;
   glm::ivec2 size_;
   std::uint32_t seed_;
+  bool patient_;
   scene::Scene scene_;
   scene::Camera camera_;
   Lighting lighting_;

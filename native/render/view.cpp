@@ -87,7 +87,7 @@ View::View(int width, int height, std::uint32_t seed, bool patient)
   made_ = gl::ContextThread::instance()
               .post([=, id = id_] {
                 Device& here = device();
-                here.frames.try_emplace(id, here.cache, width, height, seed);
+                here.frames.try_emplace(id, here.cache, width, height, seed, patient);
               })
               .share();
 }

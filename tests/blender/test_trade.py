@@ -102,7 +102,7 @@ def make_heap(side=8):
     return material
 
 
-def test_a_heap_has_a_picture_that_began_from_nothing(tmp_path, monkeypatch):
+def test_a_heap_has_pictures_from_nothing_and_in_known_light(tmp_path, monkeypatch):
     make_heap()
     asked = {"models": ("model_1", "model_2"), "samples": (1,), "exchange": "heaps"}
     found = trade(tmp_path, **asked)
@@ -113,13 +113,22 @@ def test_a_heap_has_a_picture_that_began_from_nothing(tmp_path, monkeypatch):
         assert first["milliseconds"] > point["frame_ms"] and point["exchange_ms"] > 0.0
         assert first["error"] == pytest.approx(point["error"], rel=0.3), "light between grains is in it"
         assert (tmp_path / "out" / first["picture"]).is_file()
+    for shown in found["in_known_light"]:
+        assert 0.0 < shown["milliseconds"] < firsts[shown["name"]]["milliseconds"]
+        assert shown["error"] < firsts[shown["name"]]["error"], "walks find less"
+        assert (tmp_path / "out" / shown["picture"]).is_file()
+    sentences = [entry["sentence"] for entry in found["summary_in_known_light"]]
+    assert len(sentences) == 2 and all("in light that a viewport has shown before" in each for each in sentences)
     sentences = [entry["sentence"] for entry in found["summary_from_nothing"]]
     assert len(sentences) == 2 and all("nothing known of light between grains" in each for each in sentences)
     without = trade(tmp_path / "without", models=("model_2",), samples=(1,), exchange="off")
-    assert without["from_nothing"] == [] and without["points"][0]["error"] > 1.3 * firsts["model_2"]["error"]
+    assert without["from_nothing"] == without["in_known_light"] == []
+    assert without["points"][0]["error"] > 1.3 * firsts["model_2"]["error"]
 
-    monkeypatch.setattr(ours.Ours, "from_nothing", lambda *_: pytest.fail("it was measured"))
-    assert trade(tmp_path, **asked)["from_nothing"] == found["from_nothing"]
+    for name in ("from_nothing", "in_known_light"):
+        monkeypatch.setattr(ours.Ours, name, lambda *_: pytest.fail("it was measured"))
+    again = trade(tmp_path, **asked)
+    assert all(again[of] == found[of] for of in ("from_nothing", "in_known_light"))
 
 
 def test_no_point_pays_for_the_start_of_cycles(tmp_path, monkeypatch):

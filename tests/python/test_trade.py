@@ -172,6 +172,8 @@ def folder(tmp_path_factory):
         "summary": curve.summary(points),
         "from_nothing": [points[0]],
         "summary_from_nothing": [curve.from_nothing(points[0], points)],
+        "in_known_light": [points[0]],
+        "summary_in_known_light": [curve.in_known_light(points[0], points)],
     }
     (folder / "trade.json").write_text(json.dumps(results))
     environment = {"PATH": "/usr/bin:/bin", "MESOGRAIN_NATIVE_DIR": str(native.__file__).rsplit("/", 1)[0]}
@@ -184,9 +186,9 @@ def test_the_page_holds_sentences_points_and_definitions(folder):
     page = (folder / "report.html").read_text()
     text = " ".join(html.unescape(re.sub(r"<[^>]*>", " ", page)).split())
     results = json.loads((folder / "trade.json").read_text())
-    for entry in (*results["summary"], *results["summary_from_nothing"]):
+    for entry in (*results["summary"], *results["summary_in_known_light"], *results["summary_from_nothing"]):
         assert entry["sentence"] in text
-    assert "nothing known of light between grains" in text
+    assert "nothing known of light between grains" in text and "that a viewport has shown before" in text
     assert "./mesograin trade disc.blend --set 'g=0.1'" in text and "≤ 2.00 %" in text
     table = page[page.index("<tbody>"):page.index("</tbody>")]
     assert table.count("<tr") == len(results["points"]) and table.count('class="front"') == len(results["front"])

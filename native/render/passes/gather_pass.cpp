@@ -21,6 +21,9 @@ constexpr int rays_a_sample = 4;
 // Into clear grains, where nothing else is gathered: two would cost nearly twice as much for half the noise's square.
 constexpr int rays_into_clear = 1;
 
+// Whoever changes something after fewer samples is not likely to look at the same light again.
+constexpr std::uint32_t first_learnt_from = 4;
+
 // In pixels, of the first sample's filter.
 constexpr double deviation = 2.0;
 
@@ -83,7 +86,7 @@ Likeness likeness_of(const heap::Gather::StraightEnd& end) {
 }  // namespace
 
 bool GatherPass::run(const Sample& sample, const ArrayVisibility& arrays, SurfacePass& surfaces) {
-  const heap::Gather* gather = sample.exchange.gather();
+  const std::shared_ptr<const heap::Gather>& gather = sample.exchange.gather();
   const bool all = sample.exchange.gathers_all();
   const bool alone = !sample.exchange.any();
   ran_ = sample.gathers;
@@ -98,6 +101,7 @@ bool GatherPass::run(const Sample& sample, const ArrayVisibility& arrays, Surfac
   scattered_.assign(seen.normals.size(), glm::vec4(0.0F));
   mirrored_.assign(seen.normals.size(), glm::vec4(0.0F));
   straight_.assign(seen.normals.size(), glm::vec4(0.0F));
+  steady_.assign(seen.normals.size(), glm::vec4(0.0F));
   behind_.assign(seen.normals.size(), glm::vec4(0.0F));
   likenesses_.assign(seen.normals.size(), Likeness());
   const bool clear = facets && gather->sees_into_any();
@@ -112,6 +116,9 @@ bool GatherPass::run(const Sample& sample, const ArrayVisibility& arrays, Surfac
   const auto pixel_at = [&](std::size_t i) { return glm::dvec2(i % width, i / width); };
   // A picture's first sample, which a drag shows, costs half as much by balls; what that is off goes with the others.
   const bool first_look = sample.index == 0;
+  // By what is known of grains' inner light it costs less still, and is nearer.
+  if (sample.learns) inner_lights_.keep_to(gather);
+  const bool knows = first_look && facets && sample.learns;
   const float narrowed = heap::Gather::narrowed(sample.index);
   const std::uint64_t seed = (static_cast<std::uint64_t>(sample.seed) << 32U) + sample.index;
   const bool whole = cast_rows(sample.size.y, sample.go_on, [&](int first, int end) {
@@ -143,11 +150,14 @@ bool GatherPass::run(const Sample& sample, const ArrayVisibility& arrays, Surfac
         const heap::SeenFacet at{*grain, place, normal, towards};
         std::optional<heap::Gather::All> found;
         const bool by_facets = facets && !roles[number].ball && !first_look;
+        if (const heap::InnerLight* light = knows ? inner_lights_.of(*grain) : nullptr)
+          found = gather->look_at_all(at, *facets, *light, random);
         if (by_facets) found = gather->look_at_all(at, *facets, rays_a_sample, random);
         if (!found)
           found = gather->look_at_all(*grain, glm::vec3(seen.positions[i]), normal, towards, rays_a_sample, random);
         others_[i] = glm::vec4(found->others - found->straight, 1.0F);
         straight_[i] = glm::vec4(found->straight, 0.0F);
+        steady_[i] = glm::vec4(found->steady, 0.0F);
         behind_[i] = glm::vec4(found->world, found->film);
         likenesses_[i].share = glm::max(found->met, least_share);
         scattered_[i] = glm::vec4(found->scattered, 0.0F);
@@ -181,6 +191,7 @@ bool GatherPass::run(const Sample& sample, const ArrayVisibility& arrays, Surfac
   // They have no noise, and edges.
   for (std::size_t i = 0; i < others_.size(); ++i) {
     others_[i] += straight_[i];
+    scattered_[i] += steady_[i];
     lights_[i] += behind_[i];
     if (!clear) continue;
     mirrored_[i] += highlights_[i];
@@ -190,6 +201,13 @@ bool GatherPass::run(const Sample& sample, const ArrayVisibility& arrays, Surfac
   upload(device_lights_, sample.size, lights_);
   upload(device_scattered_, sample.size, scattered_);
   upload(device_mirrored_, sample.size, mirrored_);
+  if (facets && sample.learns && sample.index >= first_learnt_from) {
+    InnerLights::Pixels pixels;
+    for (const glm::vec4& facing : seen.normals)
+      if (facing.w != 0.0F)
+        if (const auto& grain = roles[static_cast<std::size_t>(std::abs(facing.w)) - 1].grain) ++pixels[*grain];
+    inner_lights_.learn(pixels, *facets, sample.seed, sample.go_on);
+  }
   milliseconds_ = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   return true;
 }

@@ -9,6 +9,7 @@
 #include "gl/program.h"
 #include "gl/texture.h"
 #include "render/denoiser.h"
+#include "render/inner_lights.h"
 #include "render/passes/array_visibility.h"
 #include "render/passes/sample.h"
 #include "render/passes/surface_pass.h"
@@ -31,6 +32,7 @@ class GatherPass {
 
  private:
   Denoiser denoiser_;
+  InnerLights inner_lights_;
   std::vector<Likeness> likenesses_;
   std::vector<glm::vec4> others_;      // of what grains send; w: 1 where it was looked
   std::vector<glm::vec4> lights_;      // and the world, seen through grains
@@ -39,6 +41,7 @@ class GatherPass {
   std::vector<glm::vec4> highlights_;  // of lights, there
   std::vector<glm::vec4> chance_;      // and those that few looks through clear grains meet
   std::vector<glm::vec4> straight_;    // of what others send
+  std::vector<glm::vec4> steady_;      // what grains' inner light tells
   std::vector<glm::vec4> behind_;      // the world and the film, seen straight through
   std::optional<gl::Texture> device_others_;
   std::optional<gl::Texture> device_lights_;

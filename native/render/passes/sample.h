@@ -52,6 +52,7 @@ struct Sample {
   bool traced;       ///< rays can be followed through all of the content
   bool gathers;      ///< light between grains is gathered for pixels that show them
   bool denoises;     ///< and neighbours that show the same tell each other what was found
+  bool learns;       ///< grains' inner light is found beside it, for another picture of the same light
   Mirrors mirrors = Mirrors::none;
   bool straight_through = false;  ///< light that goes straight through single draws is followed
   double pixels_at_once;          ///< that are shaded from one question whether to go on to the next
@@ -71,7 +72,7 @@ struct Sample {
 
   /// Whether any grains are seen into through their own facets.
   bool looks_into_facets() const {
-    return gathers && traced && (exchange.gather()->sees_into_any() || !exchange.balls());
+    return gathers && traced && (learns || exchange.gather()->sees_into_any() || !exchange.balls());
   }
 
   /// Whether what is seen must be of the meshes in full: rays go on from there on this side.

@@ -15,6 +15,9 @@ from ...schema import models
 LOOKS_EVERY = 0.002
 """Seconds from one look for news of light to the next."""
 
+SHOWN_BEFORE = 40
+"""Samples of a picture after which a viewport knows the light in its grains."""
+
 SEEDS = 4
 """Our picture is the mean of this many parts of independent noise, whose spread tells how far it is sampled out."""
 
@@ -118,6 +121,25 @@ class Ours:
                 return None  # it could not be found, which a patient view will say
         return exchange and (1000.0 * (time.perf_counter() - started), view.read())
 
+    def in_known_light(self, frames, chosen, least_sun=0.0, taps=None):
+        """(median milliseconds of so many, (h, w, 4) float32 of the last) pictures of one sample that a viewport shows
+        while its camera moves, in light that it has shown SHOWN_BEFORE samples of. None where no light goes between
+        grains. Other arguments as `begin` has them."""
+        view = native_module.get().View(*self._size, patient=False)
+        if taps:
+            view.set_taps(taps)
+        view.set_scene(self._lit(chosen, least_sun, False).to_native())
+        view.set_camera(self._camera)
+        view.render(1)
+        while view.preparing is not None:
+            time.sleep(LOOKS_EVERY)
+        view.take_news()
+        view.render(SHOWN_BEFORE)
+        if not view.statistics()["exchange"]:
+            return None
+        milliseconds, _ = self._time_frames(view, frames)
+        return milliseconds, view.read()
+
     def begin(self, chosen, least_sun=0.0, taps=None, direct=False):
         """Starts a picture without samples. chosen: the case's choice of parameters. least_sun: radians; narrower suns
         are widened to this. taps: of model 3, for each sample; None as they were. direct: without light between
@@ -158,8 +180,10 @@ class Ours:
 
     def time_frames(self, frames):
         """(median milliseconds of a frame of one sample, {pass: median milliseconds}), the light maps being there."""
+        return self._time_frames(self._views[0], frames)
+
+    def _time_frames(self, view, frames):
         totals, passes = [], {}
-        view = self._views[0]
         for _ in range(frames):
             view.set_camera(self._camera)
             view.render(1)

@@ -79,6 +79,11 @@ def from_nothing(first, points):
     return _beside_traced(first, points, "1 sample, nothing known of light between grains before it")
 
 
+def in_known_light(shown, points):
+    """The same of one that a viewport shows of light that it has shown before."""
+    return _beside_traced(shown, points, "1 sample, in light that a viewport has shown before")
+
+
 def _beside_traced(point, points, setting):
     theirs, known = traced_time(points, point["error"])
     entry = {

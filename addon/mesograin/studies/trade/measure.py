@@ -19,7 +19,7 @@ from ...scene import as_rendered, export
 from ...schema import labels
 from ...schema.models import CHOICES
 from ..comparison import definitions, masks, origin
-from ..comparison.ours import Ours
+from ..comparison.ours import SHOWN_BEFORE, Ours
 from ..comparison.results import Output
 from . import curve
 
@@ -45,6 +45,10 @@ DEFINITIONS = {
         " frames after a first one that prepared the device"
     ),
     "further_ms": "the same of a sample that refines such a frame; the median of as many",
+    "in_known_light": (
+        "a picture of one sample that a viewport shows while its camera moves, in light between and in grains of which"
+        f" it has shown {SHOWN_BEFORE} samples; its milliseconds are those of all passes of such a frame"
+    ),
     "exchange_ms": "milliseconds that light between grains took to be solved, once before the first sample; 0 if none",
     "from_nothing": (
         "the first picture with light between grains in it, as a viewport shows it that has just been opened: its"
@@ -139,6 +143,7 @@ def _measure(request, depsgraph, progress):
         },
         "points": [],
         "from_nothing": [],
+        "in_known_light": [],
     }
     book = _Book(results, output, truth, mask, _fingerprint(request, results, truth))
 
@@ -177,19 +182,24 @@ def _measure_model(request, ours, chosen, taps, book, progress, provenance):
     setting = f"{model}.taps{taps}" if taps else model
     names = {f"{setting}.samples{count}": count for count in request.samples}
     missing = {name: count for name, count in names.items() if not book.has(name)}
-    first_known = book.has_first(setting)
+    alone = {kind: book.has_alone(kind, setting) for kind in ("from_nothing", "in_known_light")}
     if not missing:
         progress.end(learn=False)
         return
     kind = kinds.KINDS[request.reference]
-    if not kind.direct and not first_known:
-        first = ours.from_nothing(chosen, kind.least_sun, taps)
-        if first is not None:
-            milliseconds, image = first
-            picture = f"{setting}.from_nothing"
+
+    def measure_alone(kind_of_light, measured):
+        if measured is not None:
+            milliseconds, image = measured
+            picture = f"{setting}.{kind_of_light}"
             book.picture(picture, image, {**provenance, "model": model, "samples": 1, "taps": taps})
-            book.add_first(setting, image, picture, side="mesograin", model=model, taps=taps, samples=1,
+            book.add_alone(kind_of_light, setting, image, picture, side="mesograin", model=model, taps=taps, samples=1,
                            milliseconds=milliseconds)
+
+    if not kind.direct and not alone["from_nothing"]:
+        measure_alone("from_nothing", ours.from_nothing(chosen, kind.least_sun, taps))
+    if not kind.direct and not alone["in_known_light"]:
+        measure_alone("in_known_light", ours.in_known_light(request.frames, chosen, kind.least_sun, taps))
     ours.begin(chosen, kind.least_sun, taps, kind.direct)
     images = {}
     for name, count in missing.items():
@@ -217,24 +227,24 @@ class _Book:
         itself = native_module.get().compare(truth.mean, *truth.images, mask=mask)
         results["reference"]["noise_floor"] = itself["noise_floor"][results["reference"]["judged_by"]]
         results["reference"]["mask"] = itself["mask"]
-        self._known, self._known_first = {}, {}
+        self._known = {"points": {}, "from_nothing": {}, "in_known_light": {}}
         try:
             earlier = json.loads((output.folder / RESULTS).read_text(encoding="utf-8"))
             if earlier.get("fingerprint") == fingerprint:
-                self._known = {point["name"]: point for point in earlier["points"]}
-                self._known_first = {first["name"]: first for first in earlier["from_nothing"]}
+                self._known = {of: {point["name"]: point for point in earlier[of]} for of in self._known}
         except (OSError, ValueError, KeyError, AttributeError, TypeError):
             pass  # nothing there, or nothing of ours
 
     def has(self, name):
         """Whether a point was measured before and its picture is there; if so, it is taken over."""
-        return self._has(name, self._known, "points")
+        return self._has(name, "points")
 
-    def has_first(self, setting):
-        """The same of the picture of a setting that began from nothing."""
-        return self._has(setting, self._known_first, "from_nothing")
+    def has_alone(self, of, setting):
+        """The same of a setting's picture that began "from_nothing", or was shown "in_known_light"."""
+        return self._has(setting, of)
 
-    def _has(self, name, known, of):
+    def _has(self, name, of):
+        known = self._known[of]
         if name not in known or not (self._output.folder / known[name]["picture"]).is_file():
             return False
         if known[name] not in self._results[of]:
@@ -249,8 +259,8 @@ class _Book:
         self._results["points"].append(self._judged(name, image, name, point))
         self._write()
 
-    def add_first(self, setting, image, picture, **point):
-        self._results["from_nothing"].append(self._judged(setting, image, picture, point))
+    def add_alone(self, of, setting, image, picture, **point):
+        self._results[of].append(self._judged(setting, image, picture, point))
         self._write()
 
     def _judged(self, name, image, picture, point):
@@ -271,6 +281,8 @@ class _Book:
         self._results["summary"] = curve.summary(points)
         self._results["summary_from_nothing"] = [curve.from_nothing(first, points)
                                                  for first in self._results["from_nothing"]]
+        self._results["summary_in_known_light"] = [curve.in_known_light(shown, points)
+                                                   for shown in self._results["in_known_light"]]
         self._output.write_text(RESULTS, json.dumps(self._results, indent=1, allow_nan=False) + "\n")
         self._output.write_text("trade.csv", _csv(points, set(self._results["front"])))
 

@@ -1,0 +1,43 @@
+// The light in one grain that has met something there before, as a polynomial of the place: once it is known, what is
+// seen of the grain needs no walks (Jarosz et al., "Radiance caching for participating media", 2008, who cache at
+// points; here all of a grain's walks are one regression).
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <glm/vec3.hpp>
+
+namespace mesograin::heap {
+
+class InnerLight {
+ public:
+  /// One scattering of a walk from the viewer: its place, from the grain's middle and in its radius, the walk's weight
+  /// after it, and what the walk found later, all in all.
+  void add(const glm::vec3& place, const glm::vec3& weight, const glm::vec3& found);
+
+  /// After a walk.
+  void count() { ++walks_; }
+
+  int walks() const { return walks_; }
+
+  /// Makes what was added known to at().
+  void fit();
+
+  /// What a walk of weight 1 after a scattering there finds later, on average.
+  glm::vec3 at(const glm::vec3& place) const;
+
+ private:
+  // To order 3.
+  static constexpr std::size_t terms = 20;
+  static constexpr std::size_t products = terms * (terms + 1) / 2;
+
+  static std::array<float, terms> basis(const glm::vec3& place);
+
+  int walks_ = 0;
+  int scatterings_ = 0;
+  std::array<std::array<float, products>, 3> weights_{};  // of each channel, the lower triangle of its matrix
+  std::array<std::array<float, terms>, 3> found_{};
+  std::array<glm::vec3, terms> fitted_{};
+};
+
+}  // namespace mesograin::heap
