@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
+#include <memory>
 #include <vector>
 
 namespace mesograin::heap {
@@ -20,17 +21,55 @@ inline SecondOrder second_order(const glm::vec3& p) {
           p.z * p.z - 0.5F * (p.x * p.x + p.y * p.y)};
 }
 
+/// The numbers of order 2 of three channels, where there are any: few grains of many have them, and then only are they
+/// in memory.
+class SecondOrders {
+ public:
+  using Numbers = std::array<SecondOrder, 3>;
+
+  SecondOrders() = default;
+  SecondOrders(const SecondOrders& other) : numbers_(copied(other)) {}
+  SecondOrders(SecondOrders&&) = default;
+  SecondOrders& operator=(SecondOrders&&) = default;
+  SecondOrders& operator=(const SecondOrders& other) {
+    if (this == &other) return *this;
+    if (numbers_ && other.numbers_)
+      *numbers_ = *other.numbers_;
+    else
+      numbers_ = copied(other);
+    return *this;
+  }
+  ~SecondOrders() = default;
+
+  /// Null: all are 0.
+  const Numbers* get() const { return numbers_.get(); }
+
+  Numbers& made() {
+    if (!numbers_) numbers_ = std::make_unique<Numbers>();
+    return *numbers_;
+  }
+
+ private:
+  static std::unique_ptr<Numbers> copied(const SecondOrders& other) {
+    return other.numbers_ ? std::make_unique<Numbers>(*other.numbers_) : nullptr;
+  }
+
+  std::unique_ptr<Numbers> numbers_;
+};
+
 /// For red, green and blue.
 struct Coefficients {
   /// xyz the slope, w the mean over all normals.
   std::array<glm::vec4, 3> channels{glm::vec4(0.0F), glm::vec4(0.0F), glm::vec4(0.0F)};
-  std::array<SecondOrder, 3> second{};  ///< of what is told so finely, else 0
+  SecondOrders second{};  ///< of what is told so finely
 
   glm::vec3 at(const glm::vec3& normal) const {
     glm::vec3 light = first_at(normal);
+    if (second.get() == nullptr) return light;
     const SecondOrder basis = second_order(normal);
     for (std::size_t channel = 0; channel < 3; ++channel)
-      for (std::size_t i = 0; i < basis.size(); ++i) light[static_cast<int>(channel)] += second[channel][i] * basis[i];
+      for (std::size_t i = 0; i < basis.size(); ++i)
+        light[static_cast<int>(channel)] += (*second.get())[channel][i] * basis[i];
     return light;
   }
 
@@ -47,16 +86,18 @@ struct Coefficients {
     for (int channel = 0; channel < 3; ++channel) channels[static_cast<std::size_t>(channel)] += light[channel] * basis;
     if (!fine) return;
     const SecondOrder more = second_order(normal);
+    SecondOrders::Numbers& numbers = second.made();
     for (std::size_t channel = 0; channel < 3; ++channel)
       for (std::size_t i = 0; i < more.size(); ++i)
-        second[channel][i] += 5.0F * light[static_cast<int>(channel)] * more[i];
+        numbers[channel][i] += 5.0F * light[static_cast<int>(channel)] * more[i];
   }
 };
 
 inline Coefficients operator*(Coefficients coefficients, const glm::vec3& by) {
   for (std::size_t channel = 0; channel < 3; ++channel) {
     coefficients.channels[channel] *= by[static_cast<int>(channel)];
-    for (float& number : coefficients.second[channel]) number *= by[static_cast<int>(channel)];
+    if (coefficients.second.get() != nullptr)
+      for (float& number : coefficients.second.made()[channel]) number *= by[static_cast<int>(channel)];
   }
   return coefficients;
 }
@@ -64,7 +105,9 @@ inline Coefficients operator*(Coefficients coefficients, const glm::vec3& by) {
 inline Coefficients operator+(Coefficients a, const Coefficients& b) {
   for (std::size_t channel = 0; channel < 3; ++channel) {
     a.channels[channel] += b.channels[channel];
-    for (std::size_t i = 0; i < b.second[channel].size(); ++i) a.second[channel][i] += b.second[channel][i];
+    if (b.second.get() == nullptr) continue;
+    SecondOrder& sum = a.second.made()[channel];
+    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += (*b.second.get())[channel][i];
   }
   return a;
 }
@@ -77,8 +120,9 @@ inline glm::vec3 product(const Coefficients& a, const Coefficients& b) {
   for (std::size_t channel = 0; channel < 3; ++channel) {
     float& of_channel = sum[static_cast<int>(channel)];
     of_channel = glm::dot(a.channels[channel], b.channels[channel]);
-    for (std::size_t i = 0; i < a.second[channel].size(); ++i)
-      of_channel += a.second[channel][i] * b.second[channel][i];
+    if (a.second.get() == nullptr || b.second.get() == nullptr) continue;
+    const SecondOrder& of_a = (*a.second.get())[channel];
+    for (std::size_t i = 0; i < of_a.size(); ++i) of_channel += of_a[i] * (*b.second.get())[channel][i];
   }
   return sum;
 }

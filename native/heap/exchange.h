@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "heap/coefficients.h"
@@ -72,6 +73,7 @@ struct HeapLight {
   Field scattered;
   Field scattered_answer;
   Patches patches;
+  std::optional<Neighbourhood> neighbourhood{};  ///< of its grains, where they were not moved since
   std::vector<Kind> kinds;
   std::size_t links = 0;
   int steps = 0;

@@ -68,7 +68,7 @@ struct Gather::Found {
   Found(Heap of, std::shared_ptr<const HeapLight> its_light)
       : heap(std::move(of)),
         light(std::move(its_light)),
-        space(heap.grains, light->kinds, light->seats, light->patches) {}
+        space(heap.grains, light->kinds, light->seats, light->patches, light->neighbourhood) {}
 
   Heap heap;
   std::shared_ptr<const HeapLight> light;

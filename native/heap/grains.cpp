@@ -36,6 +36,7 @@ struct Neighbourhood::Device {
   Device& operator=(const Device&) = delete;
 
   void add_grains(const std::vector<Grain>& grains) {
+    spheres.reserve(grains.size());
     for (const Grain& grain : grains) spheres.emplace_back(grain.middle, grain.radius);
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_SPHERE_POINT);
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, spheres.data(), 0,

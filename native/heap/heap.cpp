@@ -57,16 +57,17 @@ std::vector<Kind> kinds_of(const std::vector<Optics>& of, int most_walks, const 
 Patches patches_about(const Grains& grains) { return {grains, fewest_nodes + grains.grains.size() / 4}; }
 
 Space::Space(const Grains& grains, const std::vector<Kind>& kinds, std::shared_ptr<const Seats> seats)
-    : Space(grains, kinds, std::move(seats), patches_about(grains)) {}
+    : Space(grains, kinds, std::move(seats), patches_about(grains), std::nullopt) {}
 
-Space::Space(const Grains& grains, const std::vector<Kind>& kinds, std::shared_ptr<const Seats> seats, Patches patches)
+Space::Space(const Grains& grains, const std::vector<Kind>& kinds, std::shared_ptr<const Seats> seats, Patches patches,
+             const std::optional<Neighbourhood>& neighbourhood)
     : grains_(grains.grains),
       walls_(grains.walls),
       panes_(grains.panes),
       kinds_(kinds),
       seats_(seats ? std::move(seats) : std::make_shared<const Seats>(grains.grains.size())),
       patches_(std::move(patches)),
-      neighbourhood_(grains) {}
+      neighbourhood_(neighbourhood ? *neighbourhood : Neighbourhood(grains)) {}
 
 bool Space::is_open(std::uint32_t grain, float far) const {
   for (int x = -1; x <= 1; ++x)

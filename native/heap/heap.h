@@ -72,8 +72,9 @@ class Space {
  public:
   Space(const Grains& grains, const std::vector<Kind>& kinds, std::shared_ptr<const Seats> seats = nullptr);
 
-  /// With grids that are known.
-  Space(const Grains& grains, const std::vector<Kind>& kinds, std::shared_ptr<const Seats> seats, Patches patches);
+  /// With grids that are known, and `neighbourhood`, if that is.
+  Space(const Grains& grains, const std::vector<Kind>& kinds, std::shared_ptr<const Seats> seats, Patches patches,
+        const std::optional<Neighbourhood>& neighbourhood);
 
   /// From now on what they send out is told by these; else each grain has a seat of its own.
   void seat(std::shared_ptr<const Seats> seats) { seats_ = std::move(seats); }
@@ -83,6 +84,7 @@ class Space {
   const Kind& kind(std::uint32_t grain) const { return kinds_[grains_[grain].kind]; }
   const Kind& kind(const Patches::Node& node) const { return kinds_[walls_[node.wall].kind]; }
   const Patches& patches() const { return patches_; }
+  const Neighbourhood& neighbourhood() const { return neighbourhood_; }
 
   bool any_clear() const { return heap::any_clear(kinds_); }
 

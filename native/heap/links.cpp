@@ -476,7 +476,7 @@ Deep find_deep(const Space& space, int ways, const transport::Effort& effort) {
 Links find_links(const Space& space, const Rays& rays, const glm::vec3& radiance, Lit& lit,
                  const transport::Effort& effort) {
   const std::size_t count = space.size();
-  Links links{std::vector<std::vector<Link>>(count), {}, Openness(space.seats()->answering()), space.seats(), {}};
+  Links links{std::vector<std::vector<Link>>(count), {}, Openness(space.seats()->own()), space.seats(), {}};
   bool any_fine = false;
   if (space.any_clear()) links.scattered.resize(count);
   for (std::size_t i = 0; i < count; ++i) {

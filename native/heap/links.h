@@ -30,7 +30,7 @@ struct Change {
   std::vector<glm::vec3> received;  ///< how much more comes to others of what each sends out
 };
 
-/// Of each grain that answers, the share of the world in what is seen through it unscattered: straight, by
+/// Of each grain in a seat of its own, the share of the world in what is seen through it unscattered: straight, by
 /// look_through(), or refracted, by GrainTable::seen_place(), as what it sends out is told.
 using Openness = std::vector<Share>;
 

@@ -52,10 +52,11 @@ double share_done(float begun, float left, float enough) {
 
 }  // namespace
 
-Solved solve(const Links& links, const Change* change, const Field& direct, const Field& guess, const Goal& goal,
+Solved solve(const Links& links, const Change* change, const Field& direct, Field guess, const Goal& goal,
              const transport::Effort& effort) {
   Solved solved;
-  solved.sent = guess.size() == direct.size() ? guess : direct;
+  if (guess.size() != direct.size()) guess = direct;
+  solved.sent = std::move(guess);
   transport::Effort quiet = effort;
   quiet.progress = {};
   // a - G a

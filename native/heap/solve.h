@@ -21,7 +21,7 @@ struct Goal {
 
 /// From `guess`, which may be of any size, to the `goal`. All fields as Seats tell them. `change`: as for
 /// Links::gather().
-Solved solve(const Links& links, const Change* change, const Field& direct, const Field& guess, const Goal& goal,
+Solved solve(const Links& links, const Change* change, const Field& direct, Field guess, const Goal& goal,
              const transport::Effort& effort);
 
 }  // namespace mesograin::heap

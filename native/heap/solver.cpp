@@ -324,11 +324,12 @@ HeapLight Solver::solve(const Heap& heap, const Quality& given, const transport:
   find_matter(heap.grains, given, transport::part_of(effort, 0.0, 0.1));
   const Quality quality = within_memory(given);
   find_ways(quality, transport::part_of(effort, 0.1, 0.5));
-  const Lit lit = find_direct(heap, quality, transport::part_of(effort, 0.5, 0.7));
+  Lit lit = find_direct(heap, quality, transport::part_of(effort, 0.5, 0.7));
   std::optional<Change> change;
   if (traced_->matter->grains != matter_->grains) change = change_from(*traced_->matter);
-  Field first(lit.direct.size());
-  for (std::size_t i = 0; i < first.size(); ++i) first[i] = lit.direct[i] + lit.crossed[i];
+  Field first = std::move(lit.crossed);
+  for (std::size_t i = 0; i < first.size(); ++i) first[i] = lit.direct[i] + first[i];
+  if (heap.straight_elsewhere) lit.direct = first;
   // Where a few grains have moved, what the solution before has left everywhere else is none of their doing.
   const bool few_moved = parts_.renewed != renewed_before && left_.size() == first.size();
   constexpr float left_of_moves = 0.02F;
@@ -344,9 +345,10 @@ HeapLight Solver::solve(const Heap& heap, const Quality& given, const transport:
   light.crossed = lights_crossed_;
   light.seats = traced_->ways.links.seats;
   light.patches = traced_->matter->space->patches();
+  light.neighbourhood = traced_->matter->space->neighbourhood();
   light.answer.resize(first.size());
   for (std::size_t i = 0; i < first.size(); ++i)
-    light.answer[i] = solved.sent[i] - (heap.straight_elsewhere ? lit.direct[i] + lit.crossed[i] : lit.direct[i]);
+    light.answer[i] = solved.sent[i] - lit.direct[i];
   if (change)
     change->answered.clear();  // no grain answers what is seen behind it, nor is a share of light more or less
   if (!lit.scattered.empty()) {

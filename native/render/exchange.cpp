@@ -244,11 +244,7 @@ void append(std::vector<glm::vec4>& numbers, const heap::Coefficients& coefficie
   numbers.insert(numbers.end(), coefficients.channels.begin(), coefficients.channels.end());
 }
 
-bool has_second_order(const heap::Coefficients& coefficients) {
-  return coefficients.second != std::array<heap::SecondOrder, 3>{};
-}
-
-void append_second_order(std::vector<glm::vec4>& numbers, const std::array<heap::SecondOrder, 3>& second,
+void append_second_order(std::vector<glm::vec4>& numbers, const heap::SecondOrders::Numbers& second,
                          const heap::SecondOrder& open) {
   for (std::size_t i = 0; i < open.size(); ++i) numbers.emplace_back(second[0][i], second[1][i], second[2][i], open[i]);
 }
@@ -534,10 +530,10 @@ void Exchange::send() {
     const Role& role = roles_[object];
     if (!role.grain || *role.grain >= known_grains || known_->light->seats->shares(*role.grain)) continue;
     const std::uint32_t seat = known_->light->seats->seat(*role.grain);
-    const heap::Coefficients& answer = known_->light->answer[seat];
-    if (!has_second_order(answer)) continue;
+    const heap::SecondOrders::Numbers* second = known_->light->answer[seat].second.get();
+    if (second == nullptr) continue;
     numbers[object_numbers * object + number_of_second_order].w = static_cast<float>(numbers.size());
-    append_second_order(numbers, answer.second, known_->light->open[seat].second);
+    append_second_order(numbers, *second, known_->light->open[seat].second);
   }
   device_.emplace(numbers);
 }
