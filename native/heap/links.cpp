@@ -19,18 +19,6 @@ namespace mesograin::heap {
 namespace {
 
 constexpr std::size_t grains_a_piece = 64;
-// Of what is seen places may be a half longer than normals.
-constexpr float whole = 16383.0F;
-
-void pack(const glm::vec3& normal, std::int16_t (&packed)[3]) {
-  for (int axis = 0; axis < 3; ++axis)
-    packed[axis] = static_cast<std::int16_t>(std::lround(whole * std::clamp(normal[axis], -2.0F, 2.0F)));
-}
-
-glm::vec3 unpacked(const std::int16_t (&packed)[3]) {
-  return glm::vec3(packed[0], packed[1], packed[2]) * (1.0F / whole);
-}
-
 float mean(const glm::vec3& colour) { return (colour.r + colour.g + colour.b) / 3.0F; }
 
 struct Departing {
@@ -172,12 +160,10 @@ Scattering weigh(const std::vector<Departing>& scattered, std::size_t count) {
 constexpr glm::vec3 nowhere(0.0F);
 
 Link link_to(const Source& source, const glm::vec3& weight, const glm::vec3& leaves_at) {
-  Link link{source.number, {}, {}, {}};
-  const glm::vec3 sent = weight / source.met;
-  pack(source.normal, link.sent_at);
-  pack(leaves_at, link.leaves_at);
-  for (int channel = 0; channel < 3; ++channel) link.weight[channel] = sent[channel];
-  return link;
+  const PackedPlace sent_at(source.normal);
+  const PackedPlace leaves(leaves_at);
+  transport::Random chance(source.number, (std::uint64_t{sent_at.bits()} << 32U) | leaves.bits());
+  return {source.number, sent_at, leaves, PackedWeight(weight / source.met, chance.bits())};
 }
 
 struct Ending {
@@ -347,6 +333,12 @@ Found found_by(const Space& space, std::size_t answering, const std::vector<Look
 Behind seen_behind(const Space& space, std::size_t answering, const std::vector<Look>& looks, std::uint64_t seed) {
   const std::uint64_t stream = stream_of(space, answering);
   Behind behind;
+  struct Met {
+    Source source;
+    glm::vec3 weight;
+    glm::vec3 look;
+  };
+  std::vector<Met> met;
   Opening opening;
   glm::vec3 all(0.0F);
   for (std::size_t i = 0; i < looks.size(); ++i) {
@@ -356,14 +348,15 @@ Behind seen_behind(const Space& space, std::size_t answering, const std::vector<
     all += weight;
     const glm::vec3 look = look_through(looks[i].normal, looks[i].towards);
     const std::optional<Source> source = space.follow(ray, random);
-    if (source) behind.links.push_back(link_to(*source, ray.weight, look));
+    if (source) met.push_back({*source, ray.weight, look});
     opening.add(mean(weight), source ? 0.0F : mean(ray.weight), look);
   }
-  for (Link& link : behind.links)
-    for (int channel = 0; channel < 3; ++channel)
-      link.weight[channel] *= all[channel] > 0.0F ? 1.0F / all[channel] : 0.0F;
+  glm::vec3 share(0.0F);
+  for (int channel = 0; channel < 3; ++channel)
+    if (all[channel] > 0.0F) share[channel] = 1.0F / all[channel];
+  behind.links.reserve(met.size());
+  for (const Met& one : met) behind.links.push_back(link_to(one.source, share * one.weight, one.look));
   behind.open = opening.share(false);
-  behind.links.shrink_to_fit();
   return behind;
 }
 
@@ -412,10 +405,10 @@ void gather_first(const Links& links, const First& first, const Factor& factor, 
       const std::vector<Link>& of = links.of[i];
       for (std::size_t j = 0; j < first(i); ++j) {
         const Link& link = of[j];
-        glm::vec3 weight(link.weight[0], link.weight[1], link.weight[2]);
+        glm::vec3 weight = link.weight.whole();
         if (change != nullptr) weight *= change->received[link.from];
-        const glm::vec3 light = links.seats->light_at(sent, link.from, unpacked(link.sent_at), !links.fine.empty());
-        const glm::vec3 leaves_at = unpacked(link.leaves_at);
+        const glm::vec3 light = links.seats->light_at(sent, link.from, link.sent_at.whole(), !links.fine.empty());
+        const glm::vec3 leaves_at = link.leaves_at.whole();
         sum.add(weight * light * factor(i, leaves_at), leaves_at, of_fine);
       }
       if (change != nullptr && !change->answered.empty()) sum = sum * change->answered[links.seats->number(i)];

@@ -10,6 +10,7 @@
 
 #include "heap/coefficients.h"
 #include "heap/heap.h"
+#include "heap/packed.h"
 
 namespace mesograin::heap {
 
@@ -19,9 +20,9 @@ class Moves;
 /// its own; of a node of walls, which sends out the same at every normal, it is 0.
 struct Link {
   std::uint32_t from;
-  std::int16_t sent_at[3];
-  std::int16_t leaves_at[3];
-  float weight[3];
+  PackedPlace sent_at;
+  PackedPlace leaves_at;
+  PackedWeight weight;
 };
 
 /// What light does at other materials that goes the same ways.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <limits>
+#include <map>
 #include <queue>
 #include <unordered_map>
 #include <utility>
@@ -17,6 +18,10 @@ namespace {
 constexpr double grains_a_cell = 16.0;
 constexpr std::size_t fewest_in_cell = 8;
 constexpr double packing = 0.6;
+
+// So many cells below those where grains begin to share, eight are one: of what lies there less is seen, and light
+// changes the less from place to place.
+constexpr float below_cells = 3.0F;
 
 // Of the slopes' own mean square, so that a few grains in one plane have none across it.
 constexpr double ridge = 0.01;
@@ -114,15 +119,29 @@ class Seats::Builder {
       }
     }
     seats.own_ = seats.answering_.size();
-    for (const std::uint32_t cell : order)
-      if (is_shared(cell)) add_cell(seats, cell);
+    std::map<std::uint64_t, std::vector<std::uint32_t>> eights;  // of cells, in the order of `order`
+    for (const std::uint32_t cell : order) eights[key_of(places_[cell] >> 1)].push_back(cell);
+    for (const auto& [key, cells] : eights) {
+      const bool one = std::all_of(cells.begin(), cells.end(), [&](std::uint32_t cell) {
+        return is_shared(cell) && depths_[cell] >= static_cast<float>(cells_below) + below_cells;
+      });
+      if (one) {
+        std::vector<std::uint32_t> members;
+        for (const std::uint32_t cell : cells)
+          members.insert(members.end(), members_[cell].begin(), members_[cell].end());
+        add_cell(seats, std::move(members), glm::vec3(2 * (places_[cells.front()] >> 1) + 1) * length_, 2.0F * length_);
+        continue;
+      }
+      for (const std::uint32_t cell : cells)
+        if (is_shared(cell)) add_cell(seats, members_[cell], (glm::vec3(places_[cell]) + 0.5F) * length_, length_);
+    }
   }
 
  private:
   /// Which half, half of that and so on along the three axes in turn, so that parts one after the other lie near.
-  unsigned part_of_cell(const glm::vec3& from_middle) const {
+  static unsigned part_of_cell(const glm::vec3& from_middle, float length) {
     glm::vec3 left = from_middle;
-    float half = 0.5F * length_;
+    float half = 0.5F * length;
     unsigned part = 0;
     for (int level = 0; level < 2; ++level) {
       half *= 0.5F;
@@ -152,19 +171,18 @@ class Seats::Builder {
         }
   }
 
-  void add_cell(Seats& seats, std::uint32_t cell) const {
-    std::vector<std::uint32_t> members = members_[cell];
-    const glm::vec3 middle = (glm::vec3(places_[cell]) + 0.5F) * length_;
+  /// `length`: of its sides.
+  void add_cell(Seats& seats, std::vector<std::uint32_t> members, const glm::vec3& middle, float length) const {
     // Of every part of the cell about as many answer for it: a fit to places side by side tells nothing of the others.
     std::stable_sort(members.begin(), members.end(), [&](std::uint32_t a, std::uint32_t b) {
-      return part_of_cell(grains_[a].middle - middle) < part_of_cell(grains_[b].middle - middle);
+      return part_of_cell(grains_[a].middle - middle, length) < part_of_cell(grains_[b].middle - middle, length);
     });
     double all = 0.0;
     std::vector<double> until;
     for (const std::uint32_t grain : members) {
       Seat& seat = seats.seats_[grain];
       seat.seat = in_cell | static_cast<std::uint32_t>(seats.cells_.size());
-      const glm::vec3 from_middle = 2.0F / length_ * (grains_[grain].middle - middle);
+      const glm::vec3 from_middle = 2.0F / length * (grains_[grain].middle - middle);
       for (int axis = 0; axis < 3; ++axis)
         seat.within[static_cast<std::size_t>(axis)] =
             static_cast<std::int8_t>(std::lround(side * std::clamp(from_middle[axis], -1.0F, 1.0F)));
