@@ -30,8 +30,8 @@ struct Quality {
 /// Where there are few grains, finer than the default, but with no more rays in all than 10^4 grains have there.
 Quality quality_for(std::size_t grains);
 
-/// As fine as the memory for so many seats allows, and so many more that answer for those that share: half a gigabyte
-/// for links.
+/// As fine as the memory for so many seats allows, and so many more that answer for those that share: a quarter of a
+/// gigabyte for links.
 Quality affordable(const Quality& quality, std::size_t seats, std::size_t sharing = 0);
 
 /// For a first picture of 10^4 grains or more.

@@ -34,8 +34,8 @@ class PackedPlace {
   std::uint32_t bits_ = 0;
 };
 
-/// Three channels, none below 0, with one exponent (Ward 1991, "Real pixels"): each to eight thousandths of the largest,
-/// rounded up as often as it is nearer to that, so that many weights that are all alike are right together.
+/// Three channels, none below 0, with one exponent (Ward 1991, "Real pixels"): each to eight thousandths of the
+/// largest, rounded up as often as it is nearer to that, so that many weights that are all alike are right together.
 class PackedWeight {
  public:
   /// `chance`: bits that say which way.

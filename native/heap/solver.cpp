@@ -347,8 +347,7 @@ HeapLight Solver::solve(const Heap& heap, const Quality& given, const transport:
   light.patches = traced_->matter->space->patches();
   light.neighbourhood = traced_->matter->space->neighbourhood();
   light.answer.resize(first.size());
-  for (std::size_t i = 0; i < first.size(); ++i)
-    light.answer[i] = solved.sent[i] - lit.direct[i];
+  for (std::size_t i = 0; i < first.size(); ++i) light.answer[i] = solved.sent[i] - lit.direct[i];
   if (change)
     change->answered.clear();  // no grain answers what is seen behind it, nor is a share of light more or less
   if (!lit.scattered.empty()) {

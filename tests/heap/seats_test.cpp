@@ -15,13 +15,13 @@ namespace {
 constexpr int side = 20;
 
 /// Of a lattice, whether a grain lies at its surface.
-bool outermost(const Grain& grain) {
+bool outermost(const Grain& grain, int across = side) {
   const glm::vec3 at = grain.middle / 2.05F;
-  return std::min({at.x, at.y, at.z}) < 0.5F || std::max({at.x, at.y, at.z}) > side - 1.5F;
+  return std::min({at.x, at.y, at.z}) < 0.5F || std::max({at.x, at.y, at.z}) > static_cast<float>(across) - 1.5F;
 }
 
-Seats seats_of(const std::vector<Grain>& grains, int cells_below = 1) {
-  return Seats(grains, cells_below, [&](std::uint32_t grain) { return outermost(grains[grain]); });
+Seats seats_of(const std::vector<Grain>& grains, int cells_below = 1, int across = side) {
+  return Seats(grains, cells_below, [&](std::uint32_t grain) { return outermost(grains[grain], across); });
 }
 
 Coefficients linear_at(const glm::vec3& place) {
@@ -51,6 +51,19 @@ TEST(Seats, TellWhatIsLinearAsItIs) {
     EXPECT_NEAR(seats.light_at(told, i, normal, false).g, light.first_at(normal).g, 1e-4F) << i;
   }
   EXPECT_EQ(seats.of(told, static_cast<std::uint32_t>(grains.size())).channels, linear_at(glm::vec3(7.0F)).channels);
+}
+
+// Eight cells are one there: of these 262 000 grains 183 000 answer.
+TEST(Seats, AreFewerTheDeeperGrainsLie) {
+  constexpr int across = 64;
+  const std::vector<Grain> grains = lattice(across, lambert(0.5)).grains.grains;
+  const Seats seats = seats_of(grains, 1, across);
+  EXPECT_LT(seats.answering(), grains.size() * 3 / 4);
+  Field answers;
+  for (std::size_t i = 0; i < seats.answering(); ++i) answers.push_back(linear_at(grains[seats.number(i)].middle));
+  const Field told = seats.told(std::move(answers));
+  for (std::uint32_t i = 0; i < grains.size(); ++i)
+    EXPECT_NEAR(seats.of(told, i).channels[1].w, linear_at(grains[i].middle).channels[1].w, 0.2F) << i;
 }
 
 TEST(Seats, AreSharedAsFarBelowTheSurfaceAsIsAskedFor) {
