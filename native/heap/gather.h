@@ -67,6 +67,9 @@ class Gather {
   /// stays below its surface.
   bool tells_inner_light(std::uint32_t grain) const;
 
+  /// Whether it does of any.
+  bool tells_any_inner_light() const;
+
   /// Adds so many walks that begin all over the surface of such a grain.
   void learn(std::uint32_t grain, const Facets& facets, int walks, transport::Random& random, InnerLight& light) const;
 

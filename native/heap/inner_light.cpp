@@ -64,11 +64,34 @@ void InnerLight::fit() {
   }
 }
 
-glm::vec3 InnerLight::at(const glm::vec3& place) const {
+glm::vec3 InnerLight::sum_at(const glm::vec3& place) const {
   const std::array<float, terms> there = basis(place);
   glm::vec3 light(0.0F);
   for (std::size_t i = 0; i < terms; ++i) light += there[i] * fitted_[i];
-  return glm::max(light, 0.0F);
+  return light;
+}
+
+glm::vec3 InnerLight::at(const glm::vec3& place) const { return glm::max(sum_at(place), 0.0F); }
+
+// A polynomial of order 3 is, on a line, the one through four of its places (Newton's forward differences).
+InnerLight::Line InnerLight::along(const glm::vec3& from, const glm::vec3& to) const {
+  const glm::vec3 step = (to - from) / 3.0F;
+  const glm::vec3 first = sum_at(from);
+  const glm::vec3 second = sum_at(from + step);
+  const glm::vec3 third = sum_at(from + 2.0F * step);
+  const glm::vec3 once = second - first;
+  const glm::vec3 twice = third - 2.0F * second + first;
+  const glm::vec3 thrice = sum_at(to) - 3.0F * third + 3.0F * second - first;
+  Line line;
+  for (int channel = 0; channel < 3; ++channel) {
+    const float a = once[channel];
+    const float b = 0.5F * twice[channel];
+    const float c = thrice[channel] / 6.0F;
+    // In steps a s + b s (s - 1) + c s (s - 1) (s - 2), three to the way.
+    line.terms_[static_cast<std::size_t>(channel)] = {first[channel], 3.0F * (a - b + 2.0F * c), 9.0F * (b - 3.0F * c),
+                                                      27.0F * c};
+  }
+  return line;
 }
 
 }  // namespace mesograin::heap

@@ -3,9 +3,11 @@
 // points; here all of a grain's walks are one regression).
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
 
 namespace mesograin::heap {
 
@@ -26,12 +28,28 @@ class InnerLight {
   /// What a walk of weight 1 after a scattering there finds later, on average.
   glm::vec3 at(const glm::vec3& place) const;
 
+  /// The same on a straight line.
+  class Line {
+   public:
+    /// `share`: of the way from its beginning to its end.
+    float at(float share, int channel) const {
+      const glm::vec4& is = terms_[static_cast<std::size_t>(channel)];
+      return std::max(is.x + share * (is.y + share * (is.z + share * is.w)), 0.0F);
+    }
+
+   private:
+    friend class InnerLight;
+    std::array<glm::vec4, 3> terms_;  // of each channel, from order 0 on
+  };
+  Line along(const glm::vec3& from, const glm::vec3& to) const;
+
  private:
   // To order 3.
   static constexpr std::size_t terms = 20;
   static constexpr std::size_t products = terms * (terms + 1) / 2;
 
   static std::array<float, terms> basis(const glm::vec3& place);
+  glm::vec3 sum_at(const glm::vec3& place) const;
 
   int walks_ = 0;
   int scatterings_ = 0;

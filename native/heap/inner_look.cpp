@@ -15,38 +15,58 @@
 namespace mesograin::heap {
 namespace {
 
-// Places of a view ray at which the polynomial is asked.
+// Places of a view ray, for each channel, at which the polynomial is asked.
 constexpr int nodes = 4;
 
-// At which the lights are.
+// And the lights are, for all.
 constexpr int lit_places = 2;
 
-/// Of a chord: places that are spread as the light of the channel with the longest ways is scattered there.
-class Places {
+/// The way of a view ray through a grain, whose channels are scattered at places of their own.
+class Chord {
  public:
-  Places(const glm::vec3& sigma_t, float chord)
-      : sigma_t_(sigma_t),
-        least_(std::max(std::min({sigma_t.r, sigma_t.g, sigma_t.b}), 1e-3F / std::max(chord, 1e-30F))),
-        within_(-std::expm1(-least_ * chord)) {}
+  Chord(const glm::vec3& sigma_t, float length)
+      : length_(length), sigma_t_(glm::max(sigma_t, glm::vec3(1e-6F / std::max(length, 1e-30F)))) {
+    for (int channel = 0; channel < 3; ++channel) within_[channel] = -std::expm1(-sigma_t_[channel] * length);
+  }
 
-  float distance(float u) const { return -std::log1p(-u * within_) / least_; }
+  float length() const { return length_; }
 
-  /// How much of the light is scattered or absorbed there, over how likely the place is.
-  glm::vec3 met(float distance) const { return sigma_t_ * glm::exp((least_ - sigma_t_) * distance) * within_ / least_; }
+  /// How much of each is scattered or absorbed.
+  const glm::vec3& within() const { return within_; }
+
+  /// Where one of them is, `u` uniform in [0, 1).
+  float distance(float u, int channel) const {
+    const float sigma_t = sigma_t_[channel];
+    // So few mean free paths that their exponential is a straight line.
+    const float flight = sigma_t * length_ > 1e-3F ? -std::log1p(-u * within_[channel]) / sigma_t : u * length_;
+    return std::min(flight, length_);
+  }
+
+  /// How much is there, over how likely the place is if each channel draws as often (Wilkie et al. 2014, eq. 6).
+  glm::vec3 met(float distance) const {
+    const glm::vec3 there = sigma_t_ * glm::exp(-sigma_t_ * distance);
+    const glm::vec3 density = there / within_;
+    return there * (3.0F / (density.r + density.g + density.b));
+  }
 
  private:
+  float length_;
   glm::vec3 sigma_t_;
-  float least_;
-  float within_;
+  glm::vec3 within_{0.0F};
 };
+
+bool tells(const Optics& optics) {
+  constexpr double thickest = 8.0;
+  return optics.transparent() && optics.followed() && optics.g == 0.0 &&
+         std::max({optics.sigma_t.r, optics.sigma_t.g, optics.sigma_t.b}) <= thickest;
+}
 
 }  // namespace
 
-bool Gather::tells_inner_light(std::uint32_t grain) const {
-  constexpr double thickest = 8.0;
-  const Optics& optics = this->optics(grain);
-  return optics.transparent() && optics.followed() && optics.g == 0.0 &&
-         std::max({optics.sigma_t.r, optics.sigma_t.g, optics.sigma_t.b}) <= thickest;
+bool Gather::tells_inner_light(std::uint32_t grain) const { return tells(optics(grain)); }
+
+bool Gather::tells_any_inner_light() const {
+  return std::any_of(heap_.grains.kinds.begin(), heap_.grains.kinds.end(), tells);
 }
 
 void Gather::learn(std::uint32_t number, const Facets& facets, int walks, transport::Random& random,
@@ -100,20 +120,25 @@ Gather::All Gather::seen_in(const SeenFacet& seen, const End& across, const Inne
                             transport::Random& random) const {
   const Grain& grain = space_.grains()[seen.grain];
   const Optics& optics = this->optics(seen.grain);
-  const Places places(glm::vec3(optics.sigma_t) / grain.radius_of_kind(), across.distance);
+  const Chord chord(glm::vec3(optics.sigma_t) / grain.radius_of_kind(), across.distance);
   const glm::vec3 albedo(optics.albedo);
+  const auto from_middle = [&](float distance) {
+    return (seen.place - distance * seen.towards - grain.middle) / grain.radius;
+  };
   All all;
-  for (int i = 0; i < nodes; ++i) {
-    const float distance = places.distance((static_cast<float>(i) + 0.5F) / nodes);
-    const glm::vec3 at = (seen.place - distance * seen.towards - grain.middle) / grain.radius;
-    all.steady += albedo * places.met(distance) * light.at(at);
-  }
-  all.steady /= static_cast<float>(nodes);
+  const InnerLight::Line line = light.along(from_middle(0.0F), from_middle(chord.length()));
+  for (int i = 0; i < nodes; ++i)
+    for (int channel = 0; channel < 3; ++channel) {
+      const float distance = chord.distance((static_cast<float>(i) + 0.5F) / nodes, channel);
+      all.steady[channel] += line.at(distance / std::max(chord.length(), 1e-30F), channel);
+    }
+  all.steady *= albedo * chord.within() / static_cast<float>(nodes);
   std::vector<Asking> asking = this->asking(seen.grain, random);
   for (int i = 0; i < lit_places; ++i) {
-    const float distance = places.distance((static_cast<float>(i) + random.uniform()) / lit_places);
+    const int channel = std::min(static_cast<int>(3.0F * random.uniform()), 2);
+    const float distance = chord.distance((static_cast<float>(i) + random.uniform()) / lit_places, channel);
     const glm::vec3 at = seen.place - distance * seen.towards;
-    const glm::vec3 weight = albedo * places.met(distance);
+    const glm::vec3 weight = albedo * chord.met(distance);
     for (Asking& of : asking)
       if (const std::optional<WayOut> out = way_out(seen.grain, at, of.to_light(), facets))
         of.ask(out->left * of.scattered(static_cast<float>(optics.g), -seen.towards, weight), out->place, random);

@@ -40,6 +40,26 @@ TEST(InnerLight, IsThePolynomialThatItIs) {
   }
 }
 
+TEST(InnerLight, IsTheSameOnALine) {
+  Random random(5, 0);
+  InnerLight light;
+  for (int i = 0; i < 2000; ++i) {
+    const glm::vec3 place = in_ball(random);
+    light.add(place, glm::vec3(1.0F), cubic(place));
+  }
+  light.fit();
+  for (int i = 0; i < 100; ++i) {
+    const glm::vec3 from = in_ball(random);
+    const glm::vec3 to = in_ball(random);
+    const InnerLight::Line line = light.along(from, to);
+    for (const float share : {0.0F, 0.2F, 0.55F, 0.9F, 1.0F}) {
+      const glm::vec3 there = light.at(from + share * (to - from));
+      for (int channel = 0; channel < 3; ++channel)
+        EXPECT_NEAR(line.at(share, channel), there[channel], 2e-4F) << share;
+    }
+  }
+}
+
 TEST(InnerLight, IsTheMeanOfWhatIsNoise) {
   Random random(2, 0);
   InnerLight light;

@@ -25,6 +25,7 @@ def faceted(kind):
 
 def matched(radius, albedo=(0.95, 0.9, 0.8), **more):
     albedo = numpy.array(albedo)
+    radius = numpy.ones(3) * radius
     return native.Material(model="model_2", sigma_a=tuple(radius * (1.0 - albedo)), sigma_s=tuple(radius * albedo),
                            boundary="index_matched", **more)
 
@@ -86,7 +87,8 @@ def off(found, right):
 @pytest.mark.parametrize("mesh, radius, lights, exchange, share", [
     (faceted("sand"), 3.0, [SUN], "heaps", 0.75), (faceted("salt"), 4.0, [SUN], "heaps", 0.75),
     (ROUND, 3.0, [SUN], "heaps", 0.9), (faceted("sand"), 7.5, [SUN], "heaps", 0.9),
-    (faceted("sand"), 3.0, [], "heaps", 0.8), (faceted("sand"), 3.0, [SUN], "off", 0.85)])
+    (faceted("sand"), 3.0, [], "heaps", 0.8), (faceted("sand"), 3.0, [SUN], "off", 0.85),
+    (faceted("sand"), (0.3, 3.0, 7.5), [SUN], "heaps", 0.8)])
 def test_it_brings_the_next_picture_nearer(mesh, radius, lights, exchange, share):
     scene = heap(mesh, matched(radius), lights, exchange)
     right = truth(scene)
@@ -94,7 +96,7 @@ def test_it_brings_the_next_picture_nearer(mesh, radius, lights, exchange, share
     before = first(view)
     view.render(KNOWN_AFTER)
     after = first(view)
-    assert after.sum() == pytest.approx(right.sum(), rel=0.03)
+    numpy.testing.assert_allclose(after.sum((0, 1)), right.sum((0, 1)), rtol=0.03)
     assert off(after, right) < share * off(before, right)
 
 
