@@ -39,7 +39,7 @@ class InnerLight {
 
    private:
     friend class InnerLight;
-    std::array<glm::vec4, 3> terms_;  // of each channel, from order 0 on
+    std::array<glm::vec4, 3> terms_{};  // of each channel, from order 0 on
   };
   Line along(const glm::vec3& from, const glm::vec3& to) const;
 
