@@ -26,14 +26,21 @@ glm::vec3 cubic(const glm::vec3& p) {
   return {3.0F + p.x * p.y * p.z - p.y * p.y * p.y, 2.0F - p.z + 0.5F * p.x * p.x, 4.0F + p.x * p.x * p.y - p.z * p.z};
 }
 
-TEST(InnerLight, IsThePolynomialThatItIs) {
-  Random random(1, 0);
+/// Of as many scatterings of weight 1, `found(place)` after each.
+template <typename Found>
+InnerLight learnt(int scatterings, Random& random, const Found& found) {
   InnerLight light;
-  for (int i = 0; i < 20000; ++i) {
+  for (int i = 0; i < scatterings; ++i) {
     const glm::vec3 place = in_ball(random);
-    light.add(place, glm::vec3(1.0F), cubic(place));
+    light.add(place, glm::vec3(1.0F), found(place));
   }
   light.fit();
+  return light;
+}
+
+TEST(InnerLight, IsThePolynomialThatItIs) {
+  Random random(1, 0);
+  const InnerLight light = learnt(20000, random, cubic);
   for (int i = 0; i < 100; ++i) {
     const glm::vec3 place = in_ball(random);
     EXPECT_LT(glm::length(light.at(place) - cubic(place)), 0.02F);
@@ -42,12 +49,7 @@ TEST(InnerLight, IsThePolynomialThatItIs) {
 
 TEST(InnerLight, IsTheSameOnALine) {
   Random random(5, 0);
-  InnerLight light;
-  for (int i = 0; i < 2000; ++i) {
-    const glm::vec3 place = in_ball(random);
-    light.add(place, glm::vec3(1.0F), cubic(place));
-  }
-  light.fit();
+  const InnerLight light = learnt(2000, random, cubic);
   for (int i = 0; i < 100; ++i) {
     const glm::vec3 from = in_ball(random);
     const glm::vec3 to = in_ball(random);
@@ -62,12 +64,9 @@ TEST(InnerLight, IsTheSameOnALine) {
 
 TEST(InnerLight, IsTheMeanOfWhatIsNoise) {
   Random random(2, 0);
-  InnerLight light;
-  for (int i = 0; i < 20000; ++i) {
-    const glm::vec3 place = in_ball(random);
-    light.add(place, glm::vec3(1.0F), random.uniform() < 0.1F ? 10.0F * cubic(place) : glm::vec3(0.0F));
-  }
-  light.fit();
+  const InnerLight light = learnt(20000, random, [&](const glm::vec3& place) {
+    return random.uniform() < 0.1F ? 10.0F * cubic(place) : glm::vec3(0.0F);
+  });
   glm::vec3 off(0.0F);
   for (int i = 0; i < 1000; ++i) {
     const glm::vec3 place = in_ball(random);
@@ -107,12 +106,8 @@ TEST(InnerLight, IsEvenWhereLittleIsKnown) {
 
 TEST(InnerLight, IsNowhereLessThanNone) {
   Random random(4, 0);
-  InnerLight light;
-  for (int i = 0; i < 5000; ++i) {
-    const glm::vec3 place = in_ball(random);
-    light.add(place, glm::vec3(1.0F), glm::vec3(place.x > 0.7F ? 1.0F : 0.0F));
-  }
-  light.fit();
+  const InnerLight light =
+      learnt(5000, random, [](const glm::vec3& place) { return glm::vec3(place.x > 0.7F ? 1.0F : 0.0F); });
   for (int i = 0; i < 1000; ++i) {
     const glm::vec3 found = light.at(in_ball(random));
     EXPECT_GE(std::min({found.r, found.g, found.b}), 0.0F);
