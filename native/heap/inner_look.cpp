@@ -5,7 +5,7 @@
 #include <glm/common.hpp>
 #include <glm/exponential.hpp>
 #include <glm/geometric.hpp>
-#include <numbers>
+#include <vector>
 
 #include "heap/asking.h"
 #include "heap/gather.h"

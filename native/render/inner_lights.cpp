@@ -2,6 +2,7 @@
 #include "render/inner_lights.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <vector>
 
 #include "render/cast_work.h"

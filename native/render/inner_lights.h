@@ -2,7 +2,6 @@
 // samples, so that the first one of another picture, which a drag shows, needs no walks.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <unordered_map>
