@@ -466,43 +466,42 @@ Deep find_deep(const Space& space, int ways, const transport::Effort& effort) {
   return deep;
 }
 
-Links find_links(const Space& space, const Rays& rays, const glm::vec3& radiance, Lit& lit,
-                 const transport::Effort& effort) {
-  const std::size_t count = space.size();
-  Links links{std::vector<std::vector<Link>>(count), {}, Openness(space.seats()->own()), space.seats(), {}};
-  bool any_fine = false;
-  if (space.any_clear()) links.scattered.resize(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    links.fine.push_back(rays.fine(space, i));
-    any_fine = any_fine || links.fine.back();
-  }
-  if (!any_fine) links.fine.clear();
-  lit.direct.assign(count, {});
-  lit.crossed.assign(count, {});
-  lit.scattered.assign(links.scattered.size(), {});
-  for_each(count, effort, [&](std::size_t i) {
-    Found found =
-        found_by(space, i, looks_from(space, i, rays, effort.seed), rays.fine(space, i), radiance, effort.seed);
-    take(std::move(found), i, links, lit);
-  });
-  return links;
-}
-
 glm::vec3 look_through(const glm::vec3& normal, const glm::vec3& towards) {
   const float mu = std::max(glm::dot(normal, towards), 0.0F);
   return glm::normalize((2.0F * mu + 1.0F) * towards - normal);
 }
 
-Links find_behind(const Space& space, const Rays& rays, const transport::Effort& effort) {
-  Links behind{std::vector<std::vector<Link>>(space.size()), {}, Openness(space.seats()->own()), space.seats(), {}};
+void find_ways(const Space& space, const Rays& rays, const Rays& rays_through, const glm::vec3& radiance, Ways& ways,
+               const transport::Effort& effort) {
+  const std::size_t count = space.size();
+  const std::size_t own = space.seats()->own();
+  Links& links = ways.links;
+  Lit& lit = ways.world;
+  for (Links* each : {&links, &ways.behind}) {
+    each->of.resize(count);
+    each->open.resize(own);
+    each->seats = space.seats();
+  }
+  links.scattered.resize(space.any_clear() ? count : 0);
+  links.fine.assign(count, false);
+  bool any_fine = false;
+  for (std::size_t i = 0; i < count; ++i) any_fine = (links.fine[i] = rays.fine(space, i)) || any_fine;
+  if (!any_fine) links.fine.clear();
+  lit.direct.resize(count);
+  lit.crossed.resize(count);
+  lit.scattered.resize(links.scattered.size());
+  for_each(count, transport::part_of(effort, 0.0, 0.8), [&](std::size_t i) {
+    Found found =
+        found_by(space, i, looks_from(space, i, rays, effort.seed), rays.fine(space, i), radiance, effort.seed);
+    take(std::move(found), i, links, lit);
+  });
   const std::uint64_t seed = effort.seed + behind_seed;
   // What stands behind those that share is seen by nobody.
-  for_each(space.seats()->own(), effort, [&](std::size_t i) {
-    Behind found = seen_behind(space, i, looks_through(space, i, rays, seed), seed);
-    behind.of[i] = std::move(found.links);
-    behind.open[i] = found.open;
+  for_each(own, transport::part_of(effort, 0.8, 1.0), [&](std::size_t i) {
+    Behind found = seen_behind(space, i, looks_through(space, i, rays_through, seed), seed);
+    ways.behind.of[i] = std::move(found.links);
+    ways.behind.open[i] = found.open;
   });
-  return behind;
 }
 
 std::size_t renew(const Space& space, const Moves& moves, const Rays& rays, const Rays& rays_through,

@@ -89,25 +89,21 @@ struct Rays {
 /// Grains that no light leaves the heap from but by way of more than `ways` others, as far as a few rays of each tell.
 Deep find_deep(const Space& space, int ways, const transport::Effort& effort);
 
-/// `radiance` from outside the heap wherever a ray leaves it.
-Links find_links(const Space& space, const Rays& rays, const glm::vec3& radiance, Lit& lit,
-                 const transport::Effort& effort);
-
 /// By what four numbers know a look straight through a ball, at a normal and from a direction: halfway between that
 /// direction and the place, seen from behind, where the look leaves the ball; of all looks spread evenly. As
 /// shaders/heap/light_from_grains.glsl has it.
 glm::vec3 look_through(const glm::vec3& normal, const glm::vec3& towards);
 
-/// The light that is seen straight through transparent grains, by look_through(): what others send, 0 where no grain
-/// stands behind.
-Links find_behind(const Space& space, const Rays& rays, const transport::Effort& effort);
-
-/// What find_links() and find_behind() find.
 struct Ways {
   Links links;
-  Links behind;
-  Lit world;
+  Links behind;  ///< what is seen straight through transparent grains, by look_through(): 0 where no grain stands there
+  Lit world;     ///< what light does that comes from outside the heap
 };
+
+/// `radiance` from outside the heap wherever a ray leaves it. `ways`: none, or those of fewer rays of the same seats,
+/// told as finely, which make way one by one: where this is given up, they are partly the old ones.
+void find_ways(const Space& space, const Rays& rays, const Rays& rays_through, const glm::vec3& radiance, Ways& ways,
+               const transport::Effort& effort);
 
 /// Finds what a change of places may touch again, to the last bit as it is found from nothing in `space`. `ways`: those
 /// of the space before, found with as many rays; left as they are until all is found. Returns of how many grains and

@@ -50,6 +50,13 @@ class Seats {
     return number < grains_ ? seats_[number].seat : static_cast<std::uint32_t>(told() + number - grains_);
   }
 
+  /// Of a grain that shares: where its cell's numbers begin.
+  std::size_t first_of_cell(std::uint32_t grain) const { return first_of_cell(seats_[grain]); }
+
+  /// And its place in the cell, from the middle: so many times the square root of 3 over 127, along each axis, is what
+  /// the cell's second to fourth numbers are multiplied by.
+  const std::array<std::int8_t, 3>& place_in_cell(std::uint32_t grain) const { return seats_[grain].within; }
+
   /// What those that answer make known, as it is told.
   Field told(Field answers) const;
 

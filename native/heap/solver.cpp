@@ -29,11 +29,6 @@ bool is_small(const glm::vec3& change) {
          std::min({change.r, change.g, change.b}) * greatest_change >= 1.0F;
 }
 
-/// `field`: of all that answer.
-void scale(Field& field, const Seats& seats, const std::vector<glm::vec3>& by) {
-  for (std::size_t i = 0; i < field.size(); ++i) field[i] = field[i] * by[seats.number(i)];
-}
-
 glm::vec3 quotient(const glm::vec3& of, const glm::vec3& by) {
   glm::vec3 result(0.0F);
   for (int channel = 0; channel < 3; ++channel)
@@ -59,6 +54,12 @@ void scale_scattered(Field& field, const Links& links, const Grains& grains, con
 
 void add(Field& sum, const Field& of, const glm::vec3& by) {
   for (std::size_t i = 0; i < sum.size(); ++i) sum[i] = sum[i] + of[i] * by;
+}
+
+/// Of all that answer; `change`: of what each sends out; or null.
+void add(Field& sum, const Field& of, const Seats& seats, const Change* change, const glm::vec3& by) {
+  if (change == nullptr) return add(sum, of, by);
+  for (std::size_t i = 0; i < sum.size(); ++i) sum[i] = sum[i] + of[i] * (by * change->answered[seats.number(i)]);
 }
 
 // Of grains, that may have moved where seats are kept.
@@ -156,6 +157,8 @@ void Solver::find_matter(const Grains& grains, const Quality& quality, const tra
   auto matter = std::make_shared<Matter>();
   matter->grains = grains;
   matter->walks = quality.walks;
+  if (matter_ && matter_->space && same_places(matter_->grains, grains))
+    matter->neighbourhood = matter_->space->neighbourhood();
   if (matter_ && matter_->grains.kinds == grains.kinds && matter_->walks >= quality.walks) {
     matter->walks = matter_->walks;
     matter->kinds = matter_->kinds;
@@ -173,7 +176,7 @@ void Solver::find_matter(const Grains& grains, const Quality& quality, const tra
 
 const Space& Solver::space() {
   if (matter_->space) return *matter_->space;
-  Space space(matter_->grains, matter_->kinds, matter_->seats);
+  Space space(matter_->grains, matter_->kinds, matter_->seats, patches_about(matter_->grains), matter_->neighbourhood);
   if (matter_->cells_below > 0 && !matter_->seats) {
     constexpr float far = 12.0F;  // in radii
     const std::vector<Grain>& grains = matter_->grains.grains;
@@ -197,6 +200,16 @@ Deep Solver::find_deep(const transport::Effort& effort) {
   return matter_->grains.grains.size() < many ? nullptr : heap::find_deep(space(), ways, effort);
 }
 
+bool Solver::is_refined(const Matter& other) {
+  if (!space().seats()->shared() || other.seats != matter_->seats) return false;
+  const auto plain = [](const std::vector<Kind>& kinds) {
+    return std::none_of(kinds.begin(), kinds.end(),
+                        [](const Kind& kind) { return kind.from_viewer->is_clear() || kind.from_viewer->is_fine(); });
+  };
+  // Were this given up, links of two materials would be taken for those of one.
+  return plain(matter_->kinds) && other.grains == matter_->grains;
+}
+
 void Solver::find_ways(const Quality& quality, const transport::Effort& effort) {
   if (traced_ && serves(traced_->matter, traced_->rays.of_grain, quality.rays, quality)) return;
   constexpr glm::vec3 radiance(1.0F);
@@ -213,9 +226,10 @@ void Solver::find_ways(const Quality& quality, const transport::Effort& effort) 
     traced.rays.deep = traced.rays_through.deep = find_deep(transport::part_of(effort, 0.0, 0.1));
     traced.rays.of_deep = traced.rays_through.of_deep = quality.deep_rays;
   }
-  traced.ways.links =
-      find_links(space(), traced.rays, radiance, traced.ways.world, transport::part_of(effort, 0.1, 0.8));
-  traced.ways.behind = find_behind(space(), traced.rays_through, transport::part_of(effort, 0.8, 1.0));
+  const bool refines = traced_ && is_refined(*traced_->matter);
+  heap::find_ways(space(), traced.rays, traced.rays_through, radiance, refines ? traced_->ways : traced.ways,
+                  transport::part_of(effort, 0.1, 1.0));
+  if (refines) traced.ways = std::move(traced_->ways);
   traced_ = std::move(traced);
   ++parts_.links;
 }
@@ -246,19 +260,23 @@ const Solver::Source& Solver::find_source(Heap light, const Quality& quality, co
   }
   std::optional<Moves> moves;
   if (same != sources_.end() && same->rays.of_grain >= quality.light_rays) moves = moves_from(*same->matter);
+  const bool refines = same != sources_.end() && !moves && is_refined(*same->matter);
   if (moves) {
     source.rays = same->rays;
     source.lit = same->lit;
   } else {
-    source.lit = {Field(space().size()), Field(space().size()), Field(space().any_clear() ? space().size() : 0)};
     ++parts_.sources;
   }
-  find_direct_light(space(), source.light, source.rays, moves ? &*moves : nullptr, source.lit, effort);
+  if (!moves && !refines)
+    source.lit = {Field(space().size()), Field(space().size()), Field(space().any_clear() ? space().size() : 0)};
+  find_direct_light(space(), source.light, source.rays, moves ? &*moves : nullptr, refines ? same->lit : source.lit,
+                    effort);
+  if (refines) source.lit = std::move(same->lit);
   if (same == sources_.end()) return sources_.emplace_back(std::move(source));
   return *same = std::move(source);
 }
 
-Lit Solver::find_direct(const Heap& heap, const Quality& quality, const transport::Effort& effort) {
+Solver::Direct Solver::find_direct(const Heap& heap, const Quality& quality, const transport::Effort& effort) {
   std::vector<Heap> lights;
   for (const scene::Light& light : heap.lights) lights.push_back({{}, heap.anchor, {light}, {}});
   if (heap.world.image && heap.world.shines()) lights.push_back({{}, heap.anchor, {}, heap.world});
@@ -267,38 +285,36 @@ Lit Solver::find_direct(const Heap& heap, const Quality& quality, const transpor
   });
   const std::size_t count = traced_->ways.world.direct.size();
   Lit sum{Field(count), Field(count), Field(traced_->ways.world.scattered.size())};
-  const auto add_lit = [&](Lit lit, const Matter& with, const glm::vec3& by) {
-    if (with.grains != matter_->grains) {
-      const std::optional<Change> change = change_from(with);
-      scale(lit.direct, *with.space->seats(), change->answered);
-      scale(lit.crossed, *with.space->seats(), change->answered);
-    }
-    add(sum.direct, lit.direct, by);
-    add(sum.crossed, lit.crossed, by);
-    if (!lit.scattered.empty()) add(sum.scattered, lit.scattered, by);
+  const auto add_lit = [&](const Lit& lit, const Matter& with, const glm::vec3& by) {
+    std::optional<Change> change;
+    if (with.grains != matter_->grains) change = change_from(with);
+    add(sum.direct, lit.direct, *with.space->seats(), change ? &*change : nullptr, by);
+    add(sum.crossed, lit.crossed, *with.space->seats(), change ? &*change : nullptr, by);
   };
   for (std::size_t i = 0; i < lights.size(); ++i) {
     const auto all = static_cast<double>(lights.size());
     const transport::Effort part =
         transport::part_of(effort, static_cast<double>(i) / all, static_cast<double>(i + 1) / all);
     const Source& source = find_source(lights[i], quality, part);
-    Lit lit = source.lit;
-    if (!lit.scattered.empty()) {
-      const Matter& matter = *source.matter;
-      scale_scattered(lit.scattered, *matter.space->seats(), matter.grains, matter.kinds);
-    }
-    add_lit(std::move(lit), *source.matter, glm::vec3(1.0F));
+    const Matter& matter = *source.matter;
+    add_lit(source.lit, matter, glm::vec3(1.0F));
+    if (source.lit.scattered.empty()) continue;
+    Field scattered = source.lit.scattered;
+    scale_scattered(scattered, *matter.space->seats(), matter.grains, matter.kinds);
+    add(sum.scattered, scattered, glm::vec3(1.0F));
   }
   const Seats& seats = *traced_->ways.links.seats;
-  lights_crossed_ = seats.told(sum.crossed);
+  Field lights_crossed = seats.told(sum.crossed);
   if (!heap.world.image) {
-    Lit lit = traced_->ways.world;
-    if (!lit.scattered.empty())
-      scale_scattered(lit.scattered, traced_->ways.links, traced_->matter->grains, traced_->matter->kinds);
-    add_lit(std::move(lit), *traced_->matter, glm::vec3(heap.world.radiance));
+    add_lit(traced_->ways.world, *traced_->matter, glm::vec3(heap.world.radiance));
+    Field scattered = traced_->ways.world.scattered;
+    if (!scattered.empty())
+      scale_scattered(scattered, traced_->ways.links, traced_->matter->grains, traced_->matter->kinds);
+    add(sum.scattered, scattered, glm::vec3(heap.world.radiance));
   }
   Field scattered = sum.scattered.empty() ? Field() : seats.told(std::move(sum.scattered));
-  return {seats.told(std::move(sum.direct)), seats.told(std::move(sum.crossed)), std::move(scattered)};
+  return {{seats.told(std::move(sum.direct)), seats.told(std::move(sum.crossed)), std::move(scattered)},
+          std::move(lights_crossed)};
 }
 
 Quality Solver::within_memory(const Quality& quality) {
@@ -324,7 +340,7 @@ HeapLight Solver::solve(const Heap& heap, const Quality& given, const transport:
   find_matter(heap.grains, given, transport::part_of(effort, 0.0, 0.1));
   const Quality quality = within_memory(given);
   find_ways(quality, transport::part_of(effort, 0.1, 0.5));
-  Lit lit = find_direct(heap, quality, transport::part_of(effort, 0.5, 0.7));
+  auto [lit, lights_crossed] = find_direct(heap, quality, transport::part_of(effort, 0.5, 0.7));
   std::optional<Change> change;
   if (traced_->matter->grains != matter_->grains) change = change_from(*traced_->matter);
   Field first = std::move(lit.crossed);
@@ -342,7 +358,7 @@ HeapLight Solver::solve(const Heap& heap, const Quality& given, const transport:
   ++parts_.solutions;
   HeapLight light;
   light.kinds = matter_->kinds;
-  light.crossed = lights_crossed_;
+  light.crossed = std::move(lights_crossed);
   light.seats = traced_->ways.links.seats;
   light.patches = traced_->matter->space->patches();
   light.neighbourhood = traced_->matter->space->neighbourhood();

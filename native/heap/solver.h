@@ -31,6 +31,7 @@ class Solver {
     int cells_below = 0;                 ///< the surface, from where on grains share seats; 0: none do
     std::shared_ptr<const Seats> seats;  ///< where they do; those of a matter before, or found when rays are traced
     std::shared_ptr<const std::vector<Grain>> seated;  ///< where grains were when they were found
+    std::optional<Neighbourhood> neighbourhood;        ///< that of a matter before, if grains are where they were
     std::optional<Space> space;                        ///< of this; made when rays are traced
   };
 
@@ -50,6 +51,11 @@ class Solver {
     Lit lit;
   };
 
+  struct Direct {
+    Lit lit;        ///< as Seats tell it
+    Field crossed;  ///< of that, what is no even world's
+  };
+
   void take_seats(const Matter& of, Matter& by) const;
   void find_matter(const Grains& grains, const Quality& quality, const transport::Effort& effort);
   const Space& space();
@@ -60,8 +66,11 @@ class Solver {
 
   /// What was sent before, in the seats that there are now.
   Field guess() const;
+  /// Whether what rays find now takes the place of what they found with `other`, seat by seat: of so many there is no
+  /// memory for both.
+  bool is_refined(const Matter& other);
   void find_ways(const Quality& quality, const transport::Effort& effort);
-  Lit find_direct(const Heap& heap, const Quality& quality, const transport::Effort& effort);
+  Direct find_direct(const Heap& heap, const Quality& quality, const transport::Effort& effort);
   const Source& find_source(Heap light, const Quality& quality, const transport::Effort& effort);
 
   /// Whether what was found with `other` and this many rays serves.
@@ -76,8 +85,7 @@ class Solver {
   std::vector<Source> sources_;
   Field sent_;
   std::shared_ptr<const Seats> sent_seats_;
-  Field left_;            ///< that this leaves of its equations
-  Field lights_crossed_;  ///< of the last solution
+  Field left_;  ///< that this leaves of its equations
   Parts parts_;
 };
 

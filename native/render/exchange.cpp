@@ -19,10 +19,6 @@
 namespace mesograin::render {
 namespace {
 
-// As shaders/heap/light_from_grains.glsl counts.
-constexpr std::size_t object_numbers = 8;
-constexpr std::size_t number_of_second_order = 6;  // in its w
-
 /// What the exchange takes of a mesh for a grain.
 struct Shape {
   bool grain;
@@ -239,15 +235,6 @@ class Gatherer {
   heap::Grains alike_;  // whose kinds are those that kinds_ are told by
   std::vector<Kind> kinds_;
 };
-
-void append(std::vector<glm::vec4>& numbers, const heap::Coefficients& coefficients) {
-  numbers.insert(numbers.end(), coefficients.channels.begin(), coefficients.channels.end());
-}
-
-void append_second_order(std::vector<glm::vec4>& numbers, const heap::SecondOrders::Numbers& second,
-                         const heap::SecondOrder& open) {
-  for (std::size_t i = 0; i < open.size(); ++i) numbers.emplace_back(second[0][i], second[1][i], second[2][i], open[i]);
-}
 
 /// Whether light is followed into any grains of arrays.
 bool any_followed(const Content& content) {
@@ -476,66 +463,123 @@ ExchangeStatistics Exchange::statistics() const {
   return result;
 }
 
+namespace {
+
+/// As shaders/heap/light_from_grains.glsl reads them: all that is told of heaps, behind one vec4 of each object.
+class Packing {
+ public:
+  Packing(const heap::HeapLight& light, const heap::Grains& grains, std::size_t objects)
+      : light_(light), seats_(*light.seats) {
+    constexpr std::size_t numbers_of_seat = 7;
+    constexpr std::size_t numbers_of_term = 3;
+    numbers_.reserve(objects + numbers_of_seat * seats_.own() + numbers_of_term * (seats_.told() - seats_.own()) +
+                     light.patches.nodes().size());
+    numbers_.assign(objects, glm::vec4(-1.0F, 0.0F, 0.0F, 0.0F));
+    for (std::size_t kind = 0; kind < light.kinds.size(); ++kind)
+      add_kind(*light.kinds[kind].from_light, heap::of_others(grains.kinds[kind]));
+    for (std::uint32_t seat = 0; seat < seats_.own(); ++seat) add_seat(seat);
+    cells_begin_ = numbers_.size();
+    for (std::size_t term = seats_.own(); term < seats_.told(); ++term) add(light.answer[term]);
+    nodes_begin_ = numbers_.size();
+    for (std::size_t node = 0; node < light.patches.nodes().size(); ++node) {
+      const auto& channels = light.answer[seats_.told() + node].channels;
+      numbers_.emplace_back(channels[0].w, channels[1].w, channels[2].w, 0.0F);
+    }
+  }
+
+  void tell_grain(std::size_t object, std::uint32_t number, const heap::Grain& grain) {
+    glm::vec4& of = numbers_[object];
+    of = {kinds_[grain.kind], 0.0F, grain.radius, 0.0F};
+    if (!seats_.shares(number)) {
+      const Told& told = told_[seats_.seat(number)];
+      of.y = static_cast<float>(told.second_order);
+      of.w = static_cast<float>(told.first);
+      return;
+    }
+    std::uint32_t place = 0;
+    for (int axis = 0; axis < 3; ++axis)
+      place |= static_cast<std::uint32_t>(128 + seats_.place_in_cell(number)[static_cast<std::size_t>(axis)])
+               << (8 * axis);
+    of.y = static_cast<float>(place);
+    of.w = -static_cast<float>(cells_begin_ + 3 * (seats_.first_of_cell(number) - seats_.own()));
+  }
+
+  void tell_wall(std::size_t object, std::uint32_t number, const heap::Wall& wall) {
+    numbers_[object] = {kinds_[wall.kind], number, 0.0F, 0.0F};
+  }
+
+  /// Where the values of the walls' nodes are.
+  std::size_t nodes_begin() const { return nodes_begin_; }
+
+  const std::vector<glm::vec4>& numbers() const { return numbers_; }
+
+ private:
+  /// Where.
+  struct Told {
+    std::uint32_t first;
+    std::uint32_t second_order;  ///< 0: there is none
+  };
+
+  void add(const heap::Coefficients& coefficients) {
+    numbers_.insert(numbers_.end(), coefficients.channels.begin(), coefficients.channels.end());
+  }
+
+  void add_kind(const heap::GrainTable& table, const heap::Optics& optics) {
+    kinds_.push_back(static_cast<float>(numbers_.size()));
+    // What is not transparent lets nothing through.
+    const std::vector<glm::vec2>& offsets = table.came_in().offsets();
+    numbers_.emplace_back(optics.transparent() ? glm::vec3(optics.sigma_t) : glm::vec3(1e30F),
+                          offsets.empty() ? 0.0F : table.seen_place_scale());
+    const std::size_t lobe = numbers_.size();
+    for (const glm::vec3& node : table.lobe()) numbers_.emplace_back(node, 0.0F);
+    numbers_[lobe].w = table.seen_by().x;
+    numbers_[lobe + 1].w = table.seen_by().y;
+    for (std::size_t pair = 0; pair < offsets.size(); pair += 2)
+      numbers_.emplace_back(offsets[pair], offsets[pair + 1]);
+  }
+
+  void add_seat(std::uint32_t seat) {
+    told_.push_back({static_cast<std::uint32_t>(numbers_.size()), 0});
+    add(light_.answer[seat]);
+    add(light_.behind[seat]);
+    numbers_.push_back(light_.open[seat].first);
+    const heap::SecondOrders::Numbers* second = light_.answer[seat].second.get();
+    if (second == nullptr) return;
+    told_.back().second_order = static_cast<std::uint32_t>(numbers_.size());
+    const heap::SecondOrder& open = light_.open[seat].second;
+    for (std::size_t i = 0; i < open.size(); ++i)
+      numbers_.emplace_back((*second)[0][i], (*second)[1][i], (*second)[2][i], open[i]);
+  }
+
+  const heap::HeapLight& light_;
+  const heap::Seats& seats_;
+  std::vector<glm::vec4> numbers_;
+  std::vector<float> kinds_;  // where they are
+  std::vector<Told> told_;    // of seats of one grain
+  std::size_t cells_begin_ = 0;
+  std::size_t nodes_begin_ = 0;
+};
+
+}  // namespace
+
 void Exchange::send() {
   if (!any()) return;
-  std::vector<glm::vec4> numbers;
-  numbers.reserve(roles_.size() * object_numbers);
-  const std::size_t kinds_begin = roles_.size() * object_numbers;
-  std::vector<std::size_t> places_of_kinds;
-  std::size_t next = kinds_begin;
-  for (std::size_t kind = 0; known_ && kind < known_->light->kinds.size(); ++kind) {
-    places_of_kinds.push_back(next);
-    next += heap::GrainTable::lobe_nodes + 1 + known_->light->kinds[kind].from_light->came_in().offsets().size() / 2;
+  if (!known_) {
+    device_walls_.emplace(heap::Patches().packed(0));
+    device_.emplace(std::vector<glm::vec4>(roles_.size(), glm::vec4(-1.0F, 0.0F, 0.0F, 0.0F)));
+    return;
   }
-  const std::size_t known_grains = known_ ? known_->grains().grains.size() : 0;
-  const std::size_t known_walls = known_ ? known_->grains().walls.size() : 0;
-  const auto place_of_kind = [&](std::uint32_t kind) { return static_cast<float>(places_of_kinds[kind]); };
-  for (const Role& role : roles_) {
-    // A grain that has just come is dark for a moment.
-    const bool lit = role.grain && *role.grain < known_grains;
-    append(numbers, lit ? known_->light->seats->of(known_->light->answer, *role.grain) : heap::Coefficients{});
-    append(numbers, lit ? known_->light->seats->of(known_->light->behind, *role.grain) : heap::Coefficients{});
-    glm::vec4 which(-1.0F);
-    if (lit) {
-      const heap::Grain& grain = known_->grains().grains[*role.grain];
-      which = {place_of_kind(grain.kind), -1.0F, grain.radius, 0.0F};
-    }
-    if (role.wall && *role.wall < known_walls)
-      which = {place_of_kind(known_->grains().walls[*role.wall].kind), *role.wall, 0.0F, 0.0F};
-    numbers.push_back(which);
-    const bool open = lit && !known_->light->seats->shares(*role.grain);
-    numbers.push_back(open ? known_->light->open[known_->light->seats->seat(*role.grain)].first : glm::vec4(0.0F));
-  }
-  for (std::size_t kind = 0; known_ && kind < known_->light->kinds.size(); ++kind) {
-    const heap::Optics optics = heap::of_others(known_->grains().kinds[kind]);
-    // What is not transparent lets nothing through.
-    const heap::GrainTable& table = *known_->light->kinds[kind].from_light;
-    const std::vector<glm::vec2>& offsets = table.came_in().offsets();
-    numbers.emplace_back(optics.transparent() ? glm::vec3(optics.sigma_t) : glm::vec3(1e30F),
-                         offsets.empty() ? 0.0F : table.seen_place_scale());
-    const std::size_t lobe = numbers.size();
-    for (const glm::vec3& node : table.lobe()) numbers.emplace_back(node, 0.0F);
-    numbers[lobe].w = table.seen_by().x;
-    numbers[lobe + 1].w = table.seen_by().y;
-    for (std::size_t pair = 0; pair < offsets.size(); pair += 2) numbers.emplace_back(offsets[pair], offsets[pair + 1]);
-  }
-  const heap::Patches none;
-  const heap::Patches& patches = known_ ? known_->light->patches : none;
-  device_walls_.emplace(patches.packed(static_cast<std::uint32_t>(numbers.size())));
-  for (std::size_t node = 0; node < patches.nodes().size(); ++node) {
-    const auto& channels = known_->light->answer[known_->light->seats->told() + node].channels;
-    numbers.emplace_back(channels[0].w, channels[1].w, channels[2].w, 0.0F);
-  }
+  const heap::Grains& grains = known_->grains();
+  Packing packing(*known_->light, grains, roles_.size());
   for (std::size_t object = 0; object < roles_.size(); ++object) {
     const Role& role = roles_[object];
-    if (!role.grain || *role.grain >= known_grains || known_->light->seats->shares(*role.grain)) continue;
-    const std::uint32_t seat = known_->light->seats->seat(*role.grain);
-    const heap::SecondOrders::Numbers* second = known_->light->answer[seat].second.get();
-    if (second == nullptr) continue;
-    numbers[object_numbers * object + number_of_second_order].w = static_cast<float>(numbers.size());
-    append_second_order(numbers, *second, known_->light->open[seat].second);
+    // A grain that has just come is dark for a moment.
+    if (role.grain && *role.grain < grains.grains.size())
+      packing.tell_grain(object, *role.grain, grains.grains[*role.grain]);
+    if (role.wall && *role.wall < grains.walls.size()) packing.tell_wall(object, *role.wall, grains.walls[*role.wall]);
   }
-  device_.emplace(numbers);
+  device_walls_.emplace(known_->light->patches.packed(static_cast<std::uint32_t>(packing.nodes_begin())));
+  device_.emplace(packing.numbers());
 }
 
 }  // namespace mesograin::render

@@ -1,5 +1,5 @@
 // Light from grain to grain in a view: solved beside the device's thread when grains, materials or lights have changed,
-// and then four numbers a channel for each object that shaders add to what the lights do.
+// and then four numbers a channel for each seat that shaders add to what the lights do.
 #pragma once
 
 #include <cstddef>

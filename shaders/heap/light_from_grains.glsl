@@ -7,16 +7,19 @@
 #include "render/bindings.glsl"
 
 #ifdef EXCHANGE
-// Of each object: red, green and blue of what it answers, and of what is seen straight through it (xyz: the slope over the normal or the look,
-// w: the mean over all of them); x: where its kind is, y: which wall it is, if any, z: its radius, w: where the second order of
-// what it answers is, or 0; how much of the world is seen through it (xyz: the slope, w: the mean; their second
-// order is in the w of that). Of each kind: mean free paths across its
-// radius, and whether it is known where light comes in (models/entries.glsl); the lobe of its answer at the middles of intervals of the cosine
-// (w of the first two: how much of the normal and of the direction to the viewer is in seen_place, of what is not transparent); those entries.
+// Of each object: x: where its kind is, or -1; z: its radius; w: where what is told of it is, of a grain with a seat of its own; less than 0, of
+// one that shares a cell's; 0, of a wall. y: of a wall, which it is; of a grain with a seat of its own, where the second order of what it
+// answers is, or 0; of one that shares, where in the cell it is (heap/seats.h): of three numbers of 8 bits, 128 is the middle.
+// Of each kind: mean free paths across its radius, and whether it is known where light comes in (models/entries.glsl); the lobe of its answer at
+// the middles of intervals of the cosine (w of the first two: how much of the normal and of the direction to the viewer is in seen_place, of
+// what is not transparent); those entries.
+// Of each seat of one grain: red, green and blue of what it answers, and of what is seen straight through it (xyz: the slope over the normal or
+// the look, w: the mean over all of them); how much of the world is seen through it (the same); their second order, if any: rgb of what it
+// answers, w of the world. Of each cell: what its middle answers, and how that grows along three axes.
 layout(std430, binding = HEAP_LIGHT_BINDING) readonly buffer HeapLight { vec4 heap_light[]; };
 
-const int OBJECT_NUMBERS = 8;
 const int LOBE_NODES = 16;
+const int OPEN_NUMBER = 6;  // of a seat
 #endif
 
 #include "heap/light_of_walls.glsl"
@@ -25,6 +28,14 @@ const int LOBE_NODES = 16;
 vec3 light_at_normal(int first, vec3 normal) {
   vec4 basis = vec4(normal, 1.0);
   return vec3(dot(heap_light[first], basis), dot(heap_light[first + 1], basis), dot(heap_light[first + 2], basis));
+}
+
+// As heap::Seats::of.
+vec3 light_of_cell_at(int first, float packed_place, vec3 normal) {
+  uint place = uint(packed_place);
+  vec3 in_cell = sqrt(3.0) / 127.0 * (vec3(place & 255u, (place >> 8u) & 255u, place >> 16u) - 128.0);
+  return light_at_normal(first, normal) + in_cell.x * light_at_normal(first + 3, normal) + in_cell.y * light_at_normal(first + 6, normal) +
+         in_cell.z * light_at_normal(first + 9, normal);
 }
 
 // As heap::second_order.
@@ -52,25 +63,26 @@ vec3 seen_place(int kind, vec3 normal, vec3 to_viewer, float mu) {
 vec3 look_through(vec3 normal, vec3 to_viewer, float mu) { return normalize((2.0 * mu + 1.0) * to_viewer - normal); }
 
 // Radiance towards a viewer; of a wall at `place` in the heap.
-vec3 light_from_grains(int object, vec3 place, vec3 normal, vec3 to_viewer) {
+vec3 light_from_grains(int object_number, vec3 place, vec3 normal, vec3 to_viewer) {
 #ifdef GATHERED
   vec4 found = texelFetch(gathered, ivec2(gl_FragCoord.xy), 0);
   if (found.w > 0.0) return found.rgb;
 #endif
-  int first = OBJECT_NUMBERS * object;
-  int kind = int(heap_light[first + 6].x);
-  int wall = int(heap_light[first + 6].y);
+  vec4 object = heap_light[object_number];
+  int kind = int(object.x);
   if (kind < 0) return vec3(0.0);
   float mu = max(dot(normal, to_viewer), 0.0);  // a bent normal may look away
   float node = clamp(mu * float(LOBE_NODES) - 0.5, 0.0, float(LOBE_NODES - 1));
   int below = min(int(node), LOBE_NODES - 2);
   vec3 lobe = mix(heap_light[kind + 1 + below].rgb, heap_light[kind + 2 + below].rgb, node - float(below));
-  if (wall >= 0) return lobe * light_of_wall(wall, place, normal);
+  if (object.w == 0.0) return lobe * light_of_wall(int(object.y), place, normal);
+  vec3 seen = seen_place(kind, normal, to_viewer, mu);
+  int first = int(abs(object.w));
+  if (object.w < 0.0) return lobe * max(light_of_cell_at(first, object.y, seen), vec3(0.0));
   vec3 crossing = exp(-2.0 * mu * heap_light[kind].rgb);
   vec3 through = look_through(normal, to_viewer, mu);
-  vec3 seen = seen_place(kind, normal, to_viewer, mu);
   vec3 answer = light_at_normal(first, seen);
-  int second = int(heap_light[first + 6].w);
+  int second = int(object.y);
   if (second > 0) answer += second_order_at(second, seen);
   return lobe * max(answer, vec3(0.0)) + crossing * max(light_at_normal(first + 3, through), vec3(0.0));
 }

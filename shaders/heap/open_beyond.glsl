@@ -64,14 +64,14 @@ float open_beyond(vec3 normal, vec3 to_viewer) {
   if (looked_through()) return 1.0;
   if (texelFetch(gathered, ivec2(gl_FragCoord.xy), 0).w > 0.0) return 0.0;
 #endif
-  int first = OBJECT_NUMBERS * grain_instance;
-  int kind = int(heap_light[first + 6].x);
-  if (kind < 0) return 0.0;
+  vec4 object = heap_light[grain_instance];
+  if (object.w <= 0.0) return 0.0;
+  int kind = int(object.x);
   float mu = dot(normal, to_viewer);
   bool refracts = heap_light[kind].r > 1e29;
   vec3 p = refracts ? seen_place(kind, normal, to_viewer, mu) : look_through(normal, to_viewer, mu);
-  float open = dot(heap_light[first + 7], vec4(p, 1.0));
-  int second = int(heap_light[first + 6].w);
+  float open = dot(heap_light[int(object.w) + OPEN_NUMBER], vec4(p, 1.0));
+  int second = int(object.y);
   if (refracts && second > 0) {
     // As heap::second_order; in the w of what the grain answers.
     vec3 mixed = vec3(heap_light[second].w, heap_light[second + 1].w, heap_light[second + 2].w);

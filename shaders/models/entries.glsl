@@ -28,8 +28,8 @@ float angle_between(float dot_product, float lengths) { return acos(clamp(dot_pr
 
 void look_where_light_came_in(SurfacePoint point, LightSample light) {
   entered = -1.0;
-  vec4 object = heap_light[OBJECT_NUMBERS * grain_instance + 6];
-  if (object.x < 0.0 || object.y >= 0.0) return;
+  vec4 object = heap_light[grain_instance];
+  if (object.w == 0.0) return;
   int kind = int(object.x);
   if (heap_light[kind].w == 0.0) return;
   float cosine = dot(point.normal, light.to_light);

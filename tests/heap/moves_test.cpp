@@ -18,8 +18,7 @@ constexpr glm::vec3 radiance(1.0F);
 
 Ways ways_in(const Space& space) {
   Ways ways;
-  ways.links = find_links(space, rays, radiance, ways.world, {});
-  ways.behind = find_behind(space, rays_through, {});
+  find_ways(space, rays, rays_through, radiance, ways, {});
   return ways;
 }
 
