@@ -152,10 +152,11 @@ void Solver::take_seats(const Matter& of, Matter& by) const {
   by.seated = of.seated;
 }
 
-void Solver::find_matter(const Grains& grains, const Quality& quality, const transport::Effort& effort) {
+void Solver::find_matter(const std::shared_ptr<const Heap>& heap, const Quality& quality,
+                         const transport::Effort& effort) {
+  const Grains& grains = heap->grains;
   if (matter_ && matter_->grains == grains && matter_->walks >= quality.walks) return;
-  auto matter = std::make_shared<Matter>();
-  matter->grains = grains;
+  auto matter = std::make_shared<Matter>(std::shared_ptr<const Grains>(heap, &grains));
   matter->walks = quality.walks;
   if (matter_ && matter_->space && same_places(matter_->grains, grains))
     matter->neighbourhood = matter_->space->neighbourhood();
@@ -186,7 +187,7 @@ const Space& Solver::space() {
     auto seats = std::make_shared<const Seats>(grains, matter_->cells_below + 1, open);
     if (seats->own() > most_own) seats = std::make_shared<const Seats>(grains, matter_->cells_below, open);
     matter_->seats = std::move(seats);
-    matter_->seated = std::make_shared<const std::vector<Grain>>(grains);
+    matter_->seated = std::shared_ptr<const std::vector<Grain>>(matter_->held, &grains);
     space.seat(matter_->seats);
   }
   return matter_->space.emplace(std::move(space));
@@ -334,10 +335,12 @@ Field Solver::guess() const {
   return carried(sent_, *sent_seats_, space);
 }
 
-HeapLight Solver::solve(const Heap& heap, const Quality& given, const transport::Effort& effort) {
+HeapLight Solver::solve(const std::shared_ptr<const Heap>& shared, const Quality& given,
+                        const transport::Effort& effort) {
+  const Heap& heap = *shared;
   const auto started = std::chrono::steady_clock::now();
   const std::size_t renewed_before = parts_.renewed;
-  find_matter(heap.grains, given, transport::part_of(effort, 0.0, 0.1));
+  find_matter(shared, given, transport::part_of(effort, 0.0, 0.1));
   const Quality quality = within_memory(given);
   find_ways(quality, transport::part_of(effort, 0.1, 0.5));
   auto [lit, lights_crossed] = find_direct(heap, quality, transport::part_of(effort, 0.5, 0.7));
@@ -362,8 +365,9 @@ HeapLight Solver::solve(const Heap& heap, const Quality& given, const transport:
   light.seats = traced_->ways.links.seats;
   light.patches = traced_->matter->space->patches();
   light.neighbourhood = traced_->matter->space->neighbourhood();
-  light.answer.resize(first.size());
-  for (std::size_t i = 0; i < first.size(); ++i) light.answer[i] = solved.sent[i] - lit.direct[i];
+  first = {};
+  light.answer = std::move(lit.direct);
+  for (std::size_t i = 0; i < light.answer.size(); ++i) light.answer[i] = solved.sent[i] - light.answer[i];
   if (change)
     change->answered.clear();  // no grain answers what is seen behind it, nor is a share of light more or less
   if (!lit.scattered.empty()) {

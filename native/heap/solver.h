@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "heap/exchange.h"
@@ -20,12 +21,20 @@ class Solver {
   explicit Solver(Field sent) : sent_(std::move(sent)) {}
 
   /// Throws transport::Stopped; what was found until then is kept.
-  HeapLight solve(const Heap& heap, const Quality& quality, const transport::Effort& effort);
+  HeapLight solve(const std::shared_ptr<const Heap>& shared, const Quality& quality, const transport::Effort& effort);
+
+  /// The same of a copy.
+  HeapLight solve(const Heap& heap, const Quality& quality, const transport::Effort& effort) {
+    return solve(std::make_shared<const Heap>(heap), quality, effort);
+  }
 
  private:
   /// What grains are made of, and as rays meet them.
   struct Matter {
-    Grains grains;
+    explicit Matter(std::shared_ptr<const Grains> of) : held(std::move(of)), grains(*held) {}
+
+    std::shared_ptr<const Grains> held;
+    const Grains& grains;
     int walks = 0;  ///< of each interval of their tables
     std::vector<Kind> kinds;
     int cells_below = 0;                 ///< the surface, from where on grains share seats; 0: none do
@@ -57,7 +66,7 @@ class Solver {
   };
 
   void take_seats(const Matter& of, Matter& by) const;
-  void find_matter(const Grains& grains, const Quality& quality, const transport::Effort& effort);
+  void find_matter(const std::shared_ptr<const Heap>& heap, const Quality& quality, const transport::Effort& effort);
   const Space& space();
   Deep find_deep(const transport::Effort& effort);
 

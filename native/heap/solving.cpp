@@ -96,7 +96,7 @@ void Solvers::work(const std::weak_ptr<Solving>& of, const std::stop_token& stop
     return;
   }
   const auto solve = [&](const Quality& quality, const transport::Effort& part, bool final) {
-    auto light = std::make_shared<const HeapLight>(line->solver.solve(*heap, quality, part));
+    auto light = std::make_shared<const HeapLight>(line->solver.solve(heap, quality, part));
     tell(of, *line, {++told_, std::move(light), heap, final});
   };
   bool coarse = true;  // what is found now
