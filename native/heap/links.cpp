@@ -303,8 +303,7 @@ Found found_by(const Space& space, std::size_t answering, const std::vector<Look
       endings[i].left[channel] =
           departing[i].weight[channel] > 0.0F ? ray.weight[channel] / departing[i].weight[channel] : 0.0F;
   }
-  // The few rays of one of many that share tell too little to be turned so.
-  const std::size_t numbers = answering >= space.seats()->own() ? 1 : fine ? most_numbers : 4;
+  const std::size_t numbers = fine ? most_numbers : 4;
   if (of_grain) balance(departing, table->albedo(), numbers);
   std::vector<Departing> scattered;
   for (std::size_t i = 0; i < looks.size(); ++i)

@@ -101,7 +101,7 @@ class Seats::Builder {
     }
   }
 
-  void fill(Seats& seats, int cells_below) const {
+  void fill(Seats& seats, int cells_below, bool eights) const {
     std::vector<std::uint32_t> order(places_.size());
     for (std::uint32_t cell = 0; cell < order.size(); ++cell) order[cell] = cell;
     // What lies side by side is told side by side.
@@ -119,12 +119,12 @@ class Seats::Builder {
       }
     }
     seats.own_ = seats.answering_.size();
-    std::map<std::uint64_t, std::vector<std::uint32_t>> eights;  // of cells, in the order of `order`
-    for (const std::uint32_t cell : order) eights[key_of(places_[cell] >> 1)].push_back(cell);
-    for (const auto& [key, cells] : eights) {
-      const bool one = std::all_of(cells.begin(), cells.end(), [&](std::uint32_t cell) {
-        return is_shared(cell) && depths_[cell] >= static_cast<float>(cells_below) + below_cells;
-      });
+    std::map<std::uint64_t, std::vector<std::uint32_t>> blocks;  // of cells, in the order of `order`
+    for (const std::uint32_t cell : order) blocks[key_of(places_[cell] >> 1)].push_back(cell);
+    for (const auto& [key, cells] : blocks) {
+      const bool one = eights && std::all_of(cells.begin(), cells.end(), [&](std::uint32_t cell) {
+                         return is_shared(cell) && depths_[cell] >= static_cast<float>(cells_below) + below_cells;
+                       });
       if (one) {
         std::vector<std::uint32_t> members;
         for (const std::uint32_t cell : cells)
@@ -223,7 +223,8 @@ class Seats::Builder {
   std::vector<float> depths_;
 };
 
-Seats::Seats(const std::vector<Grain>& grains, int cells_below, const std::function<bool(std::uint32_t)>& open)
+Seats::Seats(const std::vector<Grain>& grains, int cells_below, bool eights,
+             const std::function<bool(std::uint32_t)>& open)
     : Seats(grains.size()) {
   const double radius = typical_radius(grains);
   if (!(radius > 0.0)) return;
@@ -231,7 +232,7 @@ Seats::Seats(const std::vector<Grain>& grains, int cells_below, const std::funct
   Builder builder(grains, static_cast<float>(radius * std::cbrt(grains_a_cell * ball / packing)));
   builder.find_depths(open);
   Seats found(grains.size());
-  builder.fill(found, cells_below);
+  builder.fill(found, cells_below, eights);
   if (found.shared()) *this = std::move(found);
 }
 

@@ -22,8 +22,11 @@ class Seats {
   /// Each grain has its own, in their order.
   explicit Seats(std::size_t grains) : grains_(grains), own_(grains) {}
 
-  /// Grains share that lie as many cells or more below those `open` ones from which light leaves the heap.
-  Seats(const std::vector<Grain>& grains, int cells_below, const std::function<bool(std::uint32_t grain)>& open);
+  /// Grains share that lie as many cells or more below those `open` ones from which light leaves the heap. `eights`:
+  /// far below these, eight cells are one. How light grows along one so wide is told by its own light most of all, with
+  /// the noise of few rays: of grains that send out nearly all that comes to them, that grows without end.
+  Seats(const std::vector<Grain>& grains, int cells_below, bool eights,
+        const std::function<bool(std::uint32_t grain)>& open);
 
   bool shared() const { return !cells_.empty(); }
 

@@ -14,6 +14,10 @@ namespace {
 
 constexpr int most_steps = 400;
 
+// What is left goes up and down; where it has not come lower for so long, as in the deepest of white heaps, whose few
+// rays make light of nothing in places, it will not.
+constexpr int most_in_vain = 40;
+
 // Of D: numbers of 24 bits leave as much.
 constexpr float least_left = 1e-6F;
 
@@ -79,7 +83,10 @@ Solved solve(const Links& links, const Change* change, const Field& direct, Fiel
   const float enough =
       goal.share < 1.0F ? std::clamp(goal.share * solved.residual, least_left, goal.tolerance) : goal.tolerance;
   const float begun = solved.residual;
-  while (solved.residual > enough && solved.steps < most_steps) {
+  Field best = solved.sent;
+  float least = begun;
+  int best_step = 0;
+  while (solved.residual > enough && solved.steps < std::min(most_steps, best_step + most_in_vain)) {
     apply(search, product_p);
     const glm::dvec3 alpha = ratio(rho, product(shadow, product_p));
     add(residual, -alpha, product_p);
@@ -96,7 +103,18 @@ Solved solve(const Links& links, const Change* change, const Field& direct, Fiel
     scale_and_add(search, beta, residual);
     ++solved.steps;
     solved.residual = left();
+    if (solved.residual < least) {
+      least = solved.residual;
+      best_step = solved.steps;
+      if (least > enough) best = solved.sent;
+    }
     if (effort.progress) effort.progress(share_done(begun, solved.residual, enough));
+  }
+  if (solved.steps > best_step) {
+    solved.sent = std::move(best);
+    apply(solved.sent, residual);
+    scale_and_add(residual, glm::dvec3(-1.0), direct);
+    solved.residual = left();
   }
   solved.left = std::move(residual);
   return solved;

@@ -91,6 +91,15 @@ int cells_below(const Grains& grains, const std::vector<Kind>& kinds) {
   return static_cast<int>(std::ceil(std::clamp(0.9 / std::max(met, 1e-6), fewest, most)));
 }
 
+/// Whether no grain sends out nearly all that comes to it.
+bool all_absorb(const std::vector<Kind>& kinds) {
+  constexpr float most = 0.9F;
+  return std::all_of(kinds.begin(), kinds.end(), [](const Kind& kind) {
+    const glm::vec3& albedo = kind.from_viewer->albedo();
+    return std::max({albedo.r, albedo.g, albedo.b}) <= most;
+  });
+}
+
 /// What was sent by grains in other seats.
 Field carried(const Field& sent, const Seats& from, const Space& to) {
   Coefficients mean;
@@ -146,7 +155,7 @@ std::optional<Change> Solver::change_from(const Matter& other) const {
 }
 
 void Solver::take_seats(const Matter& of, Matter& by) const {
-  if (by.seats || !of.seats || of.cells_below != by.cells_below) return;
+  if (by.seats || !of.seats || of.cells_below != by.cells_below || of.eights != by.eights) return;
   if (!still_seated(*of.seats, *of.seated, by.grains.grains)) return;
   by.seats = of.seats;
   by.seated = of.seated;
@@ -169,6 +178,7 @@ void Solver::find_matter(const std::shared_ptr<const Heap>& heap, const Quality&
   }
   if (grains.grains.size() >= (any_clear(matter->kinds) ? quality.clear_shared_from : quality.shared_from)) {
     matter->cells_below = cells_below(grains, matter->kinds);
+    matter->eights = all_absorb(matter->kinds);
     if (traced_) take_seats(*traced_->matter, *matter);
     if (matter_) take_seats(*matter_, *matter);
   }
@@ -184,8 +194,9 @@ const Space& Solver::space() {
     const auto open = [&](std::uint32_t grain) { return space.is_open(grain, far * grains[grain].radius); };
     // A cell more tells what is seen still closer, where there is memory for it.
     constexpr std::size_t most_own = 250'000;
-    auto seats = std::make_shared<const Seats>(grains, matter_->cells_below + 1, open);
-    if (seats->own() > most_own) seats = std::make_shared<const Seats>(grains, matter_->cells_below, open);
+    auto seats = std::make_shared<const Seats>(grains, matter_->cells_below + 1, matter_->eights, open);
+    if (seats->own() > most_own)
+      seats = std::make_shared<const Seats>(grains, matter_->cells_below, matter_->eights, open);
     matter_->seats = std::move(seats);
     matter_->seated = std::shared_ptr<const std::vector<Grain>>(matter_->held, &grains);
     space.seat(matter_->seats);

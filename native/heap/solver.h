@@ -38,6 +38,7 @@ class Solver {
     int walks = 0;  ///< of each interval of their tables
     std::vector<Kind> kinds;
     int cells_below = 0;                 ///< the surface, from where on grains share seats; 0: none do
+    bool eights = false;                 ///< of Seats
     std::shared_ptr<const Seats> seats;  ///< where they do; those of a matter before, or found when rays are traced
     std::shared_ptr<const std::vector<Grain>> seated;  ///< where grains were when they were found
     std::optional<Neighbourhood> neighbourhood;        ///< that of a matter before, if grains are where they were

@@ -20,8 +20,8 @@ bool outermost(const Grain& grain, int across = side) {
   return std::min({at.x, at.y, at.z}) < 0.5F || std::max({at.x, at.y, at.z}) > static_cast<float>(across) - 1.5F;
 }
 
-Seats seats_of(const std::vector<Grain>& grains, int cells_below = 1, int across = side) {
-  return Seats(grains, cells_below, [&](std::uint32_t grain) { return outermost(grains[grain], across); });
+Seats seats_of(const std::vector<Grain>& grains, int cells_below = 1, int across = side, bool eights = true) {
+  return Seats(grains, cells_below, eights, [&](std::uint32_t grain) { return outermost(grains[grain], across); });
 }
 
 Coefficients linear_at(const glm::vec3& place) {
@@ -59,6 +59,7 @@ TEST(Seats, AreFewerTheDeeperGrainsLie) {
   const std::vector<Grain> grains = lattice(across, lambert(0.5)).grains.grains;
   const Seats seats = seats_of(grains, 1, across);
   EXPECT_LT(seats.answering(), grains.size() * 3 / 4);
+  EXPECT_GT(seats_of(grains, 1, across, false).answering(), seats.answering());
   Field answers;
   for (std::size_t i = 0; i < seats.answering(); ++i) answers.push_back(linear_at(grains[seats.number(i)].middle));
   const Field told = seats.told(std::move(answers));
@@ -90,7 +91,7 @@ TEST(Seats, AreTheGrainsOwnWhereNoneLiesDeep) {
   std::vector<Grain> scattered = lattice(12, lambert(0.5), 40.0).grains.grains;
   scattered.push_back({glm::vec3(1e18F, -1e30F, 0.0F), 1e-20F, 0});
   for (const std::vector<Grain>& grains : {scattered, std::vector<Grain>{}, std::vector<Grain>(100, scattered[0])}) {
-    const Seats seats(grains, 1, [](std::uint32_t /*grain*/) { return true; });
+    const Seats seats(grains, 1, true, [](std::uint32_t /*grain*/) { return true; });
     EXPECT_FALSE(seats.shared());
     EXPECT_EQ(seats.told(), grains.size());
     EXPECT_EQ(seats.answering(), grains.size());

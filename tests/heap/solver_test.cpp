@@ -228,6 +228,41 @@ TEST(Solver, HasTheLightThatIsSeenWhereDeepGrainsShareTheirNumbers) {
   }
 }
 
+// Of so many there is no memory for coarse ways beside the final ones, which take their place one by one.
+TEST(Solver, HasTheSameLightWhereFinerWaysTakeThePlaceOfOthers) {
+  const Heap heap = lit(medium(3.0, 0.99), 14);
+  const Quality to_the_end = sharing({.tolerance = 1e-6F});
+  const HeapLight right = solve_exchange(heap, to_the_end, {}, {});
+  Solver solver;
+  solver.solve(heap, sharing(coarse), {});
+  const HeapLight light = solver.solve(heap, to_the_end, {});
+  EXPECT_EQ(light.links, right.links);
+  EXPECT_LT(difference(light.sent, right.sent), 1e-5);
+  EXPECT_LT(difference(light.answer, right.answer), 1e-5);
+}
+
+TEST(Solver, HasALightOfPartlyFinerWaysIfItIsStopped) {
+  const Heap heap = lit(medium(3.0, 0.99), 14);
+  const HeapLight right = solve_exchange(heap, sharing(), {}, {});
+  for (const double stopped_at : {0.25, 0.4, 0.55, 0.65}) {
+    Solver solver;
+    const HeapLight before = solver.solve(heap, sharing(coarse), {});
+    std::atomic<bool> stop{false};
+    transport::Effort effort;
+    effort.stop = &stop;
+    effort.progress = [&](double share) { stop = share > stopped_at; };
+    EXPECT_THROW(solver.solve(heap, sharing(), effort), transport::Stopped);
+    // Of another material, for which the ways that there are will do.
+    const Heap slid = lit(medium(3.0, 0.97), 14);
+    const HeapLight quick = solver.solve(slid, sharing(coarse), {});
+    EXPECT_EQ(quick.parts.links - before.parts.links, stopped_at > 0.5 ? 1 : 0) << stopped_at;
+    EXPECT_NEAR(mean(quick.sent) / mean(solve_exchange(slid, sharing(), {}, {}).sent), 1.0, 0.02) << stopped_at;
+    const HeapLight light = solver.solve(heap, sharing(), {});
+    EXPECT_EQ(light.links, right.links) << stopped_at;
+    EXPECT_LT(difference(light.sent, right.sent), 2e-3) << stopped_at;
+  }
+}
+
 TEST(Solver, FollowsChangesOfAHeapWhoseDeepGrainsShareTheirNumbers) {
   constexpr int side = 14;
   Solver solver;
