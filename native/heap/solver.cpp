@@ -155,8 +155,10 @@ std::optional<Change> Solver::change_from(const Matter& other) const {
 }
 
 void Solver::take_seats(const Matter& of, Matter& by) const {
-  if (by.seats || !of.seats || of.cells_below != by.cells_below || of.eights != by.eights) return;
+  if (by.seats || !of.seats || of.cells_below != by.cells_below) return;
+  if (of.eights && !by.eights) return;
   if (!still_seated(*of.seats, *of.seated, by.grains.grains)) return;
+  by.eights = of.eights;
   by.seats = of.seats;
   by.seated = of.seated;
 }
