@@ -160,8 +160,8 @@ def over_direct(native, view, scene, camera):
 
 
 def measure(native, of, count, rounds, wanted, seconds):
-    """({change: dictionary} of one material, of a drag of so many seconds, a frame's cost over that of a direct one, the
-    megabytes until a first view has shown the final light)."""
+    """({change: dictionary} of one material, of a drag of so many seconds, a frame's cost over that of a direct one,
+    the megabytes until a first view has shown the final light)."""
     found = {}
     frames = dragged = shown = None
     for number in range(1, rounds + 1):
@@ -198,7 +198,7 @@ def peak_megabytes():
 def measure_one(options, name):
     import mesograin_native as native
     changes, dragged, frames, shown = measure(native, MATERIALS[name], options.grains, options.rounds, options.changes,
-                                       options.drag)
+                                              options.drag)
     return {"changes": changes, "drag": dragged, "frame_over_direct": frames,
             "shown_megabytes": shown, "peak_megabytes": peak_megabytes()}
 

@@ -4,7 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstddef>
 #include <glm/geometric.hpp>
+#include <memory>
+#include <vector>
 
 #include "transport/random.h"
 
