@@ -65,18 +65,19 @@ Optics glass(Optics optics) {
 
 /// What takes time to find.
 struct Gather::Found {
-  Found(Heap of, std::shared_ptr<const HeapLight> its_light)
+  Found(std::shared_ptr<const Heap> of, std::shared_ptr<const HeapLight> its_light)
       : heap(std::move(of)),
         light(std::move(its_light)),
-        space(heap.grains, light->kinds, light->seats, light->patches, light->neighbourhood) {}
+        space(heap->grains, light->kinds, light->seats, light->patches, light->neighbourhood) {}
 
-  Heap heap;
+  std::shared_ptr<const Heap> heap;
   std::shared_ptr<const HeapLight> light;
   Space space;
 };
 
-Gather::Gather(Heap heap, std::shared_ptr<const Found> found)
-    : heap_(std::move(heap)),
+Gather::Gather(std::shared_ptr<const Heap> heap, std::shared_ptr<const Found> found)
+    : held_(std::move(heap)),
+      heap_(*held_),
       found_(std::move(found)),
       light_(found_->light),
       space_(found_->space),
@@ -88,10 +89,10 @@ Gather::Gather(Heap heap, std::shared_ptr<const Found> found)
   of_others_ = heap_.exchanges ? of_others(heap_.grains.kinds) : heap_.grains.kinds;
 }
 
-Gather::Gather(const Heap& heap, std::shared_ptr<const HeapLight> light)
+Gather::Gather(std::shared_ptr<const Heap> heap, std::shared_ptr<const HeapLight> light)
     : Gather(heap, std::make_shared<const Found>(heap, std::move(light))) {}
 
-std::unique_ptr<const Gather> Gather::among(Heap heap) const {
+std::unique_ptr<const Gather> Gather::among(std::shared_ptr<const Heap> heap) const {
   return std::unique_ptr<const Gather>(new Gather(std::move(heap), found_));
 }
 

@@ -6,6 +6,7 @@
 #include <glm/vec3.hpp>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "heap/draws.h"
@@ -22,7 +23,12 @@ class Asking;
 class Gather {
  public:
   /// `light`: the heap's.
-  Gather(const Heap& heap, std::shared_ptr<const HeapLight> light);
+  Gather(std::shared_ptr<const Heap> heap, std::shared_ptr<const HeapLight> light);
+
+  /// The same of a copy.
+  Gather(const Heap& heap, std::shared_ptr<const HeapLight> light)
+      : Gather(std::make_shared<const Heap>(heap), std::move(light)) {}
+
   Gather(const Gather&) = delete;
   Gather& operator=(const Gather&) = delete;
 
@@ -32,7 +38,7 @@ class Gather {
 
   /// The same light in a heap whose grains and walls are where these are, of other materials or under other lights:
   /// what is seen of a grain answers to them at once.
-  std::unique_ptr<const Gather> among(Heap heap) const;
+  std::unique_ptr<const Gather> among(std::shared_ptr<const Heap> heap) const;
 
   /// Radiance that leaves a grain at a normal `towards` a viewer, but for what comes straight from lights: the mean
   /// over `rays` through the grain's table, and what is seen straight through it.
@@ -267,9 +273,10 @@ class Gather {
                          const Facets& facets, transport::Random& random, Behind* behind = nullptr) const;
 
   struct Found;
-  Gather(Heap heap, std::shared_ptr<const Found> found);
+  Gather(std::shared_ptr<const Heap> heap, std::shared_ptr<const Found> found);
 
-  Heap heap_;
+  std::shared_ptr<const Heap> held_;
+  const Heap& heap_;  // that is held
   std::shared_ptr<const Found> found_;
   const std::shared_ptr<const HeapLight>& light_;    // of found_
   const Space& space_;                               // of found_

@@ -71,6 +71,9 @@ class Neighbourhood {
  public:
   explicit Neighbourhood(const Grains& grains);
 
+  /// Whether both are one: a copy is.
+  bool operator==(const Neighbourhood&) const = default;
+
   /// The first grain that a ray comes to from outside, or wall. A grain that it starts in, and goes deeper into, is met
   /// where it starts: the balls of grains that are none reach into each other where those touch. Of `from`, whose own
   /// surface it leaves, that is not so.

@@ -74,7 +74,7 @@ std::vector<Coefficients> means(const Coefficients* of_nodes, const Patches& pat
 std::optional<HeapLight> moved_light(const HeapLight& light, const Grains& before, const Grains& now) {
   if (!same_ones(before, now)) return std::nullopt;
   HeapLight moved = light;
-  moved.neighbourhood.reset();
+  if (!same_places(before, now)) moved.neighbourhood.reset();
   if (same_walls(before.walls, now.walls)) return moved;
   moved.patches = patches_about(now);
   std::vector<glm::mat4> ways_back;

@@ -65,6 +65,21 @@ std::shared_ptr<const Solving> Solvers::ask(Heap heap, const std::shared_ptr<con
   return solving;
 }
 
+Neighbourhood Solvers::neighbourhood_of(const Grains& grains) {
+  std::vector<std::shared_ptr<const Solving>> all;
+  {
+    const std::lock_guard lock(mutex_);
+    for (const std::weak_ptr<Solving>& one : held_)
+      if (std::shared_ptr<const Solving> solving = one.lock()) all.push_back(std::move(solving));
+  }
+  for (const std::shared_ptr<const Solving>& one : all) {
+    const News known = one->news();
+    if (known.light && known.light->neighbourhood && same_places(known.heap->grains, grains))
+      return *known.light->neighbourhood;
+  }
+  return Neighbourhood(grains);
+}
+
 bool Solvers::has_heir(const Line& line, const Heap& heap) {
   const std::lock_guard lock(mutex_);
   const std::shared_ptr<Solving> latest = line.latest.lock();
@@ -110,7 +125,9 @@ void Solvers::work(const std::weak_ptr<Solving>& of, const std::stop_token& stop
   };
   try {
     if (!heap->exchanges) {
-      tell(of, *line, {++told_, std::make_shared<const HeapLight>(light_alone(*heap, effort)), heap, true});
+      auto light = std::make_shared<HeapLight>(light_alone(*heap, effort));
+      light->neighbourhood = neighbourhood_of(heap->grains);
+      tell(of, *line, {++told_, std::move(light), heap, true});
       return;
     }
     solve(coarse_for(heap->grains.grains.size()), transport::part_of(effort, 0.0, quick_share), false);

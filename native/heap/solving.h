@@ -83,6 +83,9 @@ class Solvers {
  private:
   void work(const std::weak_ptr<Solving>& of, const std::stop_token& stop);
 
+  /// As rays find them; that of another place, if that knows them.
+  Neighbourhood neighbourhood_of(const Grains& grains);
+
   /// Whether what was asked for last in this place can be shown in the light of `heap`.
   bool has_heir(const Line& line, const Heap& heap);
 

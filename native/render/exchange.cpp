@@ -380,10 +380,10 @@ void Exchange::find_gather() {
   const bool wanted =
       (gathers_ || shows_more_) && known_ && heap::same_places(known_->grains(), solving_->heap().grains);
   if (!wanted) gather_.reset();
-  if (wanted && !gather_) gather_ = std::make_shared<const heap::Gather>(*known_->heap, known_->light);
+  if (wanted && !gather_) gather_ = std::make_shared<const heap::Gather>(known_->heap, known_->light);
   // What grains are made of, and lights, are seen to change at once, in the light that others sent before.
   if (wanted && gather_->heap() != solving_->heap() && alike(gather_->heap().grains, solving_->heap().grains))
-    gather_ = gather_->among(solving_->heap());
+    gather_ = gather_->among(solving_->shared_heap());
   find_whole();
 }
 
@@ -472,11 +472,11 @@ class Packing {
       : light_(light), seats_(*light.seats) {
     constexpr std::size_t numbers_of_seat = 7;
     constexpr std::size_t numbers_of_term = 3;
-    numbers_.reserve(objects + numbers_of_seat * seats_.own() + numbers_of_term * (seats_.told() - seats_.own()) +
-                     light.patches.nodes().size());
     numbers_.assign(objects, glm::vec4(-1.0F, 0.0F, 0.0F, 0.0F));
     for (std::size_t kind = 0; kind < light.kinds.size(); ++kind)
       add_kind(*light.kinds[kind].from_light, heap::of_others(grains.kinds[kind]));
+    numbers_.reserve(numbers_.size() + numbers_of_seat * seats_.own() +
+                     numbers_of_term * (seats_.told() - seats_.own()) + light.patches.nodes().size());
     for (std::uint32_t seat = 0; seat < seats_.own(); ++seat) add_seat(seat);
     cells_begin_ = numbers_.size();
     for (std::size_t term = seats_.own(); term < seats_.told(); ++term) add(light.answer[term]);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
+#include <glm/gtc/packing.hpp>
 #include <glm/matrix.hpp>
 #include <memory>
 
@@ -13,6 +14,9 @@
 
 namespace mesograin::transport {
 namespace {
+
+/// As files have it: what is drawn does not depend on whether it was computed now or read.
+float in_half(float number) { return glm::unpackHalf1x16(glm::packHalf1x16(number)); }
 
 /// Half precision takes lobes of at most 1.
 void make_lobes_at_most_one(Terms& terms) {
@@ -101,7 +105,7 @@ StoredTransport transport_by(const Walks& walks, const StoredMedium& medium, con
     for (int term = 0; term < kept; ++term) {
       for (std::size_t node = 0; node < stored.nodes(); ++node)
         if (grid.used()[node] >= 0)
-          stored.sources[index(stored.nodes(), term, node)] = terms.amounts(grid.used()[node], term);
+          stored.sources[index(stored.nodes(), term, node)] = in_half(terms.amounts(grid.used()[node], term));
       for (std::size_t texel = 0; texel < octahedron_texels; ++texel)
         stored.lobes[index(octahedron_texels, term, texel)] =
             terms.told_by.lobes(term, static_cast<Eigen::Index>(texel));

@@ -38,7 +38,7 @@ struct StoredTransport {
   bool has_unscattered = true;   ///< sources are also fed by light that nothing has scattered before
   std::vector<float> distances;  ///< from the surface at its own nodes (surface_size), negative inside; x runs fastest
   /// [term][node][channel]: radiance that a mean free path would send out, per irradiance; without what light that
-  /// nothing has scattered feeds, if that is apart, over physics::scattered_share_below.
+  /// nothing has scattered feeds, if that is apart, over physics::scattered_share_below. In half precision.
   std::vector<float> sources;
   std::vector<float> lobes;  ///< [term][texel of the octahedral map that the light comes from][channel]
 

@@ -65,6 +65,14 @@ TEST(MovedLight, ShowsAHeapThatHasGoneElsewhereAsItWas) {
   for (int channel = 0; channel < 3; ++channel) EXPECT_NEAR(found[channel] / expected[channel], 1.0F, 0.01F);
 }
 
+TEST(MovedLight, KeepsItsTreeWhereNothingWasMoved) {
+  const Heap heap = on_a_ground();
+  const HeapLight light = solved(heap);
+  EXPECT_EQ(moved_light(light, heap.grains, heap.grains)->neighbourhood, light.neighbourhood);
+  const Heap now = moved(heap, glm::translate(glm::dmat4(1.0), glm::dvec3(1.0, 0.4, 0.7)));
+  EXPECT_FALSE(moved_light(light, heap.grains, now.grains)->neighbourhood);
+}
+
 TEST(MovedLight, HasAWallsLightWhereItsPlacesAreNow) {
   const Heap before = on_a_ground();
   const HeapLight light = solved(before);

@@ -19,6 +19,13 @@ Heap lit(int side, double albedo) {
   return heap;
 }
 
+/// Whose grains answer nothing that others send.
+Heap alone(int side, double albedo) {
+  Heap heap = lit(side, albedo);
+  heap.exchanges = false;
+  return heap;
+}
+
 double albedo(const News& news) { return news.heap->grains.kinds[0].albedo.r; }
 
 TEST(Solvers, TellACoarseAnswerFirst) {
@@ -81,9 +88,7 @@ TEST(Solvers, ShowNoLightBetweenGrainsWhereThereIsToBeNone) {
   Solvers solvers;
   const std::shared_ptr<const Solving> first = solvers.ask(lit(4, 0.9), nullptr);
   ASSERT_TRUE(first->wait(60s));
-  Heap alone = lit(4, 0.9);
-  alone.exchanges = false;
-  const std::shared_ptr<const Solving> second = solvers.ask(std::move(alone), first);
+  const std::shared_ptr<const Solving> second = solvers.ask(alone(4, 0.9), first);
   ASSERT_TRUE(second->wait(60s));
   ASSERT_TRUE(second->news().light);
   EXPECT_TRUE(second->lit());
@@ -131,6 +136,22 @@ TEST(Solvers, GiveUpACoarseAnswerThatNoOtherHeapCanShow) {
   ASSERT_TRUE(solving->wait(60s));
   EXPECT_TRUE(solving->lit());
   EXPECT_EQ(solving->news().light->parts.solutions, 2) << "the large heap was solved to the end";
+}
+
+TEST(Solvers, KnowOneTreeOfWhatStandsInTheSamePlaces) {
+  Solvers solvers;
+  const std::shared_ptr<const Solving> one = solvers.ask(lit(4, 0.9), nullptr);
+  ASSERT_TRUE(one->wait(60s));
+  const std::shared_ptr<const Solving> other = solvers.ask(alone(4, 0.9), nullptr);
+  ASSERT_TRUE(other->wait(60s));
+  ASSERT_TRUE(other->news().light->neighbourhood);
+  EXPECT_EQ(other->news().light->neighbourhood, one->news().light->neighbourhood);
+  const std::shared_ptr<const Solving> changed = solvers.ask(alone(4, 0.8), other);
+  ASSERT_TRUE(changed->wait(60s));
+  EXPECT_EQ(changed->news().light->neighbourhood, one->news().light->neighbourhood);
+  const std::shared_ptr<const Solving> elsewhere = solvers.ask(alone(5, 0.8), changed);
+  ASSERT_TRUE(elsewhere->wait(60s));
+  EXPECT_NE(elsewhere->news().light->neighbourhood, one->news().light->neighbourhood);
 }
 
 TEST(Solvers, SolveTheSameHeapOnce) {
