@@ -84,35 +84,54 @@ struct Coefficients {
   void add(const glm::vec3& light, const glm::vec3& normal, bool fine) {
     const glm::vec4 basis(3.0F * normal, 1.0F);
     for (int channel = 0; channel < 3; ++channel) channels[static_cast<std::size_t>(channel)] += light[channel] * basis;
-    if (!fine) return;
+    if (fine) add_second(light, normal);
+  }
+
+  /// Adds so much of another's.
+  void add(const Coefficients& other, const glm::vec3& by) {
+    for (std::size_t channel = 0; channel < 3; ++channel)
+      channels[channel] += by[static_cast<int>(channel)] * other.channels[channel];
+    if (other.second.get() != nullptr) add_second(*other.second.get(), by);
+  }
+
+  void scale(const glm::vec3& by) {
+    for (std::size_t channel = 0; channel < 3; ++channel) channels[channel] *= by[static_cast<int>(channel)];
+    if (second.get() == nullptr) return;
+    for (std::size_t channel = 0; channel < 3; ++channel)
+      for (float& number : second.made()[channel]) number *= by[static_cast<int>(channel)];
+  }
+
+ private:
+  void add_second(const glm::vec3& light, const glm::vec3& normal) {
     const SecondOrder more = second_order(normal);
     SecondOrders::Numbers& numbers = second.made();
     for (std::size_t channel = 0; channel < 3; ++channel)
       for (std::size_t i = 0; i < more.size(); ++i)
         numbers[channel][i] += 5.0F * light[static_cast<int>(channel)] * more[i];
   }
+
+  void add_second(const SecondOrders::Numbers& other, const glm::vec3& by) {
+    SecondOrders::Numbers& numbers = second.made();
+    for (std::size_t channel = 0; channel < 3; ++channel)
+      for (std::size_t i = 0; i < numbers[channel].size(); ++i)
+        numbers[channel][i] += by[static_cast<int>(channel)] * other[channel][i];
+  }
 };
 
 inline Coefficients operator*(Coefficients coefficients, const glm::vec3& by) {
-  for (std::size_t channel = 0; channel < 3; ++channel) {
-    coefficients.channels[channel] *= by[static_cast<int>(channel)];
-    if (coefficients.second.get() != nullptr)
-      for (float& number : coefficients.second.made()[channel]) number *= by[static_cast<int>(channel)];
-  }
+  coefficients.scale(by);
   return coefficients;
 }
 
 inline Coefficients operator+(Coefficients a, const Coefficients& b) {
-  for (std::size_t channel = 0; channel < 3; ++channel) {
-    a.channels[channel] += b.channels[channel];
-    if (b.second.get() == nullptr) continue;
-    SecondOrder& sum = a.second.made()[channel];
-    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += (*b.second.get())[channel][i];
-  }
+  a.add(b, glm::vec3(1.0F));
   return a;
 }
 
-inline Coefficients operator-(const Coefficients& a, const Coefficients& b) { return a + b * glm::vec3(-1.0F); }
+inline Coefficients operator-(Coefficients a, const Coefficients& b) {
+  a.add(b, glm::vec3(-1.0F));
+  return a;
+}
 
 /// Of each channel the sum of products.
 inline glm::vec3 product(const Coefficients& a, const Coefficients& b) {

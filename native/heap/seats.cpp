@@ -11,6 +11,8 @@
 #include <unordered_map>
 #include <utility>
 
+#include "transport/effort.h"
+
 namespace mesograin::heap {
 namespace {
 
@@ -25,9 +27,6 @@ constexpr float below_cells = 3.0F;
 
 // Of the slopes' own mean square, so that a few grains in one plane have none across it.
 constexpr double ridge = 0.01;
-
-// Of a packed place, from a cell's middle to its side.
-constexpr float side = 127.0F;
 
 std::uint64_t key_of(const glm::ivec3& at) {
   constexpr int most_cells = 1 << 20;
@@ -236,25 +235,18 @@ Seats::Seats(const std::vector<Grain>& grains, int cells_below, bool eights,
   if (found.shared()) *this = std::move(found);
 }
 
-Seats::Terms Seats::terms_of(const Seat& seat) {
-  // Of mean square 1 in a cell.
-  constexpr float scale = 1.7320508F / side;
-  return {1.0F, scale * static_cast<float>(seat.within[0]), scale * static_cast<float>(seat.within[1]),
-          scale * static_cast<float>(seat.within[2])};
-}
-
 Field Seats::told(Field answers) const {
   if (!shared()) return answers;
   Field result(answers.size() - answering() + told());
   std::copy_n(answers.begin(), own_, result.begin());
-  for (std::size_t cell = 0; cell < cells_.size(); ++cell)
-    for (std::size_t sample = 0; sample < samples_each; ++sample) {
-      const Coefficients& answer = answers[own_ + samples_each * cell + sample];
-      for (std::size_t term = 0; term < terms; ++term) {
-        Coefficients& of = result[own_ + terms * cell + term];
-        of = of + answer * glm::vec3(cells_[cell][sample][term]);
-      }
-    }
+  constexpr std::size_t cells_a_piece = 1024;
+  transport::run_pieces({}, (cells_.size() + cells_a_piece - 1) / cells_a_piece, [&](std::size_t piece) {
+    for (std::size_t cell = piece * cells_a_piece; cell < std::min(cells_.size(), (piece + 1) * cells_a_piece); ++cell)
+      for (std::size_t sample = 0; sample < samples_each; ++sample)
+        for (std::size_t term = 0; term < terms; ++term)
+          result[own_ + terms * cell + term].add(answers[own_ + samples_each * cell + sample],
+                                                 glm::vec3(cells_[cell][sample][term]));
+  });
   std::copy(answers.begin() + static_cast<std::ptrdiff_t>(answering()), answers.end(),
             result.begin() + static_cast<std::ptrdiff_t>(told()));
   return result;
@@ -265,15 +257,7 @@ Coefficients Seats::of(const Field& told, std::uint32_t number) const {
   const Terms terms = terms_of(seats_[number]);
   const std::size_t first = first_of_cell(seats_[number]);
   Coefficients sum;
-  for (std::size_t term = 0; term < terms.size(); ++term) sum = sum + told[first + term] * glm::vec3(terms[term]);
-  return sum;
-}
-
-glm::vec3 Seats::shared_light_at(const Field& told, std::uint32_t grain, const glm::vec3& normal) const {
-  const Terms terms = terms_of(seats_[grain]);
-  const std::size_t first = first_of_cell(seats_[grain]);
-  glm::vec3 sum(0.0F);
-  for (std::size_t term = 0; term < terms.size(); ++term) sum += terms[term] * told[first + term].first_at(normal);
+  for (std::size_t term = 0; term < terms.size(); ++term) sum.add(told[first + term], glm::vec3(terms[term]));
   return sum;
 }
 

@@ -77,6 +77,7 @@ class Seats {
  private:
   static constexpr std::size_t samples_each = 12;
   static constexpr std::size_t terms = 4;
+  static constexpr float side = 127.0F;                // of a place within its cell, from the middle
   static constexpr std::uint32_t in_cell = 1U << 31U;  // the rest is the cell's number
 
   using Terms = std::array<float, terms>;
@@ -91,9 +92,22 @@ class Seats {
 
   class Builder;
 
-  static Terms terms_of(const Seat& seat);
+  static Terms terms_of(const Seat& seat) {
+    // Of mean square 1 in a cell.
+    constexpr float scale = 1.7320508F / side;
+    return {1.0F, scale * static_cast<float>(seat.within[0]), scale * static_cast<float>(seat.within[1]),
+            scale * static_cast<float>(seat.within[2])};
+  }
+
   std::size_t first_of_cell(const Seat& seat) const { return own_ + terms * (seat.seat & ~in_cell); }
-  glm::vec3 shared_light_at(const Field& told, std::uint32_t grain, const glm::vec3& normal) const;
+
+  glm::vec3 shared_light_at(const Field& told, std::uint32_t grain, const glm::vec3& normal) const {
+    const Terms terms = terms_of(seats_[grain]);
+    const Coefficients* const of_cell = &told[first_of_cell(seats_[grain])];
+    glm::vec3 sum(0.0F);
+    for (std::size_t term = 0; term < terms.size(); ++term) sum += terms[term] * of_cell[term].first_at(normal);
+    return sum;
+  }
 
   std::size_t grains_;
   std::size_t own_;

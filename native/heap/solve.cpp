@@ -30,13 +30,16 @@ glm::dvec3 product(const Field& a, const Field& b) {
 // a += factor b
 void add(Field& a, const glm::dvec3& factor, const Field& b) {
   const glm::vec3 by(factor);
-  for (std::size_t i = 0; i < a.size(); ++i) a[i] = a[i] + b[i] * by;
+  for (std::size_t i = 0; i < a.size(); ++i) a[i].add(b[i], by);
 }
 
 // a = b + factor a
 void scale_and_add(Field& a, const glm::dvec3& factor, const Field& b) {
   const glm::vec3 by(factor);
-  for (std::size_t i = 0; i < a.size(); ++i) a[i] = b[i] + a[i] * by;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    a[i].scale(by);
+    a[i].add(b[i], glm::vec3(1.0F));
+  }
 }
 
 // 0 where there is nothing left to divide.
