@@ -102,6 +102,38 @@ std::optional<glm::vec3> Gather::sent_along(Ray& ray, transport::Random& random)
   return ray.weight / source->met * light_->seats->light_at(light_->sent, source->number, source->normal, true);
 }
 
+std::optional<glm::vec3> Gather::seen_of_others(Ray& ray, transport::Random& random) const {
+  const std::optional<Source> source = space_.follow(ray, random);
+  if (!source) return std::nullopt;
+  const std::uint32_t number = source->number;
+  if (number < space_.grains().size() && heap_.grains.kinds[space_.grains()[number].kind].surface == Surface::lambert)
+    return ray.weight * sent_by_lambert(number, ray.origin, random);
+  return ray.weight / source->met * light_->seats->light_at(light_->sent, number, source->normal, true);
+}
+
+glm::vec3 Gather::sent_by_lambert(std::uint32_t grain, const glm::vec3& place, transport::Random& random) const {
+  const Grain& of = space_.grains()[grain];
+  const glm::vec3 normal = glm::normalize(place - of.middle);
+  const glm::vec3 from = space_.place(of, normal);
+  const glm::vec3 reflectance(heap_.grains.kinds[of.kind].reflectance);
+  glm::vec3 irradiance(0.0F);
+  for (const Draw& draw : draws_) {
+    const lights::LightDraw light = draw(heap_.anchor + glm::dvec3(from), {random.uniform(), random.uniform()});
+    const glm::vec3 to_light(light.to_light);
+    const float cosine = glm::dot(to_light, normal);
+    if (!(cosine > 0.0F)) continue;
+    Ray ray{from, to_light, glm::vec3(1.0F)};
+    irradiance +=
+        cosine * glm::vec3(light.irradiance) * space_.passed(ray, static_cast<float>(std::min(light.reach, 1e30)));
+  }
+  const float height = random.uniform();
+  const glm::vec3 direction =
+      TurnedFrame(normal, random.uniform()) * glm::vec3(std::sqrt(height), 0.0F, std::sqrt(1.0F - height));
+  Ray ray{from, direction, reflectance};
+  const std::optional<glm::vec3> sent = sent_along(ray, random);
+  return reflectance * irradiance / std::numbers::pi_v<float> + (sent ? *sent : even_world(ray));
+}
+
 glm::vec3 Gather::even_world(const Ray& ray) const {
   return heap_.world.image ? glm::vec3(0.0F) : ray.weight * glm::vec3(heap_.world.radiance);
 }
@@ -115,7 +147,7 @@ glm::vec3 Gather::look(std::uint32_t grain, const glm::vec3& normal, const glm::
   for (int i = 0; i < rays; ++i) {
     const Outcome outcome = kind.from_viewer->draw(mu, random.uniform());
     Ray ray{space_.place(space_.grains()[grain], frame * outcome.normal), frame * outcome.direction, outcome.weight};
-    if (const std::optional<glm::vec3> sent = sent_along(ray, random))
+    if (const std::optional<glm::vec3> sent = seen_of_others(ray, random))
       sum += *sent;
     else if (ray.crossed)
       sum += even_world(ray);

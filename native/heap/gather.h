@@ -203,6 +203,10 @@ class Gather {
                            const Facets& facets) const;
   /// What is sent along a ray, if it meets anything.
   std::optional<glm::vec3> sent_along(Ray& ray, transport::Random& random) const;
+  /// The same by more rays from each Lambert grain that is met: few numbers do not tell how much darker it is where it
+  /// touches others.
+  std::optional<glm::vec3> seen_of_others(Ray& ray, transport::Random& random) const;
+  glm::vec3 sent_by_lambert(std::uint32_t grain, const glm::vec3& place, transport::Random& random) const;
   /// What a world without a picture sends to the end of it.
   glm::vec3 even_world(const Ray& ray) const;
   Ray ray_through(std::uint32_t grain, const glm::vec3& normal, const glm::vec3& towards) const;

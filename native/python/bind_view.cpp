@@ -241,6 +241,12 @@ py::dict of_exchange(const render::ExchangeStatistics& exchange) {
   result["found"] = found;
   result["balls"] = exchange.balls;
   result["gathered"] = exchange.gathered;
+  py::dict means;
+  means["walked"] = exchange.means.walked;
+  means["looked_into"] = exchange.means.looked_into;
+  means["modelled"] = exchange.means.modelled;
+  means["sharing"] = exchange.means.sharing;
+  result["means"] = means;
   const auto pair = [](const render::Range& range) { return py::make_tuple(range.least, range.most); };
   py::list stuff;
   for (const render::Stuff& one : exchange.stuff) {
@@ -493,16 +499,21 @@ void bind_view(py::module_& module) {
           "The mean: (height, width, 4) float32, linear RGB premultiplied by coverage, and coverage; row 0 at the top, "
           "which in a bake is v = 1. "
           "`out`, if given, is filled and returned.")
-      .def("statistics", &statistics,
-           "What of the scene's arrays the last sample took the trouble of: {'instances': there are, 'drawn': that the "
-           "device drew for the camera, 'cast': that rays were cast at, 'seen': of those, that rays met, 'exchange': "
-           "of light from grain to grain, None where there is none: {'grains': that send light to each other, "
-           "'others': objects that do not, 'kinds': of grains, 'links': ways of light between them, 'steps' and "
-           "'residual' of the solution, 'milliseconds' that it took, 'final': no better one is under way, 'found': how "
-           "often its 'tables', 'links', 'sources' and 'solutions' were found so far, 'balls': whether all grains are "
-           "that round, 'gathered': whether rays of the last sample found more of some grains that are seen, 'stuff': "
-           "[{'surface', 'thickness', 'albedo', 'g', 'eta'}] of what they are made of, all but the first from least to "
-           "most; thickness in mean free paths to the radius, albedo of one scattering}}.")
+      .def(
+          "statistics", &statistics,
+          "What of the scene's arrays the last sample took the trouble of: {'instances': there are, 'drawn': that the "
+          "device drew for the camera, 'cast': that rays were cast at, 'seen': of those, that rays met, 'exchange': "
+          "of light from grain to grain, None where there is none: {'grains': that send light to each other, "
+          "'others': objects that do not, 'kinds': of grains, 'links': ways of light between them, 'steps' and "
+          "'residual' of the solution, 'milliseconds' that it took, 'final': no better one is under way, 'found': how "
+          "often its 'tables', 'links', 'sources' and 'solutions' were found so far, 'balls': whether all grains are "
+          "that round, 'gathered': whether rays of the last sample found more of some grains that are seen, 'means': "
+          "how "
+          "many grains are shown by which, where rays find what is seen: {'walked': light is followed into them, "
+          "'looked_into': clear ones, through their facets, 'modelled': by their model, 'sharing': of all these, those "
+          "so deep that they share numbers}, 'stuff': "
+          "[{'surface', 'thickness', 'albedo', 'g', 'eta'}] of what they are made of, all but the first from least to "
+          "most; thickness in mean free paths to the radius, albedo of one scattering}}.")
       .def(
           "start_read", [](render::View& view) { return Reading(view); }, Release(),
           "As read(), without waiting: gives the Reading under way, of the samples that are drawn so far.")

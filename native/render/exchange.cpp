@@ -307,6 +307,7 @@ void Exchange::set(DeviceCache& cache, const Content& content, const scene::Scen
   const bool regrouped = !solving_ || switched || roles_ != gathered.roles;
   if (!regrouped && solving_->heap() == heap) {
     find_gather();
+    count_means();
     return;
   }
   solving_ = heap::Solvers::instance().ask(std::move(heap), solving_);
@@ -315,6 +316,7 @@ void Exchange::set(DeviceCache& cache, const Content& content, const scene::Scen
   if (regrouped) gather_.reset();
   if (regrouped || keep_up()) send();
   if (!regrouped) find_gather();
+  count_means();
 }
 
 bool Exchange::gathers_all_of(std::size_t number, bool traced) const {
@@ -334,6 +336,7 @@ bool Exchange::take_news() {
   keep_up();
   gather_.reset();
   find_gather();
+  count_means();
   send();
   return true;
 }
@@ -409,6 +412,20 @@ void Exchange::find_whole() {
   }
 }
 
+void Exchange::count_means() {
+  means_ = {};
+  const heap::Seats* const seats = known_ ? known_->light->seats.get() : nullptr;
+  for (std::size_t number = 0; number < roles_.size(); ++number) {
+    const std::optional<std::uint32_t>& grain = roles_[number].grain;
+    if (!grain) continue;
+    if (!gathers_all_of(number, true))
+      ++means_.modelled;
+    else
+      ++(gather_->sees_into(*grain) ? means_.looked_into : means_.walked);
+    if (seats != nullptr && *grain < seats->grains() && seats->shares(*grain)) ++means_.sharing;
+  }
+}
+
 namespace {
 
 Range range_of(const glm::dvec3& colour) {
@@ -452,6 +469,7 @@ ExchangeStatistics Exchange::statistics() const {
   result.kinds = grains.kinds.size();
   result.final = solving_->news().final;
   result.balls = balls_;
+  result.means = means_;
   result.stuff = stuff_of(grains);
   if (!known_) return result;
   const heap::HeapLight& light = *known_->light;

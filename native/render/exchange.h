@@ -33,6 +33,14 @@ struct Stuff {
 };
 
 /// What is drawn of light between grains.
+/// How many grains are shown by which means, where rays find what is seen, and told to others.
+struct Means {
+  std::size_t walked = 0;       ///< light is followed from what is seen of them, and no model asked
+  std::size_t looked_into = 0;  ///< clear ones, through their facets, and no model asked
+  std::size_t modelled = 0;     ///< by their model, and what others send by a few numbers
+  std::size_t sharing = 0;      ///< of all these, those that lie so deep that they share numbers
+};
+
 struct ExchangeStatistics {
   std::size_t grains = 0;     ///< that send light to each other
   std::size_t others = 0;     ///< objects that do not
@@ -45,6 +53,7 @@ struct ExchangeStatistics {
   heap::Parts parts;          ///< found anew so far
   bool balls = true;          ///< all grains are about as round as a sphere
   bool gathered = false;      ///< rays of the last sample found more of what is seen of some grains than is solved
+  Means means;
   std::vector<Stuff> stuff;
 };
 
@@ -123,12 +132,14 @@ class Exchange {
   bool keep_up();
   void find_gather();
   void find_whole();
+  void count_means();
 
   bool balls_ = true;
   std::vector<Role> roles_;
   bool gathers_ = false;
   bool follows_ = false;     // light into what is seen of an array's grains, where that is cheap
   bool shows_more_ = false;  // gathering, of some grains
+  Means means_;
   std::shared_ptr<const heap::Gather> gather_;
   std::vector<std::pair<std::size_t, std::size_t>> alike_;  // objects of one unit: the first, and after the last
   std::vector<bool> whole_;  // of objects, where clear ones are looked into: no model is asked of their unit

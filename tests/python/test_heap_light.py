@@ -252,6 +252,30 @@ def test_a_viewport_shows_what_is_known_of_a_heaps_light_and_then_more():
     assert statistics["links"] > 50 * len(SPHERES) and statistics["residual"] < 1e-3 < statistics["milliseconds"]
 
 
+@pytest.mark.parametrize("exchange, changed, means", [
+    ("heaps", {}, "walked"), ("order_1", {}, "modelled"), ("heaps", {"sigma_s": (40.0,) * 3}, "modelled"),
+    ("heaps", {"boundary": "dielectric", "sigma_s": (3.0,) * 3}, "modelled"),
+    ("heaps", {"boundary": "dielectric", "sigma_s": (0.01,) * 3}, "looked_into")])
+def test_it_tells_by_which_means_grains_are_shown(exchange, changed, means):
+    of = native.Material(**{"model": "model_2", "sigma_a": (0.001,) * 3, "sigma_s": (1.0,) * 3,
+                            "boundary": "index_matched", **changed})
+    view = native.View(16, 16, patient=False)
+    view.set_scene(native.Scene(arrays=[heap(of)], lights=lit(heap(of)).lights, exchange=exchange))
+    next(each_news(view))
+    told = view.statistics()["exchange"]["means"]
+    assert told == {**dict.fromkeys(("walked", "looked_into", "modelled", "sharing"), 0), means: len(SPHERES)}
+
+
+def test_it_tells_how_many_grains_share_numbers():
+    places = numpy.tile(numpy.eye(4), (40 ** 3, 1, 1))
+    places[:, :3, 3] = 2.0 * numpy.stack(numpy.meshgrid(*[numpy.arange(40.0)] * 3), axis=-1).reshape(-1, 3)
+    view = native.View(16, 16, patient=False)
+    view.set_scene(lit(native.InstanceArray(ROUND, native.Material(model="lambert", reflectance=(0.3,) * 3), places)))
+    next(each_news(view))
+    told = view.statistics()["exchange"]["means"]
+    assert told["modelled"] == 40 ** 3 and 0.5 < told["sharing"] / 40 ** 3 < 0.9
+
+
 def test_who_waits_for_the_light_sees_how_far_it_is_and_can_cancel():
     view = native.View(*MANIFEST["resolution"])
     view.set_scene(lit(heap(white(3.0))))

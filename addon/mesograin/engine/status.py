@@ -8,6 +8,10 @@ from . import stated_error
 RENDER, VIEWPORT = "render", "viewport"
 
 
+MEANS = (("walked", "by walks"), ("looked_into", "looked into"), ("modelled", "by their model"))
+"""By which a grain among others is shown, and what that is called."""
+
+
 @dataclasses.dataclass(frozen=True)
 class Exchange:
     """What was done for light between grains."""
@@ -20,6 +24,7 @@ class Exchange:
     residual: float
     milliseconds: float
     final: bool
+    means: dict  # how many grains are shown by which, as native.View.statistics() names them
     stated_error: str
 
     def lines(self):
@@ -29,7 +34,12 @@ class Exchange:
         others = f", {self.others} other objects without" if self.others else ""
         return (f"light between {self.grains} grains of {self.kinds} kinds: {self.milliseconds:.0f} ms{others}",
                 f"{self.links} links, {self.steps} steps, {self.residual:.1g} left"
-                + ("" if self.final else ", being refined"))
+                + ("" if self.final else ", being refined"), self._by_which_means())
+
+    def _by_which_means(self):
+        shown = [f"{self.means[name]} {how}" for name, how in MEANS if self.means[name]]
+        sharing = self.means["sharing"]
+        return ", ".join(shown) + (f"; {sharing} lie deep and share numbers" if sharing else "")
 
 
 def exchange(statistics):
