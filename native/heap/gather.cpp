@@ -89,7 +89,7 @@ Gather::Gather(std::shared_ptr<const Heap> heap, std::shared_ptr<const Found> fo
   of_others_ = heap_.exchanges ? of_others(heap_.grains.kinds) : heap_.grains.kinds;
 }
 
-Gather::Gather(std::shared_ptr<const Heap> heap, std::shared_ptr<const HeapLight> light)
+Gather::Gather(const std::shared_ptr<const Heap>& heap, std::shared_ptr<const HeapLight> light)
     : Gather(heap, std::make_shared<const Found>(heap, std::move(light))) {}
 
 std::unique_ptr<const Gather> Gather::among(std::shared_ptr<const Heap> heap) const {

@@ -23,7 +23,7 @@ class Asking;
 class Gather {
  public:
   /// `light`: the heap's.
-  Gather(std::shared_ptr<const Heap> heap, std::shared_ptr<const HeapLight> light);
+  Gather(const std::shared_ptr<const Heap>& heap, std::shared_ptr<const HeapLight> light);
 
   /// The same of a copy.
   Gather(const Heap& heap, std::shared_ptr<const HeapLight> light)
