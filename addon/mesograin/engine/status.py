@@ -7,7 +7,6 @@ from . import stated_error
 
 RENDER, VIEWPORT = "render", "viewport"
 
-
 MEANS = (("walked", "by walks"), ("looked_into", "looked into"), ("modelled", "by their model"))
 """By which a grain among others is shown, and what that is called."""
 

@@ -351,7 +351,7 @@ class MESOGRAIN_PT_statistics(MesograinPanel, bpy.types.Panel):
             draw_sentence(column, context, f"{latest.budget}.", icon="BLANK1")
         if latest.exchange:
             for line in latest.exchange.lines():
-                column.label(text=line, icon="BLANK1")
+                draw_sentence(column, context, line, icon="BLANK1")
             draw_sentence(column, context, f"Light between grains: {latest.exchange.stated_error}.", icon="BLANK1")
 
 
