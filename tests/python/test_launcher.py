@@ -93,6 +93,7 @@ class TestRunTests:
             return {result.name: result for result in runner.results}
 
         run_script.parts = run_parts
+        run_script.order = run_tests.ORDER
         yield run_script
         sys.path.remove(str(SOURCE / ".launcher"))
 
@@ -119,11 +120,12 @@ class TestRunTests:
         passes = """echo '<testsuites><testcase name="a"/></testsuites>' > "$1\""""
         meets = ("touch {own}; n=0; until [ -e {other} ]; do sleep 0.1; n=$((n + 1)); [ $n -lt 300 ] || exit 1; done; "
                  "sleep 0.5; touch {own}.ended; " + passes)
-        files = {part: tmp_path / part for part in ("window", "blender", "python")}
+        first, second, third = run.order[:3]
+        files = {part: tmp_path / part for part in (first, second, third)}
         results = run.parts({
-            "window": meets.format(own=files["window"], other=files["blender"]),
-            "blender": meets.format(own=files["blender"], other=files["window"]),
-            "python": f"[ -e {files['window']}.ended ] || [ -e {files['blender']}.ended ] && {passes}"})
+            first: meets.format(own=files[first], other=files[second]),
+            second: meets.format(own=files[second], other=files[first]),
+            third: f"[ -e {files[first]}.ended ] || [ -e {files[second]}.ended ] && {passes}"})
         assert {name: (each.passed, each.failed) for name, each in results.items()} == dict.fromkeys(files, (1, 0))
 
     @pytest.mark.parametrize("depth", [2, 40])
