@@ -47,7 +47,7 @@ std::vector<Asking> Gather::asking(std::uint32_t grain, transport::Random& rando
 }
 
 Gather::All Gather::walked_in(std::uint32_t grain, const glm::vec3& place, const glm::vec3& normal,
-                              const glm::vec3& towards, int walks, transport::Random& random) const {
+                              const glm::vec3& towards, const Walks& walks, transport::Random& random) const {
   // What leaves a facet goes on from where it is, not from the one point of the sphere that faces as it does.
   const glm::vec3 aside = place - space_.grains()[grain].radius * normal;
   const Grain& seen = space_.grains()[grain];
@@ -55,7 +55,7 @@ Gather::All Gather::walked_in(std::uint32_t grain, const glm::vec3& place, const
   const float mu = std::clamp(glm::dot(normal, towards), 0.0F, 1.0F);
   const TurnedFrame frame(normal, -towards);
   All all;
-  for (int i = 0; i < walks; ++i) {
+  for (int i = 0; i < walks.number; ++i) {
     std::vector<Asking> asking = this->asking(grain, random);
     const auto ask = [&](const glm::vec3& at, const glm::vec3& direction, const glm::vec3& weight) {
       const glm::vec3 in_frame = frame * at;
@@ -82,19 +82,34 @@ Gather::All Gather::walked_in(std::uint32_t grain, const glm::vec3& place, const
     const glm::vec3 leaves_at =
         space_.this_side(seen.middle + place, space_.place(seen, frame * outcome->normal) + aside);
     Ray ray{leaves_at, frame * outcome->direction, outcome->weight, false, grain};
-    if (const std::optional<glm::vec3> sent = sent_along(ray, random))
-      all.others += *sent;
+    if (const std::optional<Source> source = space_.follow(ray, random))
+      all.others += walks.once_more && is_walked_once_more(source->number) ? walked_in(*source, ray, random)
+                                                                           : told_by(*source, ray);
     else
       all.scattered += even_world(ray);
   }
-  all.others /= static_cast<float>(walks);
-  all.scattered /= static_cast<float>(walks);
+  all.others /= static_cast<float>(walks.number);
+  all.scattered /= static_cast<float>(walks.number);
   return all;
 }
 
+bool Gather::is_walked_once_more(std::uint32_t number) const {
+  return number < space_.grains().size() && sees_all(number) && !is_walked_behind(number);
+}
+
+glm::vec3 Gather::walked_in(const Source& source, const Ray& ray, transport::Random& random) const {
+  const Grain& grain = space_.grains()[source.number];
+  const glm::vec3 normal = glm::normalize(ray.origin - grain.middle);
+  const float mu = std::clamp(-glm::dot(normal, ray.direction), 0.0F, 1.0F);
+  // What does not go straight through it is in the ray's weight as in the walk's.
+  const glm::vec3 met = 1.0F - space_.kind(source.number).from_light->crossing(mu);
+  const All all = walked_in(source.number, grain.radius * normal, normal, -ray.direction, {1}, random);
+  return ray.weight / glm::max(met, 1e-6F) * (all.others + all.scattered);
+}
+
 Gather::All Gather::look_at_all(std::uint32_t grain, const glm::vec3& place, const glm::vec3& normal,
-                                const glm::vec3& towards, int rays, transport::Random& random) const {
-  All all = walked_in(grain, place, normal, towards, rays, random);
+                                const glm::vec3& towards, const Walks& walks, transport::Random& random) const {
+  All all = walked_in(grain, place, normal, towards, walks, random);
   Ray through = ray_through(grain, normal, towards);
   Behind behind;
   const auto crossed = [&](const Meeting& meeting, const Ray& ray) -> std::optional<glm::vec3> {
@@ -109,10 +124,10 @@ Gather::All Gather::look_at_all(std::uint32_t grain, const glm::vec3& place, con
   all.met = 1.0F - through.weight;
   all.straight = space_.seen_along(through, light_->sent, random, crossed);
   all.others += all.straight;
-  if (const int walks = behind.walks(rays, random)) {
+  if (const int more = behind.walks(walks.number, random)) {
     const SeenFacet& there = behind.seen;
     const glm::vec3 from_middle = space_.grains()[there.grain].radius * there.normal;
-    behind.show(walked_in(there.grain, from_middle, there.normal, there.towards, walks, random), all);
+    behind.show(walked_in(there.grain, from_middle, there.normal, there.towards, {more, walks.once_more}, random), all);
   }
   all.others = glm::max(all.others, 0.0F);
   show_what_is_behind(through, all);
@@ -193,8 +208,7 @@ glm::vec3 Gather::passed_between(std::uint32_t grain, glm::vec3 place, const glm
 
 glm::vec3 Gather::sent_by(const Meeting& meeting, Ray& ray, transport::Random& random) const {
   const std::optional<Source> source = space_.source(meeting, ray, random);
-  if (!source) return glm::vec3(0.0F);
-  return ray.weight / source->met * light_->seats->light_at(light_->sent, source->number, source->normal, true);
+  return source ? told_by(*source, ray) : glm::vec3(0.0F);
 }
 
 bool Gather::is_walked_behind(std::uint32_t grain) const {
@@ -203,7 +217,7 @@ bool Gather::is_walked_behind(std::uint32_t grain) const {
 }
 
 glm::vec3 Gather::seen_between(std::uint32_t grain, std::optional<Meeting> wall, Crossings crossings, Ray& ray,
-                               const Facets& facets, transport::Random& random, Behind* behind) const {
+                               const Facets& facets, transport::Random& random, Behind* behind, bool once_more) const {
   glm::vec3 seen(0.0F);
   for (int crossed = 0; crossed < most_crossed && largest(ray.weight) >= nothing; ++crossed) {
     const std::optional<Meeting> meeting =
@@ -225,8 +239,14 @@ glm::vec3 Gather::seen_between(std::uint32_t grain, std::optional<Meeting> wall,
     } else if (crossings == Crossings::drawn) {
       share = mean(ray.weight * crossing) / mean(ray.weight);
       if (random.uniform() >= share) {
-        here.weight = ray.weight * (1.0F - crossing) / (1.0F - share);
+        here.weight = ray.weight / (1.0F - share);
         ray.weight = glm::vec3(0.0F);
+        if (once_more && is_walked_once_more(grain) && (end || !is_transparent(grain))) {
+          const SeenFacet there{grain, meeting->place, meeting->normal, -ray.direction};
+          const All all = walked_in(there, end, facets, {1}, random);
+          return here.weight * (all.others + all.scattered);
+        }
+        here.weight *= 1.0F - crossing;
         return sent_by(*meeting, here, random);
       }
     } else {
@@ -241,13 +261,13 @@ glm::vec3 Gather::seen_between(std::uint32_t grain, std::optional<Meeting> wall,
   return seen;
 }
 
-Gather::All Gather::walked_in(const SeenFacet& seen, const std::optional<End>& across, const Facets& facets, int walks,
-                              transport::Random& random) const {
+Gather::All Gather::walked_in(const SeenFacet& seen, const std::optional<End>& across, const Facets& facets,
+                              const Walks& walks, transport::Random& random) const {
   const Grain& grain = space_.grains()[seen.grain];
   const Optics& optics = heap_.grains.kinds[grain.kind];
   const bool transparent = optics.transparent();
   All all;
-  for (int i = 0; i < walks; ++i) {
+  for (int i = 0; i < walks.number; ++i) {
     std::vector<Asking> asking = this->asking(seen.grain, random);
     const bool followed_out = transparent && asking.size() <= most_followed_out;
     const auto ask = [&](const glm::vec3& at, const glm::vec3& direction, const glm::vec3& weight) {
@@ -272,27 +292,29 @@ Gather::All Gather::walked_in(const SeenFacet& seen, const std::optional<End>& a
     }
     if (!passage) continue;
     Ray ray{passage->place, passage->direction, passage->weight};
-    all.others += seen_between(seen.grain, passage->wall, Crossings::drawn, ray, facets, random);
+    all.others +=
+        seen_between(seen.grain, passage->wall, Crossings::drawn, ray, facets, random, nullptr, walks.once_more);
     all.scattered += even_world(ray);
   }
-  all.others /= static_cast<float>(walks);
-  all.scattered /= static_cast<float>(walks);
+  all.others /= static_cast<float>(walks.number);
+  all.scattered /= static_cast<float>(walks.number);
   return all;
 }
 
-std::optional<Gather::All> Gather::look_at_all(const SeenFacet& seen, const Facets& facets, int rays,
+std::optional<Gather::All> Gather::look_at_all(const SeenFacet& seen, const Facets& facets, const Walks& walks,
                                                transport::Random& random) const {
   Ray through{};
-  std::optional<All> all = look_at_all_but_world(seen, facets, rays, random, through);
+  std::optional<All> all = look_at_all_but_world(seen, facets, walks, random, through);
   if (all) show_what_is_behind(through, *all);
   return all;
 }
 
-std::optional<Gather::All> Gather::look_at_all_but_world(const SeenFacet& seen, const Facets& facets, int rays,
-                                                         transport::Random& random, Ray& through) const {
+std::optional<Gather::All> Gather::look_at_all_but_world(const SeenFacet& seen, const Facets& facets,
+                                                         const Walks& walks, transport::Random& random,
+                                                         Ray& through) const {
   const std::optional<End> across = end_across(seen.grain, seen.place, -seen.towards, facets);
   if (is_transparent(seen.grain) && !across) return std::nullopt;
-  All all = walked_in(seen, across, facets, rays, random);
+  All all = walked_in(seen, across, facets, walks, random);
   through = {seen.place - (across ? across->distance : 0.0F) * seen.towards, -seen.towards,
              left_across_seen(seen.grain, across)};
   const std::optional<Meeting> wall =
@@ -301,8 +323,8 @@ std::optional<Gather::All> Gather::look_at_all_but_world(const SeenFacet& seen, 
   all.met = 1.0F - through.weight;
   all.straight = seen_between(seen.grain, wall, Crossings::all, through, facets, random, &behind);
   all.others += all.straight;
-  if (const int walks = behind.walks(rays, random))
-    behind.show(walked_in(behind.seen, behind.across, facets, walks, random), all);
+  if (const int more = behind.walks(walks.number, random))
+    behind.show(walked_in(behind.seen, behind.across, facets, {more, walks.once_more}, random), all);
   all.others = glm::max(all.others, 0.0F);
   return all;
 }

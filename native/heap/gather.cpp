@@ -96,10 +96,14 @@ std::unique_ptr<const Gather> Gather::among(std::shared_ptr<const Heap> heap) co
   return std::unique_ptr<const Gather>(new Gather(std::move(heap), found_));
 }
 
+glm::vec3 Gather::told_by(const Source& source, const Ray& ray) const {
+  return ray.weight / source.met * light_->seats->light_at(light_->sent, source.number, source.normal, true);
+}
+
 std::optional<glm::vec3> Gather::sent_along(Ray& ray, transport::Random& random) const {
   const std::optional<Source> source = space_.follow(ray, random);
   if (!source) return std::nullopt;
-  return ray.weight / source->met * light_->seats->light_at(light_->sent, source->number, source->normal, true);
+  return told_by(*source, ray);
 }
 
 std::optional<glm::vec3> Gather::seen_of_others(Ray& ray, transport::Random& random) const {
@@ -108,7 +112,7 @@ std::optional<glm::vec3> Gather::seen_of_others(Ray& ray, transport::Random& ran
   const std::uint32_t number = source->number;
   if (number < space_.grains().size() && heap_.grains.kinds[space_.grains()[number].kind].surface == Surface::lambert)
     return ray.weight * sent_by_lambert(number, ray.origin, random);
-  return ray.weight / source->met * light_->seats->light_at(light_->sent, number, source->normal, true);
+  return told_by(*source, ray);
 }
 
 glm::vec3 Gather::sent_by_lambert(std::uint32_t grain, const glm::vec3& place, transport::Random& random) const {
@@ -259,15 +263,14 @@ void Gather::follow_look(SeenFacet seen, const Facets& facets, const Look& how, 
       Ray ray{passage->place, passage->direction, weight};
       if (!meeting->wall && heap_.grains.kinds[space_.grains()[meeting->number].kind].followed()) {
         const SeenFacet there{meeting->number, meeting->place, meeting->normal, -passage->direction};
-        if (const std::optional<All> all = look_at_all_but_world(there, facets, 1, random, ray)) {
+        if (const std::optional<All> all = look_at_all_but_world(there, facets, {1}, random, ray)) {
           behind += weight * (all->others + all->scattered);
           see_world(weight * ray.weight);
           return;
         }
       }
       if (const std::optional<Source> source = space_.source(*meeting, ray, random))
-        behind += ray.weight / source->met *
-                  glm::max(light_->seats->light_at(light_->sent, source->number, source->normal, true), 0.0F);
+        behind += glm::max(told_by(*source, ray), 0.0F);
       return;
     }
     wandered = wandered || meeting->number != seen.grain;

@@ -49,6 +49,14 @@ class Gather {
   /// surface that refracts allows. The whole grain or none of it: a part by each would show an edge between them.
   bool sees_all(std::uint32_t grain) const;
 
+  /// What follows light from what is seen of a grain.
+  struct Walks {
+    int number;
+    /// A grain that one of them meets is walked in, too, once: few numbers do not tell how much darker it is where
+    /// others stand about it.
+    bool once_more = false;
+  };
+
   /// What is seen of a grain, by where it comes from.
   struct All {
     glm::vec3 others{0.0F};     ///< grains and walls, scattered or straight through it
@@ -63,10 +71,10 @@ class Gather {
   /// The same with what comes straight from lights, and the world behind it. `place`: of the surface that is seen, from
   /// the grain's middle.
   All look_at_all(std::uint32_t grain, const glm::vec3& place, const glm::vec3& normal, const glm::vec3& towards,
-                  int rays, transport::Random& random) const;
+                  const Walks& walks, transport::Random& random) const;
 
   /// The same through its own facets, and past those of others; nothing, where it does not end behind that place.
-  std::optional<All> look_at_all(const SeenFacet& seen, const Facets& facets, int rays,
+  std::optional<All> look_at_all(const SeenFacet& seen, const Facets& facets, const Walks& walks,
                                  transport::Random& random) const;
 
   /// Whether a polynomial tells the light in a grain well enough: it scatters evenly and is not so thick that light
@@ -211,7 +219,7 @@ class Gather {
   glm::vec3 even_world(const Ray& ray) const;
   Ray ray_through(std::uint32_t grain, const glm::vec3& normal, const glm::vec3& towards) const;
   /// look_at_all() but for the world behind it, where `through` leaves the heap.
-  std::optional<All> look_at_all_but_world(const SeenFacet& seen, const Facets& facets, int rays,
+  std::optional<All> look_at_all_but_world(const SeenFacet& seen, const Facets& facets, const Walks& walks,
                                            transport::Random& random, Ray& through) const;
   /// The world or the film, where a straight way through a grain has left the heap.
   void show_what_is_behind(const Ray& through, All& all) const;
@@ -240,18 +248,25 @@ class Gather {
                            const Facets& facets) const;
   /// What is sent from where a ray has met something.
   glm::vec3 sent_by(const Meeting& meeting, Ray& ray, transport::Random& random) const;
+  /// The same by the numbers of what it is.
+  glm::vec3 told_by(const Source& source, const Ray& ray) const;
+  /// Whether a grain that a walk meets can be walked in. Not what is no grain; nor where what is scattered forwards
+  /// counts as crossing, which such a walk would tell again.
+  bool is_walked_once_more(std::uint32_t number) const;
   /// Of a transparent grain on the way: what it sends and what crosses it, or one of the two, drawn.
   enum class Crossings { all, drawn };
   /// What lights, the world and others do in a grain, from a place of its surface that a view ray meets, but for what
-  /// crosses it straight: the mean of so many walks.
-  All walked_in(const SeenFacet& seen, const std::optional<End>& across, const Facets& facets, int walks,
+  /// crosses it straight: the mean of all walks.
+  All walked_in(const SeenFacet& seen, const std::optional<End>& across, const Facets& facets, const Walks& walks,
                 transport::Random& random) const;
   /// The same where its inner light is known.
   All seen_in(const SeenFacet& seen, const End& across, const InnerLight& light, const Facets& facets,
               transport::Random& random) const;
   /// The same in its ball; `place`: from its middle.
   All walked_in(std::uint32_t grain, const glm::vec3& place, const glm::vec3& normal, const glm::vec3& towards,
-                int walks, transport::Random& random) const;
+                const Walks& walks, transport::Random& random) const;
+  /// What a grain that a ray has met sends along it, by a walk in its ball.
+  glm::vec3 walked_in(const Source& source, const Ray& ray, transport::Random& random) const;
   /// Grains that a view ray meets behind others, of which one is walked in for all.
   struct Behind {
     float met = 0.0F;  ///< the share of light that all of them scatter or absorb
@@ -273,8 +288,10 @@ class Gather {
   /// What others send along a ray from a grain's surface, straight through those that let it; `wall`: what it meets
   /// first, if that is known. Leaves it what weight leaves the heap.
   /// What those send that are walked behind is left out where there is a `behind` for them.
+  /// Where crossings are drawn, grains may be walked in `once_more`.
   glm::vec3 seen_between(std::uint32_t grain, std::optional<Meeting> wall, Crossings crossings, Ray& ray,
-                         const Facets& facets, transport::Random& random, Behind* behind = nullptr) const;
+                         const Facets& facets, transport::Random& random, Behind* behind = nullptr,
+                         bool once_more = false) const;
 
   struct Found;
   Gather(std::shared_ptr<const Heap> heap, std::shared_ptr<const Found> found);

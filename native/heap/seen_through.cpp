@@ -24,7 +24,7 @@ glm::vec3 Gather::lit_behind(std::uint32_t grain, const glm::vec3& normal, const
   const glm::vec3 met = 1.0F - space_.kind(source->number).from_light->crossing(cosine);
   // What does not go straight through it is in the ray's weight as in the walk's.
   const glm::vec3 weight = ray.weight / glm::max(met, 1e-6F);
-  return weight * look_at_all(source->number, behind.radius * facing, facing, -ray.direction, 1, random).scattered;
+  return weight * look_at_all(source->number, behind.radius * facing, facing, -ray.direction, {1}, random).scattered;
 }
 
 glm::vec3 Gather::lit_behind(const SeenFacet& seen, const Facets& facets, transport::Random& random) const {
@@ -44,7 +44,7 @@ glm::vec3 Gather::lit_behind(const SeenFacet& seen, const Facets& facets, transp
     const float share = (left.r + left.g + left.b) / (weight.r + weight.g + weight.b);
     if (random.uniform() >= share) {
       const SeenFacet behind{grain, meeting->place, meeting->normal, -direction};
-      const std::optional<All> all = is_lit(grain) ? look_at_all(behind, facets, 1, random) : std::nullopt;
+      const std::optional<All> all = is_lit(grain) ? look_at_all(behind, facets, {1}, random) : std::nullopt;
       return all ? weight / (1.0F - share) * all->scattered : glm::vec3(0.0F);
     }
     if (end && end->wall) break;

@@ -32,7 +32,6 @@ struct Stuff {
   Range eta;
 };
 
-/// What is drawn of light between grains.
 /// How many grains are shown by which means, where rays find what is seen, and told to others.
 struct Means {
   std::size_t walked = 0;       ///< light is followed from what is seen of them, and no model asked
@@ -41,6 +40,7 @@ struct Means {
   std::size_t sharing = 0;      ///< of all these, those that lie so deep that they share numbers
 };
 
+/// What is drawn of light between grains.
 struct ExchangeStatistics {
   std::size_t grains = 0;     ///< that send light to each other
   std::size_t others = 0;     ///< objects that do not

@@ -74,7 +74,7 @@ Gather::All looked(Heap heap, const Optics& optics, const SeenFacet& seen) {
   heap.grains.grains = {{glm::vec3(0.0F), 1.0F, 0}};
   const Gather gather(heap, std::make_shared<const HeapLight>(light_alone(heap, {})));
   transport::Random random(5, 0);
-  const std::optional<Gather::All> all = gather.look_at_all(seen, facets(), walks, random);
+  const std::optional<Gather::All> all = gather.look_at_all(seen, facets(), {walks}, random);
   EXPECT_TRUE(all);
   return all.value_or(Gather::All{});
 }
@@ -119,7 +119,7 @@ TEST(MediumLook, IsNoneWhereAGrainHasNoOtherSide) {
   heap.grains.grains = {{glm::vec3(0.0F), 1.0F, 0}};
   const Gather gather(heap, std::make_shared<const HeapLight>(light_alone(heap, {})));
   transport::Random random(5, 0);
-  EXPECT_FALSE(gather.look_at_all(seen_from(1.0F), Sheet(), 1, random));
+  EXPECT_FALSE(gather.look_at_all(seen_from(1.0F), Sheet(), {1}, random));
 }
 
 }  // namespace

@@ -98,7 +98,7 @@ TEST(Walls, HaveNoLightBehindThem) {
   // Straight through it from above there is the black ground.
   transport::Random random(4, 0);
   const glm::vec3 up(0.0F, 0.0F, 1.0F);
-  const Gather::All seen = Gather(heap, light).look_at_all(0, up, up, up, 4096, random);
+  const Gather::All seen = Gather(heap, light).look_at_all(0, up, up, up, {4096}, random);
   EXPECT_EQ(seen.world, glm::vec3(0.0F));
   // Of what is scattered half goes down.
   EXPECT_LT(seen.scattered.r + seen.others.r, 0.6F);

@@ -119,6 +119,7 @@ bool GatherPass::run(const Sample& sample, const ArrayVisibility& arrays, Surfac
   // By what is known of grains' inner light it costs less still, and is nearer.
   if (sample.learns) inner_lights_.keep_to(gather);
   const bool knows = first_look && facets && sample.learns;
+  const heap::Gather::Walks walks{rays_a_sample, all};
   const float narrowed = heap::Gather::narrowed(sample.index);
   const std::uint64_t seed = (static_cast<std::uint64_t>(sample.seed) << 32U) + sample.index;
   const bool whole = cast_rows(sample.size.y, sample.go_on, [&](int first, int end) {
@@ -152,9 +153,8 @@ bool GatherPass::run(const Sample& sample, const ArrayVisibility& arrays, Surfac
         const bool by_facets = facets && !roles[number].ball && !first_look;
         if (const heap::InnerLight* light = knows ? inner_lights_.of(*grain) : nullptr)
           found = gather->look_at_all(at, *facets, *light, random);
-        if (by_facets) found = gather->look_at_all(at, *facets, rays_a_sample, random);
-        if (!found)
-          found = gather->look_at_all(*grain, glm::vec3(seen.positions[i]), normal, towards, rays_a_sample, random);
+        if (by_facets) found = gather->look_at_all(at, *facets, walks, random);
+        if (!found) found = gather->look_at_all(*grain, glm::vec3(seen.positions[i]), normal, towards, walks, random);
         others_[i] = glm::vec4(found->others - found->straight, 1.0F);
         straight_[i] = glm::vec4(found->straight, 0.0F);
         steady_[i] = glm::vec4(found->steady, 0.0F);
