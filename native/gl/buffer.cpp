@@ -1,5 +1,7 @@
-// Immutable device storage.
+// Device storage, immutable but for what is written later.
 #include "gl/buffer.h"
+
+#include <algorithm>
 
 #include "gl/check.h"
 
@@ -21,6 +23,16 @@ Buffer::Buffer(const void* data, std::size_t bytes) : bytes_(bytes) {
   else
     glNamedBufferStorage(handle_.name(), static_cast<GLsizeiptr>(bytes), data, 0);
   require_memory("a mesh", bytes, "draw fewer triangles");
+}
+
+Buffer::Buffer(std::size_t bytes) : bytes_(bytes) {
+  glNamedBufferStorage(handle_.name(), static_cast<GLsizeiptr>(std::max(bytes, std::size_t{1})), nullptr,
+                       GL_DYNAMIC_STORAGE_BIT);
+  require_memory("light between grains", bytes, "show fewer grains");
+}
+
+void Buffer::write(std::size_t first, const void* data, std::size_t bytes) {
+  glNamedBufferSubData(handle_.name(), static_cast<GLintptr>(first), static_cast<GLsizeiptr>(bytes), data);
 }
 
 void Buffer::bind_storage(GLuint binding) const { glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, handle_.name()); }

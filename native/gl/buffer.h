@@ -15,6 +15,10 @@ class Buffer {
   template <typename Value>
   explicit Buffer(const std::vector<Value>& values) : Buffer(values.data(), values.size() * sizeof(Value)) {}
 
+  /// Room for what is written later.
+  explicit Buffer(std::size_t bytes);
+  void write(std::size_t first, const void* data, std::size_t bytes);
+
   GLuint name() const { return handle_.name(); }
   std::size_t bytes() const { return bytes_; }
 

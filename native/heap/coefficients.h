@@ -8,6 +8,7 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 #include <memory>
+#include <utility>
 #include <vector>
 
 namespace mesograin::heap {
@@ -161,6 +162,23 @@ struct Share {
 
 /// One for each grain.
 using Field = std::vector<Coefficients>;
+
+/// One that does not change, of which all copies are the same.
+class SharedField {
+ public:
+  SharedField() : SharedField(Field()) {}
+  explicit SharedField(Field field) : field_(std::make_shared<const Field>(std::move(field))) {}
+
+  operator const Field&() const { return *field_; }  // NOLINT(google-explicit-constructor): it is one
+
+  const Coefficients& operator[](std::size_t i) const { return (*field_)[i]; }
+  std::size_t size() const { return field_->size(); }
+  Field::const_iterator begin() const { return field_->begin(); }
+  Field::const_iterator end() const { return field_->end(); }
+
+ private:
+  std::shared_ptr<const Field> field_;
+};
 
 /// What leaves grains and walls because of lights: without and with other grains on the way.
 struct Lit {

@@ -66,7 +66,7 @@ struct HeapLight {
   /// Of grains in seats of their own only: how much of the world is seen through one that lets light through
   /// unscattered, by look_through() or, refracted, by the place that tells `answer`.
   std::vector<Share> open;
-  Field sent;  ///< exitance over pi because of all light, to begin the next solution from
+  SharedField sent;  ///< exitance over pi because of all light, to begin the next solution from
   std::shared_ptr<const Seats> seats;
   /// Of clear grains: what they have scattered of `sent`, over the share of light that they scatter, and what of that
   /// answers to what others send; empty where none is clear.

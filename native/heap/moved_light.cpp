@@ -83,21 +83,23 @@ std::optional<HeapLight> moved_light(const HeapLight& light, const Grains& befor
     ways_back.push_back(way_back(before.walls[wall], now.walls[wall]));
   const std::vector<std::vector<std::uint32_t>> from = sources(light.patches, moved.patches, ways_back);
   const std::size_t told = light.seats->told();
-  for (Field HeapLight::*const field : {&HeapLight::answer, &HeapLight::crossed, &HeapLight::behind, &HeapLight::sent,
-                                        &HeapLight::scattered, &HeapLight::scattered_answer}) {
-    const Field& was = light.*field;
-    if (was.size() != told + light.patches.nodes().size()) continue;  // none of walls
-    const Coefficients* of_nodes = was.data() + told;
-    const std::vector<Coefficients> mean = means(of_nodes, light.patches, now.walls.size());
-    Field& is = moved.*field;
-    is.resize(told + from.size());
+  const auto carry = [&](Field& field) {
+    if (field.size() != told + light.patches.nodes().size()) return;  // none of walls
+    const std::vector<Coefficients> of_nodes(field.begin() + static_cast<std::ptrdiff_t>(told), field.end());
+    const std::vector<Coefficients> mean = means(of_nodes.data(), light.patches, now.walls.size());
+    field.resize(told + from.size());
     for (std::size_t i = 0; i < from.size(); ++i) {
       Coefficients sum;
       for (const std::uint32_t source : from[i]) sum = sum + of_nodes[source];
-      is[told + i] = from[i].empty() ? mean[moved.patches.nodes()[i].wall]
-                                     : sum * glm::vec3(1.0F / static_cast<float>(from[i].size()));
+      field[told + i] = from[i].empty() ? mean[moved.patches.nodes()[i].wall]
+                                        : sum * glm::vec3(1.0F / static_cast<float>(from[i].size()));
     }
-  }
+  };
+  for (Field* field : {&moved.answer, &moved.crossed, &moved.behind, &moved.scattered, &moved.scattered_answer})
+    carry(*field);
+  Field sent = moved.sent;
+  carry(sent);
+  moved.sent = SharedField(std::move(sent));
   return moved;
 }
 

@@ -19,9 +19,14 @@ glm::dvec3 strength(const Heap& heap) {
 }
 
 void scale(HeapLight& light, const glm::vec3& by) {
-  for (Field HeapLight::*const field : {&HeapLight::answer, &HeapLight::crossed, &HeapLight::behind, &HeapLight::sent,
-                                        &HeapLight::scattered, &HeapLight::scattered_answer})
-    for (Coefficients& one : light.*field) one = one * by;
+  const auto scale = [&by](Field& field) {
+    for (Coefficients& one : field) one.scale(by);
+  };
+  for (Field* field : {&light.answer, &light.crossed, &light.behind, &light.scattered, &light.scattered_answer})
+    scale(*field);
+  Field sent = light.sent;
+  scale(sent);
+  light.sent = SharedField(std::move(sent));
 }
 
 }  // namespace mesograin::heap

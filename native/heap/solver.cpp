@@ -400,9 +400,8 @@ HeapLight Solver::solve(const std::shared_ptr<const Heap>& shared, const Quality
     light.behind.assign(traced_->ways.behind.of.size(), {});
   else
     traced_->ways.behind.gather(solved.sent, light.behind, effort, change ? &*change : nullptr);
-  sent_ = solved.sent;
+  sent_ = light.sent = SharedField(std::move(solved.sent));
   sent_seats_ = light.seats;
-  light.sent = std::move(solved.sent);
   light.links = traced_->ways.links.count();
   light.steps = solved.steps;
   light.residual = solved.residual;

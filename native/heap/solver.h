@@ -93,7 +93,7 @@ class Solver {
   std::shared_ptr<Matter> matter_;
   std::optional<Traced> traced_;
   std::vector<Source> sources_;
-  Field sent_;
+  SharedField sent_;
   std::shared_ptr<const Seats> sent_seats_;
   Field left_;  ///< that this leaves of its equations
   Parts parts_;

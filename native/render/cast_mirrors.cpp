@@ -19,14 +19,14 @@ constexpr float clear_of_crossed = 1e-4F;
 constexpr int across = 4, high = 2;  // as many have one mind whether a ray follows (shaders/models/mirrored_world.glsl)
 static_assert(across * high == static_cast<int>(casting::rays_in_packet));
 
-bool has_part(const Exchange::Role& role) { return role.grain || role.wall; }
+bool has_part(const RoleInHeap& role) { return role.grain || role.wall; }
 
 // What light goes on between grains and walls, what a dielectric grain's surface reflects of it among it, is told by
 // the exchange: such a grain mirrors none of them.
 class Told {
  public:
   Told(const Content& content, const Exchange& exchange) : content_(content), exchange_(exchange) {
-    const std::vector<Exchange::Role>& roles = exchange.roles();
+    const std::vector<RoleInHeap>& roles = exchange.roles();
     all_ = exchange.any() && std::all_of(roles.begin(), roles.end(), has_part);
   }
 

@@ -144,7 +144,7 @@ std::optional<heap::Meeting> ContentFacets::beyond(std::uint32_t grain, const gl
   std::optional<Hit> hit =
       first_hit(origin - clearance * direction, direction, object, roles_[object].pane ? 2.0F * clearance : 0.0F);
   for (int passed = 0; hit && passed < most_passed; ++passed) {
-    const Exchange::Role& role = roles_[hit->object];
+    const RoleInHeap& role = roles_[hit->object];
     // One that reaches into the grain that is looked through is not met from inside.
     if (role.grain && hit->front) return heap::Meeting{false, *role.grain, hit->place, hit->normal};
     if (const std::optional<heap::Meeting> wall = wall_at(*hit, direction)) return wall;

@@ -51,7 +51,7 @@ class ContentFacets : public heap::Facets {
 
   const CastContent& cast_;
   const Content& content_;
-  const std::vector<Exchange::Role>& roles_;
+  const std::vector<RoleInHeap>& roles_;
   std::vector<std::size_t> objects_;  // their numbers, of the grains
   enum class Reached : std::uint8_t { unknown, perhaps, never };
   mutable std::vector<std::atomic<Reached>> reached_;  // of the instances, as they are asked for

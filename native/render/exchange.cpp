@@ -123,7 +123,7 @@ class Gatherer {
   }
 
   heap::Grains grains;
-  std::vector<Exchange::Role> roles;
+  std::vector<RoleInHeap> roles;
   bool balls = true;
 
  private:
@@ -292,8 +292,7 @@ void Exchange::set(DeviceCache& cache, const Content& content, const scene::Scen
   if (grains.grains.empty() || !lit) {
     solving_.reset();
     known_.reset();
-    device_.reset();
-    device_walls_.reset();
+    told_.reset();
     gather_.reset();
     return;
   }
@@ -398,7 +397,7 @@ void Exchange::find_whole() {
   if (!gather_ || !(gathers_ || follows_)) return;
   const heap::Grains& grains = gather_->heap().grains;
   const bool lit = !gather_->heap().lights.empty();
-  const auto is_clear = [&](const Role& role) {
+  const auto is_clear = [&](const RoleInHeap& role) {
     if (!role.grain || !gather_->sees_into(*role.grain)) return false;
     const heap::Optics& optics = grains.kinds[grains.grains[*role.grain].kind];
     return optics.clear() && (!lit || !optics.lens || optics.scatters_little());
@@ -481,123 +480,12 @@ ExchangeStatistics Exchange::statistics() const {
   return result;
 }
 
-namespace {
-
-/// As shaders/heap/light_from_grains.glsl reads them: all that is told of heaps, behind one vec4 of each object.
-class Packing {
- public:
-  Packing(const heap::HeapLight& light, const heap::Grains& grains, std::size_t objects)
-      : light_(light), seats_(*light.seats) {
-    constexpr std::size_t numbers_of_seat = 7;
-    constexpr std::size_t numbers_of_term = 3;
-    numbers_.assign(objects, glm::vec4(-1.0F, 0.0F, 0.0F, 0.0F));
-    for (std::size_t kind = 0; kind < light.kinds.size(); ++kind)
-      add_kind(*light.kinds[kind].from_light, heap::of_others(grains.kinds[kind]));
-    numbers_.reserve(numbers_.size() + numbers_of_seat * seats_.own() +
-                     numbers_of_term * (seats_.told() - seats_.own()) + light.patches.nodes().size());
-    for (std::uint32_t seat = 0; seat < seats_.own(); ++seat) add_seat(seat);
-    cells_begin_ = numbers_.size();
-    for (std::size_t term = seats_.own(); term < seats_.told(); ++term) add(light.answer[term]);
-    nodes_begin_ = numbers_.size();
-    for (std::size_t node = 0; node < light.patches.nodes().size(); ++node) {
-      const auto& channels = light.answer[seats_.told() + node].channels;
-      numbers_.emplace_back(channels[0].w, channels[1].w, channels[2].w, 0.0F);
-    }
-  }
-
-  void tell_grain(std::size_t object, std::uint32_t number, const heap::Grain& grain) {
-    glm::vec4& of = numbers_[object];
-    of = {kinds_[grain.kind], 0.0F, grain.radius, 0.0F};
-    if (!seats_.shares(number)) {
-      const Told& told = told_[seats_.seat(number)];
-      of.y = static_cast<float>(told.second_order);
-      of.w = static_cast<float>(told.first);
-      return;
-    }
-    std::uint32_t place = 0;
-    for (int axis = 0; axis < 3; ++axis)
-      place |= static_cast<std::uint32_t>(128 + seats_.place_in_cell(number)[static_cast<std::size_t>(axis)])
-               << (8 * axis);
-    of.y = static_cast<float>(place);
-    of.w = -static_cast<float>(cells_begin_ + 3 * (seats_.first_of_cell(number) - seats_.own()));
-  }
-
-  void tell_wall(std::size_t object, std::uint32_t number, const heap::Wall& wall) {
-    numbers_[object] = {kinds_[wall.kind], number, 0.0F, 0.0F};
-  }
-
-  /// Where the values of the walls' nodes are.
-  std::size_t nodes_begin() const { return nodes_begin_; }
-
-  const std::vector<glm::vec4>& numbers() const { return numbers_; }
-
- private:
-  /// Where.
-  struct Told {
-    std::uint32_t first;
-    std::uint32_t second_order;  ///< 0: there is none
-  };
-
-  void add(const heap::Coefficients& coefficients) {
-    numbers_.insert(numbers_.end(), coefficients.channels.begin(), coefficients.channels.end());
-  }
-
-  void add_kind(const heap::GrainTable& table, const heap::Optics& optics) {
-    kinds_.push_back(static_cast<float>(numbers_.size()));
-    // What is not transparent lets nothing through.
-    const std::vector<glm::vec2>& offsets = table.came_in().offsets();
-    numbers_.emplace_back(optics.transparent() ? glm::vec3(optics.sigma_t) : glm::vec3(1e30F),
-                          offsets.empty() ? 0.0F : table.seen_place_scale());
-    const std::size_t lobe = numbers_.size();
-    for (const glm::vec3& node : table.lobe()) numbers_.emplace_back(node, 0.0F);
-    numbers_[lobe].w = table.seen_by().x;
-    numbers_[lobe + 1].w = table.seen_by().y;
-    for (std::size_t pair = 0; pair < offsets.size(); pair += 2)
-      numbers_.emplace_back(offsets[pair], offsets[pair + 1]);
-  }
-
-  void add_seat(std::uint32_t seat) {
-    told_.push_back({static_cast<std::uint32_t>(numbers_.size()), 0});
-    add(light_.answer[seat]);
-    add(light_.behind[seat]);
-    numbers_.push_back(light_.open[seat].first);
-    const heap::SecondOrders::Numbers* second = light_.answer[seat].second.get();
-    if (second == nullptr) return;
-    told_.back().second_order = static_cast<std::uint32_t>(numbers_.size());
-    const heap::SecondOrder& open = light_.open[seat].second;
-    for (std::size_t i = 0; i < open.size(); ++i)
-      numbers_.emplace_back((*second)[0][i], (*second)[1][i], (*second)[2][i], open[i]);
-  }
-
-  const heap::HeapLight& light_;
-  const heap::Seats& seats_;
-  std::vector<glm::vec4> numbers_;
-  std::vector<float> kinds_;  // where they are
-  std::vector<Told> told_;    // of seats of one grain
-  std::size_t cells_begin_ = 0;
-  std::size_t nodes_begin_ = 0;
-};
-
-}  // namespace
-
 void Exchange::send() {
   if (!any()) return;
-  if (!known_) {
-    device_walls_.emplace(heap::Patches().packed(0));
-    device_.emplace(std::vector<glm::vec4>(roles_.size(), glm::vec4(-1.0F, 0.0F, 0.0F, 0.0F)));
-    return;
-  }
-  const heap::Grains& grains = known_->grains();
-  Packing packing(*known_->light, grains, roles_.size());
-  for (std::size_t object = 0; object < roles_.size(); ++object) {
-    const Role& role = roles_[object];
-    // A grain that has just come is dark for a moment.
-    if (role.grain && *role.grain < grains.grains.size())
-      packing.tell_grain(object, *role.grain, grains.grains[*role.grain]);
-    if (role.wall && *role.wall < grains.walls.size()) packing.tell_wall(object, *role.wall, grains.walls[*role.wall]);
-  }
-  device_walls_.emplace(known_->light->patches.packed(static_cast<std::uint32_t>(packing.nodes_begin())));
-  device_.emplace(packing.numbers());
+  if (known_)
+    told_.tell(*known_->light, known_->grains(), roles_);
+  else
+    told_.tell_darkness(roles_.size());
 }
 
 }  // namespace mesograin::render

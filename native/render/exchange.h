@@ -9,11 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include "gl/buffer.h"
 #include "heap/gather.h"
 #include "heap/solving.h"
 #include "render/content.h"
-#include "render/device_layout.h"
+#include "render/told_light.h"
 #include "scene/scene.h"
 
 namespace mesograin::render {
@@ -89,10 +88,7 @@ class Exchange {
   ExchangeStatistics statistics() const;
 
   /// Makes it what shaders/heap/light_from_grains.glsl and light_of_walls.glsl read.
-  void bind() const {
-    device_->bind_storage(layout::HEAP_LIGHT_BINDING);
-    device_walls_->bind_storage(layout::WALL_LIGHT_BINDING);
-  }
+  void bind() const { told_.bind(); }
 
   /// What gathers light for each pixel, or for those that show clear grains; null where it is not to be.
   const std::shared_ptr<const heap::Gather>& gather() const { return gather_; }
@@ -105,18 +101,8 @@ class Exchange {
   /// through all of the content.
   bool gathers_all_of(std::size_t number, bool traced) const;
 
-  /// What an object is to the light between grains.
-  struct Role {
-    std::optional<std::uint32_t> grain;  ///< which of its grains
-    std::optional<std::uint32_t> wall;   ///< which of its walls
-    bool ball = false;                   ///< of a grain: it is about as round as a sphere
-    bool pane = false;                   ///< of a grain: clear and thin all over, and others may stand within it
-
-    bool operator==(const Role&) const = default;
-  };
-
   /// Of objects, by their numbers.
-  const std::vector<Role>& roles() const { return roles_; }
+  const std::vector<RoleInHeap>& roles() const { return roles_; }
 
  private:
   /// What is drawn.
@@ -135,7 +121,7 @@ class Exchange {
   void count_means();
 
   bool balls_ = true;
-  std::vector<Role> roles_;
+  std::vector<RoleInHeap> roles_;
   bool gathers_ = false;
   bool follows_ = false;     // light into what is seen of an array's grains, where that is cheap
   bool shows_more_ = false;  // gathering, of some grains
@@ -145,8 +131,7 @@ class Exchange {
   std::vector<bool> whole_;  // of objects, where clear ones are looked into: no model is asked of their unit
   std::shared_ptr<const heap::Solving> solving_;
   std::optional<Known> known_;
-  std::optional<gl::Buffer> device_;
-  std::optional<gl::Buffer> device_walls_;
+  ToldLight told_;
 };
 
 }  // namespace mesograin::render

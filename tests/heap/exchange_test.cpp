@@ -168,7 +168,8 @@ TEST(Exchange, IsFiniteForTouchingOverlappingNestedAndTinyGrains) {
     heap.lights.emplace_back(scene::DirectionalLight{{0.0, 0.0, 1.0}, glm::dvec3(1.0)});
     heap.world.radiance = glm::dvec3(0.3);
     const HeapLight light = solve_exchange(heap, {}, {}, {});
-    for (const Field* field : {&light.answer, &light.behind, &light.sent})
+    const Field& sent = light.sent;
+    for (const Field* field : {&light.answer, &light.behind, &sent})
       for (const Coefficients& numbers : *field)
         for (const glm::vec4& channel : numbers.channels)
           for (int i = 0; i < 4; ++i) ASSERT_TRUE(std::isfinite(channel[i]));

@@ -95,7 +95,7 @@ bool GatherPass::run(const Sample& sample, const ArrayVisibility& arrays, Surfac
   std::optional<ContentFacets> facets;
   if (sample.looks_into_facets()) facets.emplace(arrays.tree(), sample.content, sample.exchange);
   const SeenSurfaces seen = surfaces.seen(sample);
-  const std::vector<Exchange::Role>& roles = sample.exchange.roles();
+  const std::vector<RoleInHeap>& roles = sample.exchange.roles();
   others_.assign(seen.normals.size(), glm::vec4(0.0F));
   lights_.assign(seen.normals.size(), glm::vec4(0.0F));
   scattered_.assign(seen.normals.size(), glm::vec4(0.0F));
