@@ -82,9 +82,8 @@ Gather::All Gather::walked_in(std::uint32_t grain, const glm::vec3& place, const
     const glm::vec3 leaves_at =
         space_.this_side(seen.middle + place, space_.place(seen, frame * outcome->normal) + aside);
     Ray ray{leaves_at, frame * outcome->direction, outcome->weight, false, grain};
-    if (const std::optional<Source> source = space_.follow(ray, random))
-      all.others += walks.once_more && is_walked_once_more(source->number) ? walked_in(*source, ray, random)
-                                                                           : told_by(*source, ray);
+    if (const std::optional<glm::vec3> sent = walks.once_more ? seen_of_others(ray, random) : sent_along(ray, random))
+      all.others += *sent;
     else
       all.scattered += even_world(ray);
   }
@@ -247,6 +246,7 @@ glm::vec3 Gather::seen_between(std::uint32_t grain, std::optional<Meeting> wall,
           return here.weight * (all.others + all.scattered);
         }
         here.weight *= 1.0F - crossing;
+        if (once_more && is_lambert(grain)) return here.weight * sent_by_lambert(grain, meeting->place, random);
         return sent_by(*meeting, here, random);
       }
     } else {

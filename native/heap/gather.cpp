@@ -109,10 +109,17 @@ std::optional<glm::vec3> Gather::sent_along(Ray& ray, transport::Random& random)
 std::optional<glm::vec3> Gather::seen_of_others(Ray& ray, transport::Random& random) const {
   const std::optional<Source> source = space_.follow(ray, random);
   if (!source) return std::nullopt;
-  const std::uint32_t number = source->number;
-  if (number < space_.grains().size() && heap_.grains.kinds[space_.grains()[number].kind].surface == Surface::lambert)
-    return ray.weight * sent_by_lambert(number, ray.origin, random);
-  return told_by(*source, ray);
+  return looked_at(*source, ray, random);
+}
+
+glm::vec3 Gather::looked_at(const Source& source, const Ray& ray, transport::Random& random) const {
+  if (is_lambert(source.number)) return ray.weight * sent_by_lambert(source.number, ray.origin, random);
+  return is_walked_once_more(source.number) ? walked_in(source, ray, random) : told_by(source, ray);
+}
+
+bool Gather::is_lambert(std::uint32_t number) const {
+  return number < space_.grains().size() &&
+         heap_.grains.kinds[space_.grains()[number].kind].surface == Surface::lambert;
 }
 
 glm::vec3 Gather::sent_by_lambert(std::uint32_t grain, const glm::vec3& place, transport::Random& random) const {

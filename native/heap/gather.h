@@ -52,9 +52,7 @@ class Gather {
   /// What follows light from what is seen of a grain.
   struct Walks {
     int number;
-    /// A grain that one of them meets is walked in, too, once: few numbers do not tell how much darker it is where
-    /// others stand about it.
-    bool once_more = false;
+    bool once_more = false;  ///< a grain that one of them meets is looked at, too, where a look tells more than numbers
   };
 
   /// What is seen of a grain, by where it comes from.
@@ -211,9 +209,12 @@ class Gather {
                            const Facets& facets) const;
   /// What is sent along a ray, if it meets anything.
   std::optional<glm::vec3> sent_along(Ray& ray, transport::Random& random) const;
-  /// The same by more rays from each Lambert grain that is met: few numbers do not tell how much darker it is where it
-  /// touches others.
+  /// The same by another look at what is met.
   std::optional<glm::vec3> seen_of_others(Ray& ray, transport::Random& random) const;
+  /// What a source sends along a ray that has met it, by more rays from a Lambert grain, by a walk in one that walks
+  /// tell: few numbers do not tell how much darker it is where others stand about it.
+  glm::vec3 looked_at(const Source& source, const Ray& ray, transport::Random& random) const;
+  bool is_lambert(std::uint32_t number) const;
   glm::vec3 sent_by_lambert(std::uint32_t grain, const glm::vec3& place, transport::Random& random) const;
   /// What a world without a picture sends to the end of it.
   glm::vec3 even_world(const Ray& ray) const;
@@ -288,7 +289,7 @@ class Gather {
   /// What others send along a ray from a grain's surface, straight through those that let it; `wall`: what it meets
   /// first, if that is known. Leaves it what weight leaves the heap.
   /// What those send that are walked behind is left out where there is a `behind` for them.
-  /// Where crossings are drawn, grains may be walked in `once_more`.
+  /// Where crossings are drawn, grains may be looked at `once_more`.
   glm::vec3 seen_between(std::uint32_t grain, std::optional<Meeting> wall, Crossings crossings, Ray& ray,
                          const Facets& facets, transport::Random& random, Behind* behind = nullptr,
                          bool once_more = false) const;
