@@ -98,7 +98,7 @@ bool Gather::is_walked_once_more(std::uint32_t number) const {
 
 glm::vec3 Gather::walked_in(const Source& source, const Ray& ray, transport::Random& random) const {
   const Grain& grain = space_.grains()[source.number];
-  const glm::vec3 normal = glm::normalize(ray.origin - grain.middle);
+  const glm::vec3& normal = source.facing;
   const float mu = std::clamp(-glm::dot(normal, ray.direction), 0.0F, 1.0F);
   // What does not go straight through it is in the ray's weight as in the walk's.
   const glm::vec3 met = 1.0F - space_.kind(source.number).from_light->crossing(mu);
@@ -246,7 +246,7 @@ glm::vec3 Gather::seen_between(std::uint32_t grain, std::optional<Meeting> wall,
           return here.weight * (all.others + all.scattered);
         }
         here.weight *= 1.0F - crossing;
-        if (once_more && is_lambert(grain)) return here.weight * sent_by_lambert(grain, meeting->place, random);
+        if (once_more && is_lambert(grain)) return here.weight * sent_by_lambert(grain, meeting->normal, random);
         return sent_by(*meeting, here, random);
       }
     } else {

@@ -113,7 +113,7 @@ std::optional<glm::vec3> Gather::seen_of_others(Ray& ray, transport::Random& ran
 }
 
 glm::vec3 Gather::looked_at(const Source& source, const Ray& ray, transport::Random& random) const {
-  if (is_lambert(source.number)) return ray.weight * sent_by_lambert(source.number, ray.origin, random);
+  if (is_lambert(source.number)) return ray.weight * sent_by_lambert(source.number, source.facing, random);
   return is_walked_once_more(source.number) ? walked_in(source, ray, random) : told_by(source, ray);
 }
 
@@ -122,9 +122,8 @@ bool Gather::is_lambert(std::uint32_t number) const {
          heap_.grains.kinds[space_.grains()[number].kind].surface == Surface::lambert;
 }
 
-glm::vec3 Gather::sent_by_lambert(std::uint32_t grain, const glm::vec3& place, transport::Random& random) const {
+glm::vec3 Gather::sent_by_lambert(std::uint32_t grain, const glm::vec3& normal, transport::Random& random) const {
   const Grain& of = space_.grains()[grain];
-  const glm::vec3 normal = glm::normalize(place - of.middle);
   const glm::vec3 from = space_.place(of, normal);
   const glm::vec3 reflectance(heap_.grains.kinds[of.kind].reflectance);
   glm::vec3 irradiance(0.0F);

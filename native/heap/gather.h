@@ -215,7 +215,7 @@ class Gather {
   /// tell: few numbers do not tell how much darker it is where others stand about it.
   glm::vec3 looked_at(const Source& source, const Ray& ray, transport::Random& random) const;
   bool is_lambert(std::uint32_t number) const;
-  glm::vec3 sent_by_lambert(std::uint32_t grain, const glm::vec3& place, transport::Random& random) const;
+  glm::vec3 sent_by_lambert(std::uint32_t grain, const glm::vec3& normal, transport::Random& random) const;
   /// What a world without a picture sends to the end of it.
   glm::vec3 even_world(const Ray& ray) const;
   Ray ray_through(std::uint32_t grain, const glm::vec3& normal, const glm::vec3& towards) const;

@@ -127,14 +127,14 @@ std::optional<Source> Space::source(const Meeting& meeting, Ray& ray, transport:
   ray.origin = meeting.place;
   if (!meeting.wall) {
     const GrainTable& table = *kind(meeting.number).from_light;
-    return Source{meeting.number, table.seen_place(meeting.normal, -ray.direction), table.met()};
+    return Source{meeting.number, table.seen_place(meeting.normal, -ray.direction), table.met(), meeting.normal};
   }
   const std::optional<std::uint32_t> node = patches_.draw(meeting.number, meeting.place, meeting.normal, random);
   if (!node) {
     ray.weight = glm::vec3(0.0F);
     return std::nullopt;
   }
-  return Source{static_cast<std::uint32_t>(grains_.size()) + *node, glm::vec3(0.0F), glm::vec3(1.0F)};
+  return Source{static_cast<std::uint32_t>(grains_.size()) + *node, glm::vec3(0.0F), glm::vec3(1.0F), meeting.normal};
 }
 
 glm::vec3 Space::passed_panes(const glm::vec3& origin, const glm::vec3& direction, float reach, bool mirrored) const {

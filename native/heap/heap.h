@@ -56,6 +56,7 @@ struct Source {
   std::uint32_t number;  ///< of all that sends out light: grains, then nodes
   glm::vec3 normal;      ///< GrainTable::seen_place(); 0 of a node
   glm::vec3 met;         ///< GrainTable::met() of its kind
+  glm::vec3 facing;      ///< its surface's normal, where it was met
 };
 
 /// A place on a wall.

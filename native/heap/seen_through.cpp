@@ -19,7 +19,7 @@ glm::vec3 Gather::lit_behind(std::uint32_t grain, const glm::vec3& normal, const
   if (!source || source->number >= space_.grains().size()) return glm::vec3(0.0F);
   const Grain& behind = space_.grains()[source->number];
   if (!is_lit(source->number)) return glm::vec3(0.0F);
-  const glm::vec3 facing = glm::normalize(ray.origin - behind.middle);
+  const glm::vec3& facing = source->facing;
   const float cosine = std::clamp(-glm::dot(facing, ray.direction), 0.0F, 1.0F);
   const glm::vec3 met = 1.0F - space_.kind(source->number).from_light->crossing(cosine);
   // What does not go straight through it is in the ray's weight as in the walk's.

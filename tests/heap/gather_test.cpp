@@ -210,6 +210,27 @@ TEST(Gather, OfAllLightLosesNone) {
   }
 }
 
+// So far from the middle of all that no number is left to tell a grain's surface from its middle.
+TEST(Gather, IsANumberWhereGrainsAreSmallAndFarOff) {
+  for (const Optics& optics : {lambert(0.8), medium(3.0, 0.9)}) {
+    Heap heap = lattice(optics);
+    for (Grain& grain : heap.grains.grains) {
+      grain.middle = glm::vec3(3e6F) + grain.middle;
+      grain.radius = 0.1F;
+    }
+    const Gather gather(heap, solved(heap));
+    transport::Random random(6, 0);
+    const Spread spread(random);
+    for (int i = 0; i < 1 << 10; ++i) {
+      const Look look(spread.point(i));
+      for (const glm::vec3& seen :
+           {gather.look(62, look.normal, look.towards, 4, random),
+            picture(gather.look_at_all(62, 0.1F * look.normal, look.normal, look.towards, {4, true}, random))})
+        ASSERT_TRUE(std::isfinite(seen.r + seen.g + seen.b)) << i;
+    }
+  }
+}
+
 // A facet that lies in another grain's shadow is dark, though the point of the sphere that faces as it does is lit.
 TEST(Gather, ShadowsAPlaceWhereItIs) {
   Heap heap;
