@@ -407,4 +407,4 @@ COMMANDS = {command.name: command for command in (
 
 
 def _referee(words):
-    return ["referee"] if "photon" in words else []
+    return ["referee"] if {"photon", "photon_scene"} & set(words) else []

@@ -34,28 +34,27 @@ MeshHeap::MeshHeap(const scene::Scene& scene) {
   std::size_t next = 0;
   for (const scene::Instance& instance : scene.instances) {
     materials_.push_back(instance.material);
-    place(bodies_[bodies[next++]], materials_.back(), instance.object_to_world);
+    place(bodies[next++], materials_.back(), instance.object_to_world);
   }
   for (const scene::InstanceArray& array : scene.arrays) {
     if (array.factors().any()) throw Error("The referee's instances are of one colour: an array's have factors.");
     materials_.push_back(array.material);
-    for (const glm::dmat4& to_world : array.object_to_world())
-      place(bodies_[bodies[next]], materials_.back(), to_world);
+    for (const glm::dmat4& to_world : array.object_to_world()) place(bodies[next], materials_.back(), to_world);
     ++next;
   }
   if (placed_.empty()) throw Error("The referee needs something to trace: the scene has no objects.");
   build(0, placed_.size());
 }
 
-void MeshHeap::place(const MeshBody& body, const scene::Material& material, const glm::dmat4& to_world) {
+void MeshHeap::place(std::size_t body, const scene::Material& material, const glm::dmat4& to_world) {
   Box box{glm::dvec3(nowhere), glm::dvec3(-nowhere)};
   for (int corner = 0; corner < 8; ++corner) {
     const glm::bvec3 upper((corner & 1) != 0, (corner & 2) != 0, (corner & 4) != 0);
-    const glm::dvec3 at(to_world * glm::dvec4(glm::mix(body.lower(), body.upper(), upper), 1.0));
+    const glm::dvec3 at(to_world * glm::dvec4(glm::mix(bodies_[body].lower(), bodies_[body].upper(), upper), 1.0));
     box = {glm::min(box.lower, at), glm::max(box.upper, at)};
   }
   const bool solid = material.model != scene::Model::lambert;
-  placed_.push_back({&body, &material, to_world, glm::inverse(to_world), box, solid});
+  placed_.push_back({body, &material, to_world, glm::inverse(to_world), box, solid});
 }
 
 void MeshHeap::build(std::size_t first, std::size_t last) {
@@ -81,6 +80,13 @@ void MeshHeap::build(std::size_t first, std::size_t last) {
   build(half, last);
 }
 
+Box MeshHeap::bounds(bool solid) const {
+  Box all{glm::dvec3(nowhere), glm::dvec3(-nowhere)};
+  for (const Placed& of : placed_)
+    if (of.solid || !solid) all = {glm::min(all.lower, of.box.lower), glm::max(all.upper, of.box.upper)};
+  return all;
+}
+
 std::optional<MeshHeap::Hit> MeshHeap::meet(std::uint32_t number, const glm::dvec3& origin, const glm::dvec3& direction,
                                             bool enters) const {
   const Placed& of = placed_[number];
@@ -88,7 +94,7 @@ std::optional<MeshHeap::Hit> MeshHeap::meet(std::uint32_t number, const glm::dve
   const glm::dvec3 towards(of.to_body * glm::dvec4(direction, 0.0));
   const double scale = glm::length(towards);
   double before = 0.0;
-  while (const std::optional<MeshHit> hit = of.body->first_hit(from, towards / scale)) {
+  while (const std::optional<MeshHit> hit = bodies_[of.body].first_hit(from, towards / scale)) {
     const glm::dvec3 normal = glm::normalize(glm::transpose(glm::dmat3(of.to_body)) * hit->normal);
     const bool from_outside = glm::dot(normal, direction) < 0.0;
     before += hit->distance;

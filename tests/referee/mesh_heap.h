@@ -33,10 +33,21 @@ class MeshHeap {
 
   std::size_t size() const { return placed_.size(); }
   const scene::Material& material(std::uint32_t number) const { return *placed_[number].material; }
+  const Box& box(std::uint32_t number) const { return placed_[number].box; }
+  bool is_solid(std::uint32_t number) const { return placed_[number].solid; }
+  const glm::dmat4& to_world(std::uint32_t number) const { return placed_[number].to_world; }
+  const glm::dmat4& to_body(std::uint32_t number) const { return placed_[number].to_body; }
+
+  const std::vector<MeshBody>& bodies() const { return bodies_; }
+  std::size_t body_index(std::uint32_t number) const { return placed_[number].body; }
+  const MeshBody& body(std::uint32_t number) const { return bodies_[placed_[number].body]; }
+
+  /// Of all, or of those alone that light goes on in, of which there must be one.
+  Box bounds(bool solid) const;
 
  private:
   struct Placed {
-    const MeshBody* body;
+    std::size_t body;
     const scene::Material* material;
     glm::dmat4 to_world, to_body;
     Box box;
@@ -47,7 +58,7 @@ class MeshHeap {
     std::size_t first, count;  // instances of a leaf, or the second child (the first one is next) and 0
   };
 
-  void place(const MeshBody& body, const scene::Material& material, const glm::dmat4& to_world);
+  void place(std::size_t body, const scene::Material& material, const glm::dmat4& to_world);
   void build(std::size_t first, std::size_t last);
   std::optional<Hit> meet(std::uint32_t number, const glm::dvec3& origin, const glm::dvec3& direction,
                           bool enters) const;

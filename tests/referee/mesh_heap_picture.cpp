@@ -12,10 +12,11 @@
 
 #include "base/error.h"
 #include "directions.h"
-#include "interface.h"
+#include "heap_matter.h"
 #include "mesh_heap.h"
 #include "pixels.h"
 #include "roulette.h"
+#include "unscattered_light.h"
 #include "view.h"
 
 namespace mesograin::referee {
@@ -23,39 +24,68 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
+double square(double of) { return of * of; }
+
+/// Wider suns are found by paths that leave.
+constexpr double widest_stored = 0.3;
+
+/// Of each sun that is stored: its noise falls as that of the paths does.
+constexpr double rays_a_path = 1.0 / 16.0, fewest_rays = 4e6, most_rays = 3e7;
+
+/// How a path has come from the camera: by surfaces that bent it, or scattered at least once.
+enum class Way { straight, bent, scattered };
+
 struct Sun {
   glm::dvec3 direction;
   double cosine;  // of half its disc
   glm::dvec3 radiance;
+  bool stored;  // where it was scattered
 };
 
 /// What a ray finds that leaves the scene.
 class Around {
  public:
-  explicit Around(const scene::Scene& scene) : world_(scene.world) {
+  /// `stores`: suns that are narrow.
+  Around(const scene::Scene& scene, bool stores) : world_(scene.world) {
     for (const scene::Light& light : scene.lights) {
       const auto* sun = std::get_if<scene::DirectionalLight>(&light);
       if (sun == nullptr) throw Error("Of lights the referee knows suns and the world: every type must be 'distant'.");
-      if (!(sun->angle > 0.0))
-        throw Error("In a scene of several objects no path finds a sun without extent: its angle must be above 0.");
+      const bool stored = stores && sun->angle <= widest_stored;
+      if (stored) stored_.push_back(*sun);
+      if (!(sun->angle > 0.0)) {
+        if (!stored)
+          throw Error(
+              "Of several objects one of which has a g that is not 0 no path finds a sun without extent: its "
+              "angle must be above 0.");
+        continue;
+      }
       const double half = std::cos(0.5 * sun->angle);
       // A disc's irradiance on a plane that faces each of its points is the radiance times 2 pi (1 - cosine).
-      suns_.push_back({glm::normalize(sun->direction_to_light), half, sun->irradiance / (2.0 * pi * (1.0 - half))});
+      suns_.push_back(
+          {glm::normalize(sun->direction_to_light), half, sun->irradiance / (2.0 * pi * (1.0 - half)), stored});
     }
   }
 
-  double radiance(const glm::dvec3& direction, int channel) const {
+  /// No camera sees suns, nor the world where the film is transparent; and stored suns were found where light was
+  /// scattered.
+  double radiance(const glm::dvec3& direction, int channel, Way way) const {
+    if (way == Way::straight && world_.film_transparent) return 0.0;
     double sum = world_.radiance[channel];
     if (world_.image) sum *= image(world_.world_to_image * direction, channel);
+    if (way == Way::straight) return sum;
     for (const Sun& sun : suns_)
-      if (glm::dot(direction, sun.direction) > sun.cosine) sum += sun.radiance[channel];
+      if (!(sun.stored && way == Way::scattered) && glm::dot(direction, sun.direction) > sun.cosine)
+        sum += sun.radiance[channel];
     return sum;
   }
+
+  const std::vector<scene::DirectionalLight>& stored() const { return stored_; }
 
   bool grey() const {
     const auto is = [](const glm::dvec3& of) { return of.r == of.g && of.g == of.b; };
     return !world_.image && is(world_.radiance) &&
-           std::all_of(suns_.begin(), suns_.end(), [&](const Sun& sun) { return is(sun.radiance); });
+           std::all_of(suns_.begin(), suns_.end(), [&](const Sun& sun) { return is(sun.radiance); }) &&
+           std::all_of(stored_.begin(), stored_.end(), [&](const auto& sun) { return is(sun.irradiance); });
   }
 
  private:
@@ -72,27 +102,7 @@ class Around {
 
   const scene::World& world_;
   std::vector<Sun> suns_;
-};
-
-/// A material in one channel, per scene unit.
-struct Matter {
-  bool diffuse;
-  double reflectance;
-  double sigma_s, sigma_t, g;
-  Interface surface;
-
-  Matter(const scene::Material& of, int channel)
-      : diffuse(of.model == scene::Model::lambert),
-        reflectance(of.reflectance[channel]),
-        sigma_s(of.scale * of.sigma_s[channel]),
-        sigma_t(sigma_s + of.scale * of.sigma_a[channel]),
-        g(of.g),
-        surface{of.boundary == scene::Boundary::dielectric ? of.eta : 1.0} {}
-
-  bool operator==(const Matter& other) const {
-    return diffuse == other.diffuse && reflectance == other.reflectance && sigma_s == other.sigma_s &&
-           sigma_t == other.sigma_t;
-  }
+  std::vector<scene::DirectionalLight> stored_;
 };
 
 void check(const scene::Material& material) {
@@ -100,21 +110,15 @@ void check(const scene::Material& material) {
   if (material.model == scene::Model::conductor) throw Error("The referee traces media and Lambertian surfaces.");
   if (material.boundary != scene::Boundary::dielectric && material.boundary != scene::Boundary::index_matched)
     throw Error("On a mesh the referee's boundary must be dielectric or index_matched.");
-  if (material.boundary == scene::Boundary::dielectric && material.roughness > 0)
-    throw Error("The referee's interface is smooth: roughness must be 0; got {}.", material.roughness);
   if (!(std::abs(material.g) < 1)) throw Error("The referee needs g inside (-1, 1); got {}.", material.g);
 }
 
-/// One channel of all that stands there.
-struct Channel {
-  int number;
-  std::vector<Matter> matter;  // by instance
-};
-
 class Path {
  public:
-  Path(const MeshHeap& heap, const Around& around, const Channel& channel, Rng& rng)
-      : heap_(heap), around_(around), channel_(channel), rng_(rng) {}
+  /// `at`: the channel's index. `stored`: or null.
+  Path(const MeshHeap& heap, const Around& around, const UnscatteredLight* stored, const Channel& channel,
+       std::size_t at, Rng& rng)
+      : heap_(heap), around_(around), stored_(stored), channel_(channel), at_(at), rng_(rng) {}
 
   /// Nothing, if it meets nothing.
   std::optional<double> follow(glm::dvec3 origin, glm::dvec3 direction) {
@@ -123,29 +127,27 @@ class Path {
     while (hit) {
       origin += hit->distance * direction;
       const Matter& of = channel_.matter[hit->number];
-      if (!(of.diffuse ? bounces(of, *hit, direction) : crosses(of, *hit, origin, direction))) return 0.0;
+      if (!(of.diffuse ? bounces(of, *hit, origin, direction) : crosses(of, *hit, origin, direction))) return found_;
       hit = heap_.first(origin, direction);
     }
-    return weight_ * around_.radiance(direction, channel_.number);
+    return found_ + weight_ * around_.radiance(direction, channel_.number, way_);
   }
 
  private:
-  bool bounces(const Matter& of, const MeshHeap::Hit& hit, glm::dvec3& direction) {
+  bool bounces(const Matter& of, const MeshHeap::Hit& hit, const glm::dvec3& place, glm::dvec3& direction) {
     weight_ *= of.reflectance;
-    direction = sample_cosine(glm::dot(hit.normal, direction) < 0.0 ? hit.normal : -hit.normal, rng_);
+    const glm::dvec3 normal = glm::dot(hit.normal, direction) < 0.0 ? hit.normal : -hit.normal;
+    if (stored_) found_ += weight_ / pi * stored_->irradiance(hit.number, place, normal, at_, rng_);
+    way_ = Way::scattered;
+    direction = sample_cosine(normal, rng_);
     return survives(weight_, rng_);
   }
 
   /// Until it leaves the body that it has come to, or is reflected by it; false where it ends.
   bool crosses(const Matter& of, const MeshHeap::Hit& hit, glm::dvec3& place, glm::dvec3& direction) {
-    if (!of.surface.matched()) {
-      const double cosine = std::min(-glm::dot(hit.normal, direction), 1.0);
-      if (rng_.uniform() < of.surface.reflectance_from_outside(cosine)) {
-        direction = glm::normalize(direction + 2 * cosine * hit.normal);
-        return true;
-      }
-      direction = glm::normalize(refract(direction, hit.normal, of.surface.eta));
-    }
+    if (!of.surface.matched() && way_ == Way::straight) way_ = Way::bent;
+    direction = glm::normalize(of.surface.beyond(direction, hit.normal, rng_));
+    if (glm::dot(direction, hit.normal) > 0.0) return true;
     constexpr int most_steps = 1 << 20;
     for (int step = 0; step < most_steps; ++step) {
       const std::optional<MeshHeap::Hit> own = heap_.inside(hit.number, place, direction);
@@ -154,27 +156,31 @@ class Path {
       if (flight < own->distance) {
         place += flight * direction;
         weight_ *= of.sigma_s / of.sigma_t;
+        // Only where g is 0 is there anything stored. Radiance that leaves has lost the square of the index (Nicodemus,
+        // "Radiance", 1963).
+        if (stored_)
+          found_ +=
+              weight_ * phase(0.0, 0.0) * stored_->fluence(hit.number, place, at_) / square(of.surface.smooth.eta);
+        way_ = Way::scattered;
         if (!survives(weight_, rng_)) return false;
         direction = sample_phase(direction, of.g, rng_);
         continue;
       }
       place += own->distance * direction;
-      const double cosine = std::min(glm::dot(own->normal, direction), 1.0);
-      if (of.surface.matched()) return true;
-      if (!(rng_.uniform() < of.surface.reflectance_from_inside(cosine))) {
-        direction = glm::normalize(refract(direction, -own->normal, 1 / of.surface.eta));
-        return true;
-      }
-      direction = glm::normalize(direction - 2 * cosine * own->normal);
+      direction = glm::normalize(of.surface.beyond(direction, own->normal, rng_));
+      if (glm::dot(direction, own->normal) > 0.0) return true;
     }
     return false;
   }
 
   const MeshHeap& heap_;
   const Around& around_;
+  const UnscatteredLight* stored_;
   const Channel& channel_;
+  std::size_t at_;
   Rng& rng_;
-  double weight_ = 1;
+  double weight_ = 1, found_ = 0;
+  Way way_ = Way::straight;
 };
 
 std::vector<Channel> channels_of(const MeshHeap& heap, const Around& around) {
@@ -194,8 +200,17 @@ std::vector<Channel> channels_of(const MeshHeap& heap, const Around& around) {
 Picture trace_mesh_heap(const MeshHeapCase& setup, const std::function<void()>& row_done) {
   for (const scene::Material& material : scene::materials_of(setup.scene)) check(material);
   const MeshHeap heap(setup.scene);
-  const Around around(setup.scene);
+  bool even = true;
+  for (const scene::Material& material : scene::materials_of(setup.scene))
+    even = even && (material.model == scene::Model::lambert || material.g == 0.0);
+  const Around around(setup.scene, even);
   const std::vector<Channel> channels = channels_of(heap, around);
+  std::optional<UnscatteredLight> stored;
+  if (!around.stored().empty()) {
+    const double wanted = rays_a_path * setup.width * setup.height * setup.samples;
+    stored.emplace(heap, channels, around.stored(),
+                   static_cast<std::uint64_t>(std::clamp(wanted, fewest_rays, most_rays)), setup.seed, setup.threads);
+  }
   PictureCase size;
   size.width = setup.width;
   size.height = setup.height;
@@ -205,11 +220,12 @@ Picture trace_mesh_heap(const MeshHeapCase& setup, const std::function<void()>& 
   const auto trace = [&](double x, double y, Rng& rng) -> std::optional<glm::dvec3> {
     const Ray ray = view_ray(setup.clip_to_world, x, y);
     glm::dvec3 radiance(0);
-    for (const Channel& channel : channels) {
-      const std::optional<double> found = Path(heap, around, channel, rng).follow(ray.origin, ray.direction);
+    for (std::size_t i = 0; i < channels.size(); ++i) {
+      Path path(heap, around, stored ? &*stored : nullptr, channels[i], i, rng);
+      const std::optional<double> found = path.follow(ray.origin, ray.direction);
       if (!found) return std::nullopt;
       if (channels.size() == 1) return glm::dvec3(*found);
-      radiance[channel.number] = *found;
+      radiance[channels[i].number] = *found;
     }
     return radiance;
   };

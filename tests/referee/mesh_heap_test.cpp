@@ -38,6 +38,15 @@ scene::MeshPointer square() {
                                              std::vector<glm::uvec3>{{0, 1, 2}, {0, 2, 3}});
 }
 
+/// From -1 to 1 along each axis.
+scene::MeshPointer cube() {
+  std::vector<glm::vec3> corners;
+  for (int i = 0; i < 8; ++i) corners.emplace_back(2 * (i & 1) - 1, (i & 2) - 1, (i & 4) / 2 - 1);
+  const std::vector<glm::uvec3> faces{{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                                      {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  return std::make_shared<const scene::Mesh>(corners, corners, faces);
+}
+
 scene::Material medium(double sigma_s, double sigma_a, double eta) {
   scene::Material material;
   material.model = scene::Model::model_2;
@@ -162,14 +171,97 @@ TEST(MeshHeap, SeesTheWorldWhereItIs) {
   EXPECT_NEAR(mean_of().r, 0.125 * std::cos(turn) + along_x * std::sin(turn), 0.005);
 }
 
+// A sphere alone, in another tracer's picture: all but the sun's mirror image, which no camera without extent meets.
+TEST(MeshHeap, OfASphereUnderASunWithoutExtentIsTheSpheres) {
+  for (const double eta : {1.0, 1.3}) {
+    MeshHeapCase setup = seen_from_above(1.2);
+    setup.scene.lights.emplace_back(scene::DirectionalLight{{0.8, 0.0, -0.3}, glm::dvec3(1.0, 2.0, 3.0), 0.0});
+    scene::Material material = medium(2.0, 0.2, eta);
+    material.sigma_s.r = 0.5;
+    setup.scene.instances.push_back({ball(), material, placed({0.0, 0.0, 0.0})});
+    setup.samples = 1000;
+    const Picture found = trace_mesh_heap(setup);
+    PictureCase alone;
+    alone.material = material;
+    alone.lights = {std::get<scene::DirectionalLight>(setup.scene.lights.front())};
+    alone.clip_to_world = setup.clip_to_world;
+    alone.width = alone.height = across;
+    alone.samples = 1000;
+    const Picture right = trace_picture(alone);
+    for (int channel = 0; channel < 3; ++channel) {
+      double sum = 0, other = 0, variance = 0, difference = 0, noise = 0;
+      for (std::size_t i = 0; i < right.radiance.size(); ++i) {
+        sum += found.radiance[i][channel];
+        other += right.radiance[i][channel];
+        difference += std::abs(found.radiance[i][channel] - right.radiance[i][channel]);
+        const double both = std::hypot(found.noise[i][channel], right.noise[i][channel]);
+        noise += both * std::sqrt(2.0 / std::numbers::pi);
+        variance += both * both;
+      }
+      EXPECT_NEAR(sum / other, 1.0, 0.004 + 3.0 * std::sqrt(variance) / other) << eta << ", channel " << channel;
+      EXPECT_LT(difference / other, 0.015 + 1.2 * noise / other) << eta << ", channel " << channel;
+    }
+  }
+}
+
+// The same sun, once as it is stored and once as paths find it, which takes many.
+TEST(MeshHeap, StoresOfASunWhatPathsFindOfIt) {
+  for (const auto& [eta, roughness] : {std::pair{1.5, 0.0}, {1.3, 0.4}}) {
+    double sums[2], variance = 0;
+    for (const bool stored : {false, true}) {
+      MeshHeapCase setup = seen_from_above(2.0);
+      scene::Material material = medium(1.0, 0.02, eta);
+      material.roughness = roughness;
+      std::vector<glm::dmat4> places;
+      for (const Ball& of : three) places.push_back(placed(of.middle, of.radius));
+      setup.scene.arrays.emplace_back(ball(), material, scene::Transforms(places));
+      setup.scene.instances.push_back({square(), diffuse(0.7), placed({0.0, 0.0, -1.0}, 3.0)});
+      // Narrow enough to be stored, and a little too wide for it.
+      setup.scene.lights.emplace_back(
+          scene::DirectionalLight{{0.5, -0.3, 1.0}, glm::dvec3(1.0), stored ? 0.2999 : 0.3001});
+      setup.samples = stored ? 2000 : 20000;
+      const Picture picture = trace_mesh_heap(setup);
+      double& sum = sums[stored ? 1 : 0] = 0;
+      double squares = 0;
+      for (std::size_t i = 0; i < picture.radiance.size(); ++i) {
+        sum += picture.radiance[i].g;
+        squares += picture.noise[i].g * picture.noise[i].g;
+      }
+      variance += squares / (sum * sum);
+    }
+    EXPECT_LT(std::sqrt(variance), 0.01);
+    EXPECT_NEAR(sums[1] / sums[0], 1.0, 0.003 + 3.0 * std::sqrt(variance)) << eta << ", " << roughness;
+  }
+}
+
+// Of a pane the series of its two faces crosses, of an index-matched one what it does not absorb; each is seen through,
+// too, once more.
+TEST(MeshHeap, LightsWhatIsBehindAPane) {
+  const double reflectance = 0.02, once = 0.04;
+  for (const double eta : {1.5, 1.0}) {
+    MeshHeapCase setup = seen_from_above(0.5);
+    setup.scene.lights.emplace_back(scene::DirectionalLight{{0.0, 0.0, 1.0}, glm::dvec3(2.0), 0.0});
+    setup.scene.instances.push_back({square(), diffuse(reflectance), placed({0.0, 0.0, 0.0}, 8.0)});
+    const glm::dmat4 flat = glm::scale(placed({0.0, 0.0, 2.0}), glm::dvec3(8.0, 8.0, 0.5));
+    setup.scene.instances.push_back({cube(), medium(0.0, eta == 1.0 ? 0.3 : 0.0, eta), flat});
+    setup.samples = 400;
+    const Picture picture = trace_mesh_heap(setup);
+    double mean = 0;
+    for (const glm::dvec3& radiance : picture.radiance) mean += radiance.g / (across * across);
+    const double crosses = eta == 1.0 ? std::exp(-0.3) : (1.0 - once) / (1.0 + once);
+    const double right = reflectance / std::numbers::pi * 2.0 * crosses * crosses;
+    EXPECT_NEAR(mean / right, 1.0, eta == 1.0 ? 1e-3 : 0.02) << eta;
+  }
+}
+
 TEST(MeshHeap, SaysWhatItCannotTrace) {
   MeshHeapCase setup = seen_from_above(1.0);
   EXPECT_THROW(trace_mesh_heap(setup), Error);
   setup.scene.instances.push_back({ball(), medium(1.0, 0.0, 1.5), placed({0.0, 0.0, 0.0})});
   setup.scene.lights.emplace_back(scene::DirectionalLight{{0.0, 0.0, 1.0}, glm::dvec3(1.0), 0.0});
+  setup.scene.instances[0].material.g = 0.5;
   EXPECT_THROW(trace_mesh_heap(setup), Error);
-  setup.scene.lights.clear();
-  setup.scene.instances[0].material.roughness = 0.1;
+  setup.scene.lights.front() = scene::PointLight{};
   EXPECT_THROW(trace_mesh_heap(setup), Error);
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mesh_body.h"
+#include "mesh_cells.h"
 #include "rng.h"
 #include "rough_interface.h"
 #include "scene/light.h"
@@ -34,16 +35,10 @@ class MeshLight {
     std::vector<glm::vec3> directions;  // kept_ a cell
   };
 
-  template <class Visit>
-  void follow(const glm::dvec3& place, const glm::dvec3& direction, double length, const Visit& visit) const;
   void trace(const MeshBody& body, const RoughInterface& interface, const scene::DirectionalLight& sun, Rng& rng,
              Batch& batch) const;
-  std::vector<double> volumes(const MeshBody& body) const;
-  std::size_t cell(const glm::dvec3& place) const;
 
-  glm::dvec3 lower_;
-  double side_;
-  glm::ivec3 size_;
+  MeshCells cells_;
   std::vector<Batch> parts_;
   std::vector<float> fluence_;
 };

@@ -138,6 +138,18 @@ KINDS = {
             False,
             5.0,
         ),
+        # Each grain with its own surface, under its own suns.
+        Kind(
+            "photon_scene",
+            "Photon Monte Carlo, whole scene",
+            CHOSEN,
+            0,
+            256,
+            False,
+            24.0,
+            judged_by="relative_l1_blocks",
+            referee=True,
+        ),
     )
 }
 

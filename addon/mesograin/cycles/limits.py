@@ -45,7 +45,9 @@ def limits(values, kind):
     if kind == "volume_dielectric":
         return [*_volume(values), *_smooth(values)]
     if kind == "photon":
-        return [*_photon(values), *_smooth(values)]
+        return [*_photon(values, kind), *_smooth(values)]
+    if kind == "photon_scene":
+        return _photon(values, kind)
     return []
 
 
@@ -94,10 +96,10 @@ def _smooth(values):
     return [Limit(sentence, False)]
 
 
-def _photon(values):
+def _photon(values, kind):
     if abs(values.g) < 1.0:
         return []
-    return [Limit(f"The photon reference needs g inside (-1, 1); got {values.g:g}: choose another g.", True)]
+    return [Limit(f"The reference {kind} needs g inside (-1, 1); got {values.g:g}: choose another g.", True)]
 
 
 def _subsurface_burley(values):

@@ -1,90 +1,24 @@
 # The reference that no path tracer can make: a sphere with a smooth interface under a sun without extent, by photons.
-"""See `take`. The renderer is mesograin-referee (docs/referee.md), a program of its own beside the tests."""
+"""See `take`."""
 
-import hashlib
 import json
 import math
-import os
-import re
-import subprocess
-import tempfile
-import time
-from pathlib import Path
 
 import numpy
 
-from .. import native_module
 from ..scene import export, lights, meshes
-from . import shot
-from .shot import ReferenceError, Shot
+from . import referee
+from .shot import ReferenceError
 
-PROGRAM = "mesograin-referee"
 ROUNDNESS = 1e-3
 """How far vertices may lie off the sphere, as a part of its radius."""
-
-_ROWS = re.compile(r"(\d+) of (\d+) rows")
 
 
 def take(depsgraph, kind, size, samples, seed, cache=None, overrides=None, on_progress=None):
     """One image of one seed, as `shot.take`. Raises ReferenceError without a sphere or without the program."""
-    native = native_module.get()
-    tell = on_progress or (lambda fraction: None)
     scene = _scene(depsgraph, size, overrides or {})
-    described = json.dumps({"photon": 1, "scene": scene, "samples": samples, "seed": seed}, sort_keys=True)
-    key = hashlib.sha256(described.encode()).hexdigest()
-    found = shot.read_cached(native, cache, key, size)
-    if found:
-        tell(1.0)
-        return found
-    program = _program()
-    started = time.monotonic()
-    with tempfile.TemporaryDirectory(prefix="mesograin-") as folder:
-        source, picture = Path(folder) / "scene.json", Path(folder) / "photon.exr"
-        source.write_text(json.dumps(scene), encoding="utf-8")
-        _run([program, "render", source, "-o", picture, "-n", samples, "--seed", seed], tell)
-        pixels, channels, _ = native.read_exr(picture)
-    pixels = numpy.ascontiguousarray(pixels[..., [channels.index(name) for name in "RGBA"]])
-    provenance = {
-        "made_by": f"{PROGRAM} {native.__version__}",
-        "reference": kind.name,
-        "samples": samples,
-        "seed": seed,
-        "pixel_filter": "box, one pixel",
-        "colour_space": "linear, scene-referred; alpha is premultiplied",
-        "seconds": round(time.monotonic() - started, 3),
-        "scene": scene,
-        "key": key,
-    }
-    return shot.keep(native, cache, key, Shot(pixels, json.loads(json.dumps(provenance)), cached=False))
-
-
-def _program():
-    """The program's path: MESOGRAIN_REFEREE, else in the release build of the checkout that the add-on lies in."""
-    chosen = os.environ.get("MESOGRAIN_REFEREE")
-    path = Path(chosen or Path(__file__).resolve().parents[3] / "build/release/tests/referee" / PROGRAM)
-    if not os.access(path, os.X_OK):
-        raise ReferenceError(
-            f"The photon reference is rendered by {PROGRAM}, which is not at {path}: run ./mesograin compare in a"
-            " checkout, which builds it, or name it in MESOGRAIN_REFEREE."
-        )
-    return path
-
-
-def _run(words, tell):
-    said = ""
-    with subprocess.Popen([str(word) for word in words], stderr=subprocess.PIPE, text=True) as process:
-        try:
-            for line in process.stderr:
-                rows = _ROWS.search(line)
-                if rows:
-                    tell(int(rows[1]) / int(rows[2]))
-                else:
-                    said = line.strip() or said
-        except BaseException:
-            process.kill()
-            raise
-    if process.returncode != 0:
-        raise ReferenceError(f"The photon reference could not be rendered: {said or f'exit code {process.returncode}'}")
+    return referee.take(lambda path: path.write_text(json.dumps(scene), encoding="utf-8"), scene, kind, size, samples,
+                        seed, cache, on_progress)
 
 
 def _scene(depsgraph, size, overrides):
@@ -145,7 +79,7 @@ def _sphere(depsgraph):
             return [float(value) for value in centre], radius
     raise ReferenceError(
         "The photon reference needs a single sphere (vertices within 0.1 % of one), not instanced; the scene has"
-        " something else: choose the reference volume_dielectric."
+        " something else: choose the reference photon_scene."
     )
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy
 
 from ..scene import export
-from . import beside, kinds, nodes, photon, shot
+from . import beside, kinds, nodes, photon, photon_scene, shot
 from .limits import limits
 from .shot import PROVENANCE, ReferenceError
 
@@ -105,6 +105,8 @@ class Sampling:
 
     def _take(self, kind, samples, seed, on_progress):
         given = (self._depsgraph, kind, self._size, samples, seed, self._cache, self._overrides, on_progress)
+        if kind.name == "photon_scene":
+            return photon_scene.take(*given, self._staying)
         return photon.take(*given) if kind.referee else shot.take(*given, self._unwrapping, self._staying)
 
     def geometry(self):
