@@ -2,12 +2,14 @@
 turned this way and that in their places, for kinds of grains and lights.
 
     heap_light.py BUILD_FOLDER [--grains G] [--kinds K ...] [--lights L ...] [--models M ...] [--exchanges E ...]
-        [--samples N] [--paths N] [--out FOLDER] [--markdown FILE]
+        [--samples N] [--paths N] [--angle DEGREES] [--out FOLDER] [--markdown FILE]
 
 The truth is traced beside it (mesograin-referee heap, of others than balls render): so many paths a pixel, and its
 own noise in blocks is told.
 Errors are relative L1 in blocks of 8 x 8 pixels of a picture of 96 x 96, over all channels. A sun that balls with a
-refracting surface are lit by is 20 degrees wide: a point's light no path finds. What is drawn with the exchange off is
+refracting surface are lit by is 20 degrees wide, or as wide as asked for: where it is narrower than 17 the balls are
+traced as meshes, for which the sun's light in them is stored (g 0 alone), as no path finds it, and light counts
+that was scattered: what flat facets mirror of it is not what balls do. What is drawn with the exchange off is
 also told, in green, beside the share of the truth that was scattered in one ball alone and went through all others
 unscattered; its noise is not told, and about that of the truth. Writes heap_light.json and heap_light.html, and prints
 a line for each.
@@ -29,7 +31,8 @@ MANIFEST = json.loads((DATA / "manifest.json").read_text())
 SIZE = MANIFEST["resolution"]
 SUNS = {"sun": 45.0, "low": 15.0}
 LIGHTS = [*SUNS, "sky"]
-WIDE = math.radians(20.0)
+WIDE, NARROW = math.radians(20.0), 0.3
+"""Suns across: by default, and what the referee stores (docs/referee.md)."""
 
 
 def medium(albedo, radius, eta=None, g=0):
@@ -48,20 +51,22 @@ KINDS = {"lambert .3": {"kind": "diffuse", "reflectance": 0.3}, "lambert .8": {"
          "forward, eta 1.3": medium(0.999, 8, 1.3, g=0.8), "clear": medium(0.999, 0.2, 1.5)}
 
 
-def light_of(name, material, grains="balls"):
+def light_of(name, material, grains="balls", angle=WIDE):
     if name == "sky":
         return {"type": "hemisphere"}
     above = math.radians(SUNS[name])
     aside = (math.cos(above), 0.0) if name == "sun" else (0.0, math.cos(above))
     return {"type": "distant", "direction_to_light": [*aside, math.sin(above)],
-            "angle": WIDE if "eta" in material or grains != "balls" else 0.0}
+            "angle": angle if "eta" in material or grains != "balls" else 0.0}
 
 
-def truth_of_scene(native, referee, traced, paths, folder, seen, size):
-    """(picture, its noise in blocks over the mean) of a native.Scene, seen by a native.Camera."""
+def truth_of_scene(native, referee, traced, paths, folder, seen, size, scattered=False):
+    """(picture, its noise in blocks over the mean) of a native.Scene, seen by a native.Camera; of what was scattered
+    alone, if asked for."""
     case, picture = folder / "scene.json", folder / "truth.exr"
     native.write_scene(str(case), traced, seen, size)
-    subprocess.run([referee, "render", case, "-o", picture, "-n", str(paths)], check=True, stderr=subprocess.DEVNULL)
+    subprocess.run([referee, "render", case, "-o", picture, "-n", str(paths),
+                    *["--scattered"] * scattered], check=True, stderr=subprocess.DEVNULL)
     channel = channels(native, picture)
     noise = numpy.sqrt(blocks((channel["noise.G"] ** 2)[..., None])) / 8.0
     return numpy.stack([channel[name] for name in "RGB"], -1), float(noise.mean() / channel["G"].mean())
@@ -96,13 +101,13 @@ def how_far(found, right):
             float(numpy.abs(blocks(found) - blocks(right)).sum() / blocks(right).sum()))
 
 
-def scene(native, material, model, light, exchange, grains="balls"):
+def scene(native, material, model, light, exchange, grains="balls", specular=True):
     if material["kind"] == "diffuse":
         look = native.Material(model=model, reflectance=(material["reflectance"],) * 3)
     else:
         sigmas = {name: tuple(numpy.broadcast_to(material[name], 3)) for name in ("sigma_a", "sigma_s")}
         look = native.Material(model=model, boundary=material["boundary"], eta=material.get("eta", 1.3),
-                               g=material["g"], **sigmas)
+                               g=material["g"], specular=specular, **sigmas)
     if light["type"] == "distant":
         sun = native.DirectionalLight(light["direction_to_light"], (math.pi,) * 3, angle=light["angle"])
         shines = {"lights": [sun]}
@@ -135,11 +140,11 @@ def camera(native, part=1.0):
     return native.Camera(world_to_camera, clip)
 
 
-def measure(native, of, model, exchange, samples, grains):
+def measure(native, of, model, exchange, samples, grains, specular=True):
     """One way to draw a heap against its truth: numbers as a dictionary, and the picture."""
     material, light, (right, noise, own) = of
     view = native.View(*SIZE)
-    view.set_scene(scene(native, material, model, light, exchange, grains))
+    view.set_scene(scene(native, material, model, light, exchange, grains, specular))
     view.set_camera(camera(native))
     view.render(samples)
     found = view.read()[..., :3]
@@ -169,6 +174,8 @@ def main():
                         choices=["off", "order_1", "heaps", "gathered"])
     parser.add_argument("--samples", type=int, default=16, help="of each picture (default: 16)")
     parser.add_argument("--paths", type=int, default=128, help="of the truth, a pixel (default: 128)")
+    parser.add_argument("--angle", type=float, default=math.degrees(WIDE), metavar="DEGREES",
+                        help="across the suns of grains that refract, or are no balls (default: 20)")
     parser.add_argument("--out", type=pathlib.Path, metavar="FOLDER", help="for the page and the JSON (default: .)",
                         default=pathlib.Path())
     parser.add_argument("--markdown", type=pathlib.Path, metavar="FILE", help="also writes a table there")
@@ -184,22 +191,24 @@ def main():
             material = KINDS[kind]
             label = kind if options.grains == "balls" else f"{kind}, {options.grains}"
             for name in options.lights:
-                light = light_of(name, material, options.grains)
+                light = light_of(name, material, options.grains, math.radians(options.angle))
+                stored = 0.0 < light.get("angle", 0.0) < NARROW
                 # Few paths find the wide sun, or lights that a path must leave the heap towards.
-                paths = options.paths * (16 if light.get("angle") else 1)
-                if options.grains == "balls":
+                paths = options.paths * (16 if light.get("angle") and not stored else 1)
+                if options.grains == "balls" and not stored:
                     right = truth(native, referee, material, light, paths, pathlib.Path(folder))
                 else:
                     traced = scene(native, material, "lambert" if material["kind"] == "diffuse" else "model_2", light,
                                    "off", options.grains)
                     traced_picture = truth_of_scene(native, referee, traced, paths, pathlib.Path(folder),
-                                                    camera(native), SIZE)
+                                                    camera(native), SIZE, stored)
                     right = (*traced_picture, None)
                 of = (material, light, right)
                 drawn = []
                 for model in ["lambert"] if material["kind"] == "diffuse" else options.models:
                     for exchange in options.exchanges:
-                        numbers, found = measure(native, of, model, exchange, options.samples, options.grains)
+                        numbers, found = measure(native, of, model, exchange, options.samples, options.grains,
+                                                 not stored)
                         case = {"kind": label, "light": name, "refracts": "eta" in material, **numbers}
                         cases.append(case)
                         drawn.append((f"{model}, {exchange}", found))

@@ -54,6 +54,7 @@ def test_masks():
         (["--part", "diffuse"], "invalid choice: 'diffuse'"),
         (["--references", "subsurface", "--part", "specular"], "those that have it are glossy, volume_dielectric"),
         (["--references", "diffuse", "--part", "subsurface"], "the reference diffuse has no subsurface part"),
+        (["--references", "photon_scene", "--part", "subsurface"], "all light between the grains is traced as one"),
         (["--mask", "circle"], "a mask is one of"),
         (["--mask", "crop:1,2,3"], "four whole numbers"),
         (["--mask", "silhouette"], "one number"),

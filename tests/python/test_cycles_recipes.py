@@ -114,6 +114,7 @@ def test_our_side_solves_what_cycles_solves():
         assert kinds.our_side(kind, BLENDER_4) == {"boundary": "lambert_lambert"}
     for kind in ("volume_dielectric", "photon"):
         assert kinds.our_side(kind, BLENDER_3) == {"boundary": "dielectric", "roughness": 0.0, "specular": False}
+    assert kinds.our_side("photon_scene", BLENDER_3) == {}
     assert kinds.our_side("glossy", BLENDER_3) == {"masking": "separable"}
     assert kinds.our_side("glossy", BLENDER_4) == {"masking": "correlated"}
     assert [kinds.default_kind(model) for model in ("lambert", "conductor", "model_3")] == [
@@ -137,6 +138,7 @@ def test_our_side_solves_what_cycles_solves():
         ("volume_lambert", {"sigma_a": (0.0,) * 3, "sigma_s": (0.0,) * 3}, "invisible", True),
         ("volume_dielectric", {"roughness": 0.3}, "left out on both sides", False),
         ("photon", {"g": 1.0}, "g inside (-1, 1)", True),
+        ("photon_scene", {"g": -1.0}, "g inside (-1, 1)", True),
         ("subsurface_burley", {"g": -0.4}, "similarity", False),
         ("subsurface_burley", {"sigma_a": (0.0, 1.0, 1.0), "sigma_s": (0.0, 1.0, 1.0)}, "positive", True),
         ("glossy", {"roughness": 0.0}, "mirror", True),

@@ -8,6 +8,7 @@
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/file.h"
@@ -90,6 +91,7 @@ void add_render(CLI::App& application) {
   auto output = std::make_shared<std::string>();
   auto choices = std::make_shared<mesograin::io::SceneChoices>();
   auto wanted = std::make_shared<PictureCase>();
+  auto scattered = std::make_shared<bool>(false);
   command->add_option("scene", *scene_path, "scene in JSON")->required()->option_text("SCENE.json");
   command->add_option("-o,--output", *output, "picture to write")->required()->option_text("OUT.exr");
   command->add_option("-n,--samples", wanted->samples, "paths a pixel")
@@ -99,6 +101,7 @@ void add_render(CLI::App& application) {
   command->add_option("--height", choices->height, "pixels, instead of the scene's")->check(CLI::Range(1, 16384));
   command->add_option("--seed", wanted->seed, "the picture depends on it alone")->capture_default_str();
   command->add_option("--threads", wanted->threads, "0: as many as the machine has")->capture_default_str();
+  command->add_flag("--scattered", *scattered, "of many meshes, no light that only surfaces have sent on");
   command->callback([=] {
     mesograin::base::require_writable(*output);
     const mesograin::io::SceneFile file = mesograin::io::read_scene(*scene_path, *choices);
@@ -109,10 +112,13 @@ void add_render(CLI::App& application) {
       setup.threads = wanted->threads;
       write_picture(*output, file, setup, tracer(setup, [&progress] { progress.row_done(); }));
     };
-    if (is_heap(file))
-      trace(mesh_heap_case(file), trace_mesh_heap);
-    else
+    if (is_heap(file)) {
+      MeshHeapCase setup = mesh_heap_case(file);
+      setup.scattered = *scattered;
+      trace(std::move(setup), trace_mesh_heap);
+    } else {
       trace(picture_case(file), trace_picture);
+    }
   });
 }
 

@@ -30,7 +30,7 @@ double square(double of) { return of * of; }
 constexpr double widest_stored = 0.3;
 
 /// Of each sun that is stored: its noise falls as that of the paths does.
-constexpr double rays_a_path = 1.0 / 16.0, fewest_rays = 4e6, most_rays = 3e7;
+constexpr double rays_a_path = 1.0 / 16.0, fewest_rays = 1e6, most_rays = 3e7;
 
 /// How a path has come from the camera: by surfaces that bent it, or scattered at least once.
 enum class Way { straight, bent, scattered };
@@ -117,8 +117,14 @@ class Path {
  public:
   /// `at`: the channel's index. `stored`: or null.
   Path(const MeshHeap& heap, const Around& around, const UnscatteredLight* stored, const Channel& channel,
-       std::size_t at, Rng& rng)
-      : heap_(heap), around_(around), stored_(stored), channel_(channel), at_(at), rng_(rng) {}
+       std::size_t at, bool scattered, Rng& rng)
+      : heap_(heap),
+        around_(around),
+        stored_(stored),
+        channel_(channel),
+        at_(at),
+        unscattered_(scattered ? 0.0 : 1.0),
+        rng_(rng) {}
 
   /// Nothing, if it meets nothing.
   std::optional<double> follow(glm::dvec3 origin, glm::dvec3 direction) {
@@ -130,7 +136,8 @@ class Path {
       if (!(of.diffuse ? bounces(of, *hit, origin, direction) : crosses(of, *hit, origin, direction))) return found_;
       hit = heap_.first(origin, direction);
     }
-    return found_ + weight_ * around_.radiance(direction, channel_.number, way_);
+    return found_ +
+           (way_ == Way::scattered ? 1.0 : unscattered_) * weight_ * around_.radiance(direction, channel_.number, way_);
   }
 
  private:
@@ -178,6 +185,7 @@ class Path {
   const UnscatteredLight* stored_;
   const Channel& channel_;
   std::size_t at_;
+  double unscattered_;  // how much of light that nothing has scattered counts
   Rng& rng_;
   double weight_ = 1, found_ = 0;
   Way way_ = Way::straight;
@@ -221,7 +229,7 @@ Picture trace_mesh_heap(const MeshHeapCase& setup, const std::function<void()>& 
     const Ray ray = view_ray(setup.clip_to_world, x, y);
     glm::dvec3 radiance(0);
     for (std::size_t i = 0; i < channels.size(); ++i) {
-      Path path(heap, around, stored ? &*stored : nullptr, channels[i], i, rng);
+      Path path(heap, around, stored ? &*stored : nullptr, channels[i], i, setup.scattered, rng);
       const std::optional<double> found = path.follow(ray.origin, ray.direction);
       if (!found) return std::nullopt;
       if (channels.size() == 1) return glm::dvec3(*found);

@@ -219,7 +219,7 @@ TEST(MeshHeap, StoresOfASunWhatPathsFindOfIt) {
       // Narrow enough to be stored, and a little too wide for it.
       setup.scene.lights.emplace_back(
           scene::DirectionalLight{{0.5, -0.3, 1.0}, glm::dvec3(1.0), stored ? 0.2999 : 0.3001});
-      setup.samples = stored ? 2000 : 20000;
+      setup.samples = stored ? 1000 : 8000;
       const Picture picture = trace_mesh_heap(setup);
       double& sum = sums[stored ? 1 : 0] = 0;
       double squares = 0;
@@ -229,7 +229,7 @@ TEST(MeshHeap, StoresOfASunWhatPathsFindOfIt) {
       }
       variance += squares / (sum * sum);
     }
-    EXPECT_LT(std::sqrt(variance), 0.01);
+    EXPECT_LT(std::sqrt(variance), 0.015);
     EXPECT_NEAR(sums[1] / sums[0], 1.0, 0.003 + 3.0 * std::sqrt(variance)) << eta << ", " << roughness;
   }
 }
@@ -242,7 +242,7 @@ TEST(MeshHeap, LightsWhatIsBehindAPane) {
     MeshHeapCase setup = seen_from_above(0.5);
     setup.scene.lights.emplace_back(scene::DirectionalLight{{0.0, 0.0, 1.0}, glm::dvec3(2.0), 0.0});
     setup.scene.instances.push_back({square(), diffuse(reflectance), placed({0.0, 0.0, 0.0}, 8.0)});
-    const glm::dmat4 flat = glm::scale(placed({0.0, 0.0, 2.0}), glm::dvec3(8.0, 8.0, 0.5));
+    const glm::dmat4 flat = glm::scale(placed({0.0, 0.0, 1.0}), glm::dvec3(1.0, 1.0, 0.5));
     setup.scene.instances.push_back({cube(), medium(0.0, eta == 1.0 ? 0.3 : 0.0, eta), flat});
     setup.samples = 400;
     const Picture picture = trace_mesh_heap(setup);
@@ -250,7 +250,7 @@ TEST(MeshHeap, LightsWhatIsBehindAPane) {
     for (const glm::dvec3& radiance : picture.radiance) mean += radiance.g / (across * across);
     const double crosses = eta == 1.0 ? std::exp(-0.3) : (1.0 - once) / (1.0 + once);
     const double right = reflectance / std::numbers::pi * 2.0 * crosses * crosses;
-    EXPECT_NEAR(mean / right, 1.0, eta == 1.0 ? 1e-3 : 0.02) << eta;
+    EXPECT_NEAR(mean / right, 1.0, eta == 1.0 ? 1e-3 : 0.01) << eta;
   }
 }
 

@@ -149,6 +149,7 @@ KINDS = {
             24.0,
             judged_by="relative_l1_blocks",
             referee=True,
+            parts=(),
         ),
     )
 }
@@ -174,7 +175,12 @@ def has(kind, part):
 def missing_part(kind, part):
     """One sentence on why a kind of reference has no such part, and which have it; no full stop."""
     only = KINDS[kind].parts
-    why = f"all that it shows is the {only[0]} part" if only else "its light is reflected without direction, once"
+    if only:
+        why = f"all that it shows is the {only[0]} part"
+    elif KINDS[kind].referee:
+        why = "all light between the grains is traced as one"
+    else:
+        why = "its light is reflected without direction, once"
     having = ", ".join(name for name in KINDS if has(name, part))
     return f"the reference {kind} has no {part} part: {why}; those that have it are {having}"
 

@@ -104,7 +104,7 @@ def compare(models=arguments.DEFAULT_MODELS, references=None, out="//comparison"
 
     models: of schema.models.CHOICES; every material is rendered with each.
     references: of 'diffuse', 'glossy', 'volume_index_matched', 'subsurface', 'subsurface_burley', 'volume_dielectric',
-    'photon', 'volume_lambert'; None for each model's usual one.
+    'photon', 'volume_lambert', 'photon_scene'; None for each model's usual one.
     out: folder for all files, made if needed; '//' is the folder of the .blend file.
     size: (width, height) in pixels, None for the scene's. samples: of each pixel, on our side.
     reference_samples: Cycles samples of each pixel for each seed, None for 64 (surfaces) or 128 (volumes). seeds: how

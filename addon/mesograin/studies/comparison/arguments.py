@@ -71,7 +71,7 @@ def build():
         default=None,
         metavar="N",
         help="samples a pixel for each seed of the reference (default: 64 for surfaces, 128 for volumes, 1024 for"
-        " volume_dielectric, 256 for photon)",
+        " volume_dielectric, 256 for photon and photon_scene)",
     )
     parser.add_argument(
         "--seeds",
