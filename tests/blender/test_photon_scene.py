@@ -59,6 +59,17 @@ def test_photons_are_what_cycles_has_for_volumes(scene):
         assert ratio == pytest.approx(1.0, abs=0.02), channel
 
 
+def test_a_lamp_lights_volumes_as_cycles_has_it(scene):
+    """Near enough that its light fades across them; soft shadows lie on what is no grain, and do not count."""
+    bpy.data.objects.remove(bpy.data.objects["Sun"])
+    lamp = place("Lamp", bpy.data.lights.new("Lamp", "POINT"))
+    lamp.location, lamp.data.energy, lamp.data.shadow_soft_size = (2.0, -2.0, 4.0), 1000.0, 0.3
+    scene.mesograin.boundary = "index_matched"
+    photons, shown = of_grains("photon_scene", 128)
+    traced, _ = of_grains("volume_index_matched", 256)
+    assert photons[shown].sum() == pytest.approx(traced[shown].sum(), rel=0.02)
+
+
 def compare(folder, **changes):
     done = {"models": ("model_2",), "references": ("photon_scene",), "out": folder / "out", "size": SIZE, "samples": 32,
             "reference_samples": 128, "frames": 1, "cache": Cache(folder / "cache"), "command": "it"}
@@ -74,10 +85,6 @@ def test_refracting_balls_are_compared_under_their_own_sun(scene, tmp_path):
     assert case["metrics"]["bias"] == pytest.approx(1.0, abs=0.08)
 
 
-def add_lamp(scene):
-    place("Lamp", bpy.data.lights.new("Lamp", "POINT"))
-
-
 def scatter_forward_under_a_point(scene):
     scene.mesograin.g = 0.5
     bpy.data.lights["Sun"].angle = 0.0
@@ -88,7 +95,6 @@ def diffuse_what_enters(scene):
 
 
 @pytest.mark.parametrize("change, words", [
-    (add_lamp, "'Lamp' is neither"),
     (scatter_forward_under_a_point, "no path finds a sun without extent"),
     (diffuse_what_enters, "dielectric or index_matched"),
 ])

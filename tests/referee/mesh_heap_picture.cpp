@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <variant>
@@ -13,6 +14,7 @@
 #include "base/error.h"
 #include "directions.h"
 #include "heap_matter.h"
+#include "light_source.h"
 #include "mesh_heap.h"
 #include "pixels.h"
 #include "roulette.h"
@@ -45,20 +47,18 @@ struct Sun {
 /// What a ray finds that leaves the scene.
 class Around {
  public:
-  /// `stores`: suns that are narrow.
+  /// `stores`: lamps, and suns that are narrow.
   Around(const scene::Scene& scene, bool stores) : world_(scene.world) {
     for (const scene::Light& light : scene.lights) {
+      check_source(light);
       const auto* sun = std::get_if<scene::DirectionalLight>(&light);
-      if (sun == nullptr) throw Error("Of lights the referee knows suns and the world: every type must be 'distant'.");
-      const bool stored = stores && sun->angle <= widest_stored;
-      if (stored) stored_.push_back(*sun);
-      if (!(sun->angle > 0.0)) {
-        if (!stored)
-          throw Error(
-              "Of several objects one of which has a g that is not 0 no path finds a sun without extent: its "
-              "angle must be above 0.");
-        continue;
-      }
+      const bool stored = stores && (sun == nullptr || sun->angle <= widest_stored);
+      if (stored) stored_.push_back(light);
+      if (!stored && (sun == nullptr || sun->angle <= 0.0))
+        throw Error(
+            "Of several objects one of which has a g that is not 0 no path finds a sun without extent, nor a "
+            "lamp: a sun's angle must be above 0, and every type 'distant'.");
+      if (sun == nullptr || sun->angle <= 0.0) continue;
       const double half = std::cos(0.5 * sun->angle);
       // A disc's irradiance on a plane that faces each of its points is the radiance times 2 pi (1 - cosine).
       suns_.push_back(
@@ -79,13 +79,20 @@ class Around {
     return sum;
   }
 
-  const std::vector<scene::DirectionalLight>& stored() const { return stored_; }
+  /// Of lamps, on a ray that surfaces alone have bent, so far.
+  double lamps(const glm::dvec3& origin, const glm::dvec3& direction, double reach, int channel) const {
+    double sum = 0.0;
+    for (const scene::Light& light : stored_) sum += radiance_along(light, origin, direction, reach)[channel];
+    return sum;
+  }
+
+  const std::vector<scene::Light>& stored() const { return stored_; }
 
   bool grey() const {
     const auto is = [](const glm::dvec3& of) { return of.r == of.g && of.g == of.b; };
     return !world_.image && is(world_.radiance) &&
            std::all_of(suns_.begin(), suns_.end(), [&](const Sun& sun) { return is(sun.radiance); }) &&
-           std::all_of(stored_.begin(), stored_.end(), [&](const auto& sun) { return is(sun.irradiance); });
+           std::all_of(stored_.begin(), stored_.end(), [&](const scene::Light& light) { return is(colour_of(light)); });
   }
 
  private:
@@ -102,7 +109,7 @@ class Around {
 
   const scene::World& world_;
   std::vector<Sun> suns_;
-  std::vector<scene::DirectionalLight> stored_;
+  std::vector<scene::Light> stored_;
 };
 
 void check(const scene::Material& material) {
@@ -131,6 +138,7 @@ class Path {
     std::optional<MeshHeap::Hit> hit = heap_.first(origin, direction);
     if (!hit) return std::nullopt;
     while (hit) {
+      see_lamps(origin, direction, hit->distance);
       origin += hit->distance * direction;
       const Matter& of = channel_.matter[hit->number];
       if (!(of.diffuse ? bounces(of, *hit, origin, direction) : crosses(of, *hit, origin, direction))) return found_;
@@ -141,6 +149,10 @@ class Path {
   }
 
  private:
+  void see_lamps(const glm::dvec3& origin, const glm::dvec3& direction, double reach) {
+    if (way_ == Way::bent) found_ += unscattered_ * weight_ * around_.lamps(origin, direction, reach, channel_.number);
+  }
+
   bool bounces(const Matter& of, const MeshHeap::Hit& hit, const glm::dvec3& place, glm::dvec3& direction) {
     weight_ *= of.reflectance;
     const glm::dvec3 normal = glm::dot(hit.normal, direction) < 0.0 ? hit.normal : -hit.normal;

@@ -254,6 +254,70 @@ TEST(MeshHeap, LightsWhatIsBehindAPane) {
   }
 }
 
+// Lamps of every kind on a plane.
+TEST(MeshHeap, LightsAPlaneAsItsLampsAreTold) {
+  const glm::dvec3 at(0.3, -0.2, 2.0);
+  const auto intensity = glm::dvec3(1.0, 2.0, 3.0);
+  const auto from = [&](double cosine_exponent, double x, double y) {
+    const glm::dvec3 way = at - glm::dvec3(x, y, 0.0);
+    const double square = glm::dot(way, way), cosine = way.z / std::sqrt(square);
+    return std::pow(cosine, 1.0 + cosine_exponent) / square;
+  };
+  scene::AreaLight area{.position = at, .half_x = {0.02, 0.0, 0.0}, .half_y = {0.0, 0.02, 0.0}};
+  area.radiance = intensity / (0.04 * 0.04);
+  scene::SpotLight spot{.position = at, .radiant_intensity = intensity, .angle = 0.3, .blend = 0.2};
+  const std::pair<scene::Light, double> lamps[] = {
+      {scene::PointLight{.position = at, .radiant_intensity = intensity, .radius = 0.02}, 0.0},
+      {area, 1.0},
+      {spot, 0.0}};
+  for (const auto& [lamp, exponent] : lamps) {
+    MeshHeapCase setup = seen_from_above(0.5);
+    setup.scene.instances.push_back({square(), diffuse(0.6), placed({0.0, 0.0, 0.0})});
+    setup.scene.lights.push_back(lamp);
+    setup.samples = 400;
+    const Picture picture = trace_mesh_heap(setup);
+    for (int row = 0; row < across; ++row)
+      for (int column = 0; column < across; ++column) {
+        const double x = (column + 0.5) / across - 0.5, y = 0.5 - (row + 0.5) / across;
+        double right = 0.6 / std::numbers::pi * from(exponent, x, y);
+        if (std::holds_alternative<scene::SpotLight>(lamp)) {
+          const double aside = std::hypot(x - at.x, y - at.y), within = std::tan(0.15) * at.z;
+          if (std::abs(aside - within) < 0.13) continue;  // its edge, and what it blurs
+          if (aside > within) right = 0.0;
+        }
+        const glm::dvec3 found = picture.radiance[static_cast<std::size_t>(row * across + column)];
+        EXPECT_NEAR(found.g, 2.0 * right, 0.02 * 2.0 * right) << lamp.index() << " at " << x << ", " << y;
+        EXPECT_NEAR(found.b, 3.0 * right, 0.02 * 3.0 * right);
+      }
+  }
+}
+
+// In a ball from afar.
+TEST(MeshHeap, SendsOfALampWhatASunSends) {
+  const double far = 400.0;
+  const glm::dvec3 towards = glm::normalize(glm::dvec3(0.6, 0.3, 0.7));
+  scene::AreaLight area{.position = far * towards};
+  area.half_x = glm::normalize(glm::cross(towards, glm::dvec3(0.0, 0.0, 1.0)));
+  area.half_y = glm::cross(towards, area.half_x);
+  if (glm::dot(glm::cross(area.half_x, area.half_y), towards) < 0.0) area.half_y = -area.half_y;
+  area.radiance = glm::dvec3(far * far / 4.0);
+  const scene::Light lights[] = {
+      scene::DirectionalLight{towards, glm::dvec3(1.0), 0.0},
+      scene::PointLight{.position = far * towards, .radiant_intensity = glm::dvec3(far * far)}, area,
+      scene::SpotLight{.position = far * towards, .axis = -towards, .radiant_intensity = glm::dvec3(far * far)}};
+  double sun = 0.0;
+  for (const scene::Light& light : lights) {
+    MeshHeapCase setup = seen_from_above(1.5);
+    setup.scene.lights.push_back(light);
+    setup.scene.instances.push_back({ball(), medium(2.0, 0.1, 1.3), placed({0.0, 0.0, 0.0})});
+    setup.samples = 400;
+    double sum = 0.0;
+    for (const glm::dvec3& radiance : trace_mesh_heap(setup).radiance) sum += radiance.g;
+    if (light.index() == 0) sun = sum;
+    EXPECT_NEAR(sum / sun, 1.0, 0.01) << light.index();
+  }
+}
+
 TEST(MeshHeap, SaysWhatItCannotTrace) {
   MeshHeapCase setup = seen_from_above(1.0);
   EXPECT_THROW(trace_mesh_heap(setup), Error);
@@ -262,6 +326,9 @@ TEST(MeshHeap, SaysWhatItCannotTrace) {
   setup.scene.instances[0].material.g = 0.5;
   EXPECT_THROW(trace_mesh_heap(setup), Error);
   setup.scene.lights.front() = scene::PointLight{};
+  EXPECT_THROW(trace_mesh_heap(setup), Error);
+  setup.scene.instances[0].material.g = 0.0;
+  setup.scene.lights.front() = scene::AreaLight{.spread = 1.0};
   EXPECT_THROW(trace_mesh_heap(setup), Error);
 }
 

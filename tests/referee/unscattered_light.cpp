@@ -1,4 +1,5 @@
-// Rays from a sun leave the lengths of their ways in the cells that they pass, and themselves where they are scattered.
+// Rays from a light leave the lengths of their ways in the cells that they pass, and themselves where they are
+// scattered.
 #include "unscattered_light.h"
 
 #include <algorithm>
@@ -8,9 +9,8 @@
 #include <glm/matrix.hpp>
 #include <numbers>
 
-#include "directions.h"
+#include "light_source.h"
 #include "parallel.h"
-#include "view.h"
 
 namespace mesograin::referee {
 namespace {
@@ -27,17 +27,16 @@ constexpr double gathered_within = 0.05;
 }  // namespace
 
 UnscatteredLight::UnscatteredLight(const MeshHeap& heap, const std::vector<Channel>& channels,
-                                   const std::vector<scene::DirectionalLight>& suns, std::uint64_t rays,
-                                   std::uint64_t seed, unsigned threads)
-    : heap_(heap), channels_(channels), suns_(suns) {
+                                   const std::vector<scene::Light>& lights, std::uint64_t rays, std::uint64_t seed,
+                                   unsigned threads)
+    : heap_(heap), channels_(channels), lights_(lights) {
   choose_cells();
   std::vector<Batch> parts(batches);
   parallel(batches, threads, [&](std::size_t i) {
     Rng rng(seed ^ 0x5eedULL, i);
     parts[i].tracks.resize(fluence_.size());
     if (fluence_.empty()) return;  // no media
-    for (const scene::DirectionalLight& sun : suns_)
-      trace(sun, rays / batches, rays / batches * batches, rng, parts[i]);
+    for (const scene::Light& light : lights_) trace(light, rays / batches, rays / batches * batches, rng, parts[i]);
   });
   for (std::size_t i = 0; i < fluence_.size(); ++i)
     for (const Batch& part : parts) fluence_[i] += part.tracks[i];
@@ -91,22 +90,17 @@ void UnscatteredLight::measure(std::vector<float>& tracks) const {
   }
 }
 
-void UnscatteredLight::trace(const scene::DirectionalLight& sun, std::uint64_t rays, std::uint64_t all, Rng& rng,
+void UnscatteredLight::trace(const scene::Light& light, std::uint64_t rays, std::uint64_t all, Rng& rng,
                              Batch& batch) const {
   const Box media = heap_.bounds(true), scene = heap_.bounds(false);
-  const glm::dvec3 middle = 0.5 * (media.lower + media.upper);
-  const double reach = 0.5 * glm::distance(media.lower, media.upper);
-  const double away = glm::distance(scene.lower, scene.upper) + reach;
+  const Target target{0.5 * (media.lower + media.upper), 0.5 * glm::distance(media.lower, media.upper)};
+  const double away = glm::distance(scene.lower, scene.upper) + target.radius;
   const std::size_t count = channels_.size();
   for (std::uint64_t ray = 0; ray < rays; ++ray) {
-    const glm::dvec3 to_light = sample_sun(sun, rng);
-    glm::dvec3 first, second;
-    frame(to_light, first, second);
-    const double u = 2 * rng.uniform() - 1, v = 2 * rng.uniform() - 1;
-    glm::dvec3 place = middle + reach * (u * first + v * second) + away * to_light, direction = -to_light;
+    const SentRay leaving = send_ray(light, target, away, rng);
+    glm::dvec3 place = leaving.place, direction = leaving.direction;
     std::array<double, 3> power{};
-    for (std::size_t i = 0; i < count; ++i)
-      power[i] = 4 * reach * reach / static_cast<double>(all) * sun.irradiance[channels_[i].number];
+    for (std::size_t i = 0; i < count; ++i) power[i] = leaving.power[channels_[i].number] / static_cast<double>(all);
     const std::array<double, 3> sent = power;
     bool bent = false;
     int bends = 0;
@@ -194,21 +188,26 @@ double UnscatteredLight::fluence(std::uint32_t number, const glm::dvec3& place, 
   return fluence_[offsets_[number] + cell * channels_.size() + channel];
 }
 
-double UnscatteredLight::straight(const scene::DirectionalLight& sun, const glm::dvec3& place, const glm::dvec3& normal,
+double UnscatteredLight::straight(const scene::Light& light, const glm::dvec3& place, const glm::dvec3& normal,
                                   std::size_t channel, Rng& rng) const {
-  const glm::dvec3 to_light = sample_sun(sun, rng);
-  double left = std::max(glm::dot(normal, to_light), 0.0) * sun.irradiance[channels_[channel].number];
+  const SeenPoint seen = see_point(light, place, rng);
+  double left = std::max(glm::dot(normal, seen.direction), 0.0) * seen.irradiance[channels_[channel].number];
   glm::dvec3 from = place;
+  double remaining = seen.distance;
+  const auto is_reached = [&](double distance) {
+    from += distance * seen.direction;
+    remaining -= distance;
+    return remaining <= 0.0;
+  };
   while (left > 0) {
-    const std::optional<MeshHeap::Hit> hit = heap_.first(from, to_light);
-    if (!hit) return left;
+    const std::optional<MeshHeap::Hit> hit = heap_.first(from, seen.direction);
+    if (!hit || is_reached(hit->distance)) return left;
     const Matter& of = channels_[channel].matter[hit->number];
     if (!heap_.is_solid(hit->number) || !of.surface.matched()) return 0;
-    from += hit->distance * to_light;
-    const std::optional<MeshHeap::Hit> own = heap_.inside(hit->number, from, to_light);
+    const std::optional<MeshHeap::Hit> own = heap_.inside(hit->number, from, seen.direction);
     if (!own) return left;
-    left *= std::exp(-of.sigma_t * own->distance);
-    from += own->distance * to_light;
+    left *= std::exp(-of.sigma_t * std::min(own->distance, remaining));
+    if (is_reached(own->distance)) return left;
   }
   return left;
 }
@@ -228,7 +227,7 @@ double UnscatteredLight::irradiance(std::uint32_t number, const glm::dvec3& plac
     }
   }
   sum /= std::numbers::pi * radius_ * radius_;
-  for (const scene::DirectionalLight& sun : suns_) sum += straight(sun, place, normal, channel, rng);
+  for (const scene::Light& light : lights_) sum += straight(light, place, normal, channel, rng);
   return sum;
 }
 

@@ -1,4 +1,4 @@
-// Suns too small for paths to find, in a scene of many meshes: their light that nothing has scattered yet, in small
+// Lights too small for paths to find, in a scene of many meshes: what of theirs nothing has scattered yet, in small
 // cells of each medium, and where surfaces that scatter it have it from those that bend it.
 #pragma once
 
@@ -19,16 +19,15 @@ namespace mesograin::referee {
 
 class UnscatteredLight {
  public:
-  /// `rays` of each sun, all over the media. Refers to the heap.
-  UnscatteredLight(const MeshHeap& heap, const std::vector<Channel>& channels,
-                   const std::vector<scene::DirectionalLight>& suns, std::uint64_t rays, std::uint64_t seed,
-                   unsigned threads);
+  /// `rays` of each light, all over the media. Refers to the heap.
+  UnscatteredLight(const MeshHeap& heap, const std::vector<Channel>& channels, const std::vector<scene::Light>& lights,
+                   std::uint64_t rays, std::uint64_t seed, unsigned threads);
 
   /// Mean over the part of the place's cell that is inside an instance, in a channel of those given, by its index.
   double fluence(std::uint32_t number, const glm::dvec3& place, std::size_t channel) const;
 
-  /// On an instance's surface, whose `normal` points to the side that is asked for: straight from the suns, of which
-  /// one direction each is drawn, and what surfaces and media have bent on its way.
+  /// On an instance's surface, whose `normal` points to the side that is asked for: straight from the lights, of which
+  /// one point each is drawn, and what surfaces and media have bent on its way.
   double irradiance(std::uint32_t number, const glm::dvec3& place, const glm::dvec3& normal, std::size_t channel,
                     Rng& rng) const;
 
@@ -49,15 +48,15 @@ class UnscatteredLight {
 
   void choose_cells();
   void measure(std::vector<float>& tracks) const;
-  void trace(const scene::DirectionalLight& sun, std::uint64_t rays, std::uint64_t all, Rng& rng, Batch& batch) const;
+  void trace(const scene::Light& light, std::uint64_t rays, std::uint64_t all, Rng& rng, Batch& batch) const;
   void sort(std::vector<Photon> photons);
-  double straight(const scene::DirectionalLight& sun, const glm::dvec3& place, const glm::dvec3& normal,
-                  std::size_t channel, Rng& rng) const;
+  double straight(const scene::Light& light, const glm::dvec3& place, const glm::dvec3& normal, std::size_t channel,
+                  Rng& rng) const;
   std::int64_t bucket(const glm::ivec3& at) const;
 
   const MeshHeap& heap_;
   const std::vector<Channel>& channels_;
-  std::vector<scene::DirectionalLight> suns_;
+  std::vector<scene::Light> lights_;
   std::vector<MeshCells> cells_;      // by body
   std::vector<std::size_t> offsets_;  // by instance, in fluence_
   std::vector<float> fluence_;

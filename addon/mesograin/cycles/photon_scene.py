@@ -7,9 +7,8 @@ import tempfile
 from pathlib import Path
 
 from .. import native_module
-from ..scene import export, lights, meshes
+from ..scene import export, meshes
 from . import referee
-from .shot import ReferenceError
 
 _TRACED_AS = "model_2"
 """Any model of a medium: the program traces what all of them stand for."""
@@ -30,10 +29,6 @@ def take(depsgraph, kind, size, samples, seed, cache=None, overrides=None, on_pr
 def _scene(depsgraph, overrides, staying):
     """native.Scene, as our side has it (docs/comparing.md)."""
     values = export.read_scene(depsgraph, meshes.MeshCache(), varied=False)
-    lamps = [light.name for light in values.lights if not isinstance(light, lights.SunValues)]
-    if lamps:
-        raise ReferenceError(f"The reference photon_scene knows suns and the world, and '{lamps[0]}' is neither: remove"
-                             " it, or choose another reference.")
 
     def change(material):
         if material.name in staying:
