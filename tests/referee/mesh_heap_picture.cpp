@@ -67,14 +67,14 @@ class Around {
   }
 
   /// No camera sees suns, nor the world where the film is transparent; and stored suns were found where light was
-  /// scattered.
-  double radiance(const glm::dvec3& direction, int channel, Way way) const {
+  /// scattered, and `by_facet` where a rough surface has reflected the ray.
+  double radiance(const glm::dvec3& direction, int channel, Way way, bool by_facet) const {
     if (way == Way::straight && world_.film_transparent) return 0.0;
     double sum = world_.radiance[channel];
     if (world_.image) sum *= image(world_.world_to_image * direction, channel);
     if (way == Way::straight) return sum;
     for (const Sun& sun : suns_)
-      if (!(sun.stored && way == Way::scattered) && glm::dot(direction, sun.direction) > sun.cosine)
+      if (!(sun.stored && (way == Way::scattered || by_facet)) && glm::dot(direction, sun.direction) > sun.cosine)
         sum += sun.radiance[channel];
     return sum;
   }
@@ -144,13 +144,14 @@ class Path {
       if (!(of.diffuse ? bounces(of, *hit, origin, direction) : crosses(of, *hit, origin, direction))) return found_;
       hit = heap_.first(origin, direction);
     }
-    return found_ +
-           (way_ == Way::scattered ? 1.0 : unscattered_) * weight_ * around_.radiance(direction, channel_.number, way_);
+    return found_ + (way_ == Way::scattered ? 1.0 : unscattered_) * weight_ *
+                        around_.radiance(direction, channel_.number, way_, seen_by_facet_);
   }
 
  private:
   void see_lamps(const glm::dvec3& origin, const glm::dvec3& direction, double reach) {
-    if (way_ == Way::bent) found_ += unscattered_ * weight_ * around_.lamps(origin, direction, reach, channel_.number);
+    if (way_ == Way::bent && !seen_by_facet_)
+      found_ += unscattered_ * weight_ * around_.lamps(origin, direction, reach, channel_.number);
   }
 
   bool bounces(const Matter& of, const MeshHeap::Hit& hit, const glm::dvec3& place, glm::dvec3& direction) {
@@ -165,8 +166,17 @@ class Path {
   /// Until it leaves the body that it has come to, or is reflected by it; false where it ends.
   bool crosses(const Matter& of, const MeshHeap::Hit& hit, glm::dvec3& place, glm::dvec3& direction) {
     if (!of.surface.matched() && way_ == Way::straight) way_ = Way::bent;
-    direction = glm::normalize(of.surface.beyond(direction, hit.normal, rng_));
-    if (glm::dot(direction, hit.normal) > 0.0) return true;
+    const glm::dvec3 to_viewer = -direction;
+    int facets;
+    direction = glm::normalize(of.surface.beyond(direction, hit.normal, rng_, &facets));
+    const bool is_reflected = glm::dot(direction, hit.normal) > 0.0;
+    seen_by_facet_ = stored_ != nullptr && is_reflected && facets == 1;
+    if (stored_ != nullptr && of.surface.rough() && way_ == Way::bent)
+      found_ += unscattered_ * weight_ *
+                stored_->straight(place, hit.normal, at_, rng_, [&](const glm::dvec3& to_light, double comes) {
+                  return comes * of.surface.reflected_once(to_light, to_viewer, hit.normal);
+                });
+    if (is_reflected) return true;
     constexpr int most_steps = 1 << 20;
     for (int step = 0; step < most_steps; ++step) {
       const std::optional<MeshHeap::Hit> own = heap_.inside(hit.number, place, direction);
@@ -201,6 +211,7 @@ class Path {
   Rng& rng_;
   double weight_ = 1, found_ = 0;
   Way way_ = Way::straight;
+  bool seen_by_facet_ = false;  // on what follows: stored lights, by a rough surface
 };
 
 std::vector<Channel> channels_of(const MeshHeap& heap, const Around& around) {

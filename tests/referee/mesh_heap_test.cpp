@@ -254,6 +254,31 @@ TEST(MeshHeap, LightsWhatIsBehindAPane) {
   }
 }
 
+// What one facet of a rough surface mirrors of a lamp is found by asking for it, and by chance of a wide sun.
+TEST(MeshHeap, MirrorsALampInARoughSurfaceAsAWideSun) {
+  double sums[2], noise[2];
+  for (const bool stored : {false, true}) {
+    MeshHeapCase setup = seen_from_above(1.5);
+    scene::Material black = medium(0.0, 50.0, 3.0);
+    black.roughness = 0.2;
+    setup.scene.instances.push_back({ball(), black, placed({0.0, 0.0, 0.0})});
+    setup.scene.lights.emplace_back(
+        scene::DirectionalLight{{0.5, -0.3, 1.0}, glm::dvec3(1.0), stored ? 0.2999 : 0.3001});
+    setup.samples = stored ? 2000 : 60000;
+    const Picture picture = trace_mesh_heap(setup);
+    double& sum = sums[stored ? 1 : 0] = 0;
+    double squares = 0;
+    for (std::size_t i = 0; i < picture.radiance.size(); ++i) {
+      sum += picture.radiance[i].g;
+      squares += picture.noise[i].g * picture.noise[i].g;
+    }
+    noise[stored ? 1 : 0] = std::sqrt(squares) / sum;
+  }
+  EXPECT_LT(noise[0], 0.025);
+  EXPECT_LT(noise[1], 0.025);
+  EXPECT_NEAR(sums[1] / sums[0], 1.0, 0.003 + 3.0 * std::hypot(noise[0], noise[1]));
+}
+
 // Lamps of every kind on a plane.
 TEST(MeshHeap, LightsAPlaneAsItsLampsAreTold) {
   const glm::dvec3 at(0.3, -0.2, 2.0);

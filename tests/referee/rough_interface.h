@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <numbers>
 #include <optional>
 
 #include "directions.h"
@@ -24,8 +25,10 @@ struct RoughInterface {
   bool matched() const { return smooth.matched(); }
   bool rough() const { return alpha > 0 && !matched(); }
 
-  /// Where light goes that meets the surface; `normal` points out of the body.
-  glm::dvec3 beyond(const glm::dvec3& direction, const glm::dvec3& normal, Rng& rng) const {
+  /// Where light goes that meets the surface; `normal` points out of the body. `facets`, if any: how many of a rough
+  /// one it has met.
+  glm::dvec3 beyond(const glm::dvec3& direction, const glm::dvec3& normal, Rng& rng, int* facets = nullptr) const {
+    if (facets != nullptr) *facets = 0;
     if (matched()) return direction;
     if (!rough()) return beyond_facet(direction, normal, rng);
     glm::dvec3 first, second;
@@ -40,8 +43,26 @@ struct RoughInterface {
       const glm::dvec3 facet = visible_facet(outside ? -local : local, rng);
       local = glm::normalize(beyond_facet(local, facet, rng));
       outside = glm::dot(local, facet) > 0;
+      if (facets != nullptr) ++*facets;
     }
     return glm::normalize(local.x * first + local.y * second + local.z * normal);
+  }
+
+  /// What one of a rough surface's facets reflects outside, 1/sr times the cosine of the light that comes from
+  /// `to_light` (Walter et al., "Microfacet models for refraction through rough surfaces", 2007, eq 20 and 33; heights
+  /// that shadow and mask alike: Heitz, "Understanding the masking-shadowing function", 2014, eq 99).
+  double reflected_once(const glm::dvec3& to_light, const glm::dvec3& to_viewer, const glm::dvec3& normal) const {
+    const double in = glm::dot(to_light, normal), out = glm::dot(to_viewer, normal);
+    if (!rough() || in <= 0 || out <= 0) return 0;
+    const glm::dvec3 half = glm::normalize(to_light + to_viewer);
+    const double square = alpha * alpha, upright = glm::dot(half, normal);
+    const double spread = upright * upright * (square - 1) + 1;
+    const double density = square / (std::numbers::pi * spread * spread);
+    const auto hidden = [square](double cosine) {
+      return 0.5 * (std::sqrt(1 + square * (1 - cosine * cosine) / (cosine * cosine)) - 1);
+    };
+    return smooth.reflectance_from_outside(glm::dot(half, to_light)) * density / (1 + hidden(in) + hidden(out)) /
+           (4 * out);
   }
 
  private:

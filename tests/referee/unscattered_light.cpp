@@ -188,10 +188,8 @@ double UnscatteredLight::fluence(std::uint32_t number, const glm::dvec3& place, 
   return fluence_[offsets_[number] + cell * channels_.size() + channel];
 }
 
-double UnscatteredLight::straight(const scene::Light& light, const glm::dvec3& place, const glm::dvec3& normal,
-                                  std::size_t channel, Rng& rng) const {
-  const SeenPoint seen = see_point(light, place, rng);
-  double left = std::max(glm::dot(normal, seen.direction), 0.0) * seen.irradiance[channels_[channel].number];
+double UnscatteredLight::left_of(const SeenPoint& seen, const glm::dvec3& place, std::size_t channel) const {
+  double left = seen.irradiance[channels_[channel].number];
   glm::dvec3 from = place;
   double remaining = seen.distance;
   const auto is_reached = [&](double distance) {
@@ -227,8 +225,8 @@ double UnscatteredLight::irradiance(std::uint32_t number, const glm::dvec3& plac
     }
   }
   sum /= std::numbers::pi * radius_ * radius_;
-  for (const scene::Light& light : lights_) sum += straight(light, place, normal, channel, rng);
-  return sum;
+  return sum + straight(place, normal, channel, rng,
+                        [&](const glm::dvec3& to_light, double comes) { return comes * glm::dot(normal, to_light); });
 }
 
 }  // namespace mesograin::referee

@@ -4,12 +4,14 @@
 
 #include <array>
 #include <cstdint>
+#include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 #include <unordered_map>
 #include <utility>
 #include <vector>
 
 #include "heap_matter.h"
+#include "light_source.h"
 #include "mesh_cells.h"
 #include "mesh_heap.h"
 #include "rng.h"
@@ -31,6 +33,21 @@ class UnscatteredLight {
   double irradiance(std::uint32_t number, const glm::dvec3& place, const glm::dvec3& normal, std::size_t channel,
                     Rng& rng) const;
 
+  /// The sum over all lights of visit(direction, irradiance) of a point of each, on a plane that faces it: straight, on
+  /// the side that a normal points to.
+  template <class Visit>
+  double straight(const glm::dvec3& place, const glm::dvec3& normal, std::size_t channel, Rng& rng,
+                  const Visit& visit) const {
+    double sum = 0;
+    for (const scene::Light& light : lights_) {
+      const SeenPoint seen = see_point(light, place, rng);
+      if (glm::dot(normal, seen.direction) <= 0) continue;
+      const double comes = left_of(seen, place, channel);
+      if (comes > 0) sum += visit(seen.direction, comes);
+    }
+    return sum;
+  }
+
  private:
   using Power = std::array<float, 3>;
 
@@ -50,8 +67,7 @@ class UnscatteredLight {
   void measure(std::vector<float>& tracks) const;
   void trace(const scene::Light& light, std::uint64_t rays, std::uint64_t all, Rng& rng, Batch& batch) const;
   void sort(std::vector<Photon> photons);
-  double straight(const scene::Light& light, const glm::dvec3& place, const glm::dvec3& normal, std::size_t channel,
-                  Rng& rng) const;
+  double left_of(const SeenPoint& seen, const glm::dvec3& place, std::size_t channel) const;
   std::int64_t bucket(const glm::ivec3& at) const;
 
   const MeshHeap& heap_;
