@@ -32,7 +32,7 @@ double square(double of) { return of * of; }
 constexpr double widest_stored = 0.3;
 
 /// Of each sun that is stored: its noise falls as that of the paths does.
-constexpr double rays_a_path = 1.0 / 16.0, fewest_rays = 1e6, most_rays = 3e7;
+constexpr double rays_a_path = 1.0, fewest_rays = 3e5, most_rays = 3e7;
 
 /// How a path has come from the camera: by surfaces that bent it, or scattered at least once.
 enum class Way { straight, bent, scattered };
