@@ -72,7 +72,7 @@ def test_a_lamp_lights_volumes_as_cycles_has_it(scene):
 
 def compare(folder, **changes):
     done = {"models": ("model_2",), "references": ("photon_scene",), "out": folder / "out", "size": SIZE, "samples": 32,
-            "reference_samples": 128, "frames": 1, "cache": Cache(folder / "cache"), "command": "it"}
+            "reference_samples": 48, "frames": 1, "cache": Cache(folder / "cache"), "command": "it"}
     return run.compare(run.Request(**{**done, **changes}), progress.Progress(io.StringIO()))["cases"][0]
 
 

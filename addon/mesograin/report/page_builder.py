@@ -9,7 +9,7 @@ import jinja2
 import numpy
 from markupsafe import Markup
 
-from ..cycles.wording import in_labels
+from ..cycles.wording import TRACERS, in_labels
 from ..schema.labels import boundary, of_model
 from . import colours, payload, plots
 from .wording import (case_terms, case_title, compared, controls, form, headline, label, mask_steps, metric, parameters,
@@ -128,6 +128,7 @@ def _view(of, results, pictures, folder):
         view["error"] = in_labels(case["error"])
         return view
     view["boundary"] = boundary(case)
+    view["tracer"] = TRACERS[case["reference"]]
     view["notes"] = [in_labels(note) for note in case["notes"]]
     view["png"] = of.png
     height, width = of.model.shape[:2]
