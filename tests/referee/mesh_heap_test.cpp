@@ -41,6 +41,7 @@ scene::MeshPointer square() {
 /// From -1 to 1 along each axis.
 scene::MeshPointer cube() {
   std::vector<glm::vec3> corners;
+  corners.reserve(8);
   for (int i = 0; i < 8; ++i) corners.emplace_back(2 * (i & 1) - 1, (i & 2) - 1, (i & 4) / 2 - 1);
   const std::vector<glm::uvec3> faces{{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
                                       {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
@@ -222,6 +223,7 @@ TEST(MeshHeap, StoresOfASunWhatPathsFindOfIt) {
       scene::Material material = medium(1.0, 0.02, eta);
       material.roughness = roughness;
       std::vector<glm::dmat4> places;
+      places.reserve(three.size());
       for (const Ball& of : three) places.push_back(placed(of.middle, of.radius));
       setup.scene.arrays.emplace_back(ball(), material, scene::Transforms(places));
       setup.scene.instances.push_back({square(), diffuse(0.7), placed({0.0, 0.0, -1.0}, 3.0)});
@@ -306,7 +308,8 @@ TEST(MeshHeap, LightsAPlaneAsItsLampsAreTold) {
           if (std::abs(aside - within) < 0.13) continue;  // its edge, and what it blurs
           if (aside > within) right = 0.0;
         }
-        const glm::dvec3 found = picture.radiance[static_cast<std::size_t>(row * across + column)];
+        const int pixel = row * across + column;
+        const glm::dvec3 found = picture.radiance[static_cast<std::size_t>(pixel)];
         EXPECT_NEAR(found.g, 2.0 * right, 0.02 * 2.0 * right) << lamp.index() << " at " << x << ", " << y;
         EXPECT_NEAR(found.b, 3.0 * right, 0.02 * 3.0 * right);
       }
