@@ -316,7 +316,7 @@ TEST(MeshHeap, LightsAPlaneAsItsLampsAreTold) {
   }
 }
 
-// In a ball from afar.
+// From afar a lamp of any kind lights a ball as a sun of its irradiance does.
 TEST(MeshHeap, SendsOfALampWhatASunSends) {
   const double far = 400.0;
   const glm::dvec3 towards = glm::normalize(glm::dvec3(0.6, 0.3, 0.7));
