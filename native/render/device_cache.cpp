@@ -406,6 +406,7 @@ const gl::Program& DeviceCache::shading(const DeviceMaterial& material, const Sh
   if (shading.lights_at_place) defines.emplace_back("LIGHTS_AT_PLACE");
   if (shading.near_lights) defines.emplace_back("NEAR_LIGHTS");
   if (shading.lights_about) defines.emplace_back("LIGHTS_ABOUT");
+  if (shading.stored_lamps) defines.emplace_back("STORED_LAMPS");
   if (shading.summed) defines.emplace_back("SUMMED");
   if (shading.together) defines.emplace_back("TOGETHER");
   if (shading.portion) defines.push_back(portion_define(*shading.portion));

@@ -49,6 +49,7 @@ struct Shading {
   bool lights_at_place = false;   ///< the place that is shaded draws its own directions of lights that have a place
   bool near_lights = false;       ///< such lights send each point of a grain that has light maps what they send there
   bool lights_about = false;      ///< and are so near that it matters where light comes in
+  bool stored_lamps = false;      ///< of some it is stored what they do in it, or will be
   bool summed = false;            ///< what is stored of a prototype was summed for each light
   bool together = false;          ///< and for all of them together
   std::optional<Portion> portion{};  ///< told alone

@@ -25,6 +25,7 @@
 #include "render/passes/targets.h"
 #include "render/passes/timings.h"
 #include "render/portion.h"
+#include "render/stored_lamps.h"
 #include "scene/camera.h"
 #include "scene/scene.h"
 
@@ -93,10 +94,8 @@ class Frame {
   /// they did.
   bool take_news();
 
-  /// What the scene's materials wait for.
-  std::vector<std::shared_ptr<const transport::Computation>> computations() const {
-    return content_->computations(cache_);
-  }
+  /// What the scene's materials wait for, and its lamps.
+  std::vector<std::shared_ptr<const transport::Computation>> computations() const;
   std::shared_ptr<const heap::Solving> solving() const { return exchange_.solving(); }
 
   /// Waits until the device has drawn what was asked for.
@@ -158,6 +157,7 @@ class Frame {
   std::unique_ptr<Content> content_ = std::make_unique<Content>();
   int version_ = 0;  // of the content, as it was last drawn
   std::optional<Unwrapping> unwrapping_;
+  StoredLamps stored_lamps_;
   Exchange exchange_;
   ArrayVisibility arrays_;
   std::unique_ptr<Targets> targets_;

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <glm/geometric.hpp>
 
-#include "lights/device_light.h"
 #include "render/sequence.h"
 
 namespace mesograin::render {
@@ -108,9 +107,16 @@ bool Lighting::any_near(const glm::dvec3& middle, double within, double radius, 
   });
 }
 
+std::vector<lights::DeviceLight> Lighting::local(const glm::dvec3& origin) const {
+  std::vector<lights::DeviceLight> packed;
+  packed.reserve(local_.size());
+  for (const scene::Light& light : local_) packed.push_back(lights::pack(light, origin));
+  return packed;
+}
+
 std::vector<std::array<glm::vec4, 5>> Lighting::device_local(const glm::dvec3& origin) const {
   std::vector<std::array<glm::vec4, 5>> device;
-  for (const scene::Light& light : local_) device.push_back(lights::to_device(lights::pack(light, origin)));
+  for (const lights::DeviceLight& light : local(origin)) device.push_back(lights::to_device(light));
   return device;
 }
 

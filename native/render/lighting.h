@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "gl/texture.h"
+#include "lights/device_light.h"
 #include "lights/world_light.h"
 #include "render/shadow_maps.h"
 #include "render/world_directions.h"
@@ -64,7 +65,10 @@ class Lighting {
   /// Where the shadows of each are seen from, in the order of at(), from the anchor.
   std::vector<ShadowEye> eyes(const SampledLights& sampled, const glm::dvec3& anchor) const;
 
-  /// The lights that have a place, from `origin`, as shaders/lights/light.glsl has them.
+  /// The lights that have a place, from `origin`.
+  std::vector<lights::DeviceLight> local(const glm::dvec3& origin) const;
+
+  /// The same as shaders/lights/light.glsl has them.
   std::vector<std::array<glm::vec4, 5>> device_local(const glm::dvec3& origin) const;
 
  private:

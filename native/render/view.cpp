@@ -172,6 +172,7 @@ void View::read_portion(Portion portion, float* pixels) {
 void View::set_bake(const Bake& bake) {
   change([&] {
     frame(id_).set_bake(bake);
+    shared_->computations = frame(id_).computations();
     shared_->solving = frame(id_).solving();
   });
   shared_->samples = 0;

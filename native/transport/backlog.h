@@ -31,16 +31,21 @@ class Backlog {
       : work_(std::move(work)), rest_(std::move(rest)), pause_(pause) {}
 
   /// Returns at once. The thread starts with the first job.
-  void add(Job job) {
-    const std::lock_guard lock(mutex_);
-    jobs_.push_back(std::move(job));
-    if (!thread_.joinable()) thread_ = std::jthread([this](const std::stop_token& stop) { loop(stop); });
-    wake_.notify_all();
-  }
+  void add(Job job) { add(std::move(job), false); }
+
+  /// The same, but it is worked off after all that wait or will come as others do.
+  void add_after_others(Job job) { add(std::move(job), true); }
 
  private:
   // Drawing goes first where there are few cores.
   static constexpr int niceness = 5;
+
+  void add(Job job, bool after_others) {
+    const std::lock_guard lock(mutex_);
+    jobs_.insert(after_others ? jobs_.begin() : jobs_.end(), std::move(job));
+    if (!thread_.joinable()) thread_ = std::jthread([this](const std::stop_token& stop) { loop(stop); });
+    wake_.notify_all();
+  }
 
   void loop(const std::stop_token& stop) {
     // Of this thread and those that it starts.

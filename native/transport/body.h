@@ -54,6 +54,8 @@ class Body {
   const glm::vec3& lower() const { return lower_; }
   const glm::vec3& upper() const { return upper_; }
   const std::vector<glm::vec3>& positions() const { return positions_; }
+  const std::vector<glm::uvec3>& triangles() const { return triangles_; }
+  const std::vector<glm::vec3>& normals() const { return normals_; }  ///< a triangle's each, outwards, unit length
   double volume() const { return volume_; }
   double area() const { return area_; }
 

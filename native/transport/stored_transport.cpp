@@ -51,8 +51,8 @@ std::vector<double> extinctions_of(const StoredMedium& medium) {
   return {medium.sigma_t.r, medium.sigma_t.g, medium.sigma_t.b};
 }
 
-// As walks tell it.
-StoredTransport transport_by(const Walks& walks, const StoredMedium& medium, const Effort& effort) {
+/// All of it but light.
+StoredTransport without_light(const Walks& walks, const StoredMedium& medium, int terms) {
   const Body& body = walks.body();
   const Grid& grid = walks.grid();
   StoredTransport stored{.size = grid.size(),
@@ -61,24 +61,29 @@ StoredTransport transport_by(const Walks& walks, const StoredMedium& medium, con
                          .unit = body.unit(),
                          .axes = glm::mat3(glm::transpose(body.axes())),
                          .mean_chord = 4.0 * body.volume() / body.area(),  // Cauchy
-                         .terms = walks.quality().terms,
+                         .terms = terms,
                          .channels = medium.grey() ? 1 : 3,
                          .convex = body.convex(),
                          .has_unscattered = medium.eta != 1.0,
                          .distances = walks.surface(),
                          .sources = {},
                          .lobes = {}};
+  const auto products = static_cast<std::size_t>(terms * stored.channels);
+  stored.sources.resize(products * stored.nodes(), 0.0F);
+  stored.lobes.resize(products * octahedron_texels, 0.0F);
+  return stored;
+}
+
+// As walks tell it.
+StoredTransport transport_by(const Walks& walks, const StoredMedium& medium, const Effort& effort) {
+  const Grid& grid = walks.grid();
+  StoredTransport stored = without_light(walks, medium, walks.quality().terms);
   const int kept = stored.terms;
   const int channels = stored.channels;
-  stored.sources.resize(static_cast<std::size_t>(kept * channels) * stored.nodes(), 0.0F);
-  if (medium.albedo == glm::dvec3(0.0)) {  // clear: nothing is scattered
-    stored.lobes.resize(static_cast<std::size_t>(kept * channels) * octahedron_texels, 0.0F);
-    return stored;
-  }
+  if (medium.albedo == glm::dvec3(0.0)) return stored;  // clear: nothing is scattered
   const BetweenNodes between = between_nodes(grid);
   const BetweenNodes beyond = beyond_surface(grid);
   // Channels have lobes of their own: light in a thick one is sharper in its direction than in a thin one.
-  stored.lobes.resize(static_cast<std::size_t>(kept * channels) * octahedron_texels);
   for (int channel = 0; channel < channels; ++channel) {
     const double sigma_t = medium.sigma_t[channel];
     Lights light = walks.unscattered(sigma_t, effort);
@@ -114,6 +119,36 @@ StoredTransport transport_by(const Walks& walks, const StoredMedium& medium, con
   return stored;
 }
 
+// As transport_by has it, of one column.
+StoredTransport lamp_transport(const Walks& walks, const StoredMedium& medium, const Lamp& lamp, const Effort& effort) {
+  const Grid& grid = walks.grid();
+  StoredTransport stored = without_light(walks, medium, 1);
+  const std::vector<double> extinctions = extinctions_of(medium);
+  if (extinctions.empty()) return stored;
+  const BetweenNodes between = between_nodes(grid);
+  const Lights columns = walks.unscattered(extinctions, lamp, part_of(effort, 0.0, 0.5));
+  const auto channels = static_cast<std::size_t>(stored.channels);
+  for (std::size_t channel = 0; channel < channels; ++channel) {
+    const double sigma_t = extinctions[channel];
+    const double albedo = medium.albedo[static_cast<int>(channel)];
+    const Lights first = columns.col(static_cast<Eigen::Index>(channel));
+    Lights light = solve_multiple(walks.exchange(sigma_t), between, albedo, first, part_of(effort, 0.5, 1.0));
+    if (stored.has_unscattered)
+      light = Lights(beyond_surface(grid) * light);
+    else
+      light -= first;
+    light *= static_cast<float>(albedo);
+    if (!stored.has_unscattered) divide_by_share_below(light, grid, sigma_t);
+    const float most = light.cwiseAbs().maxCoeff();
+    if (!(most > 0.0F)) continue;
+    for (std::size_t node = 0; node < stored.nodes(); ++node)
+      if (grid.used()[node] >= 0)
+        stored.sources[node * channels + channel] = in_half(light(grid.used()[node], 0) / most);
+    for (std::size_t texel = 0; texel < octahedron_texels; ++texel) stored.lobes[texel * channels + channel] = most;
+  }
+  return stored;
+}
+
 }  // namespace
 
 double node_spacing(const Body& body, const Quality& quality) {
@@ -134,6 +169,12 @@ StoredTransport compute_transport(Walks& walks, const StoredMedium& asked, const
   const StoredMedium medium = told_by(walks, asked);
   walks.trace(extinctions_of(medium), part_of(effort, 0.0, 0.8));
   return transport_by(walks, medium, part_of(effort, 0.8, 1.0));
+}
+
+StoredTransport compute_transport(Walks& walks, const StoredMedium& asked, const Lamp& lamp, const Effort& effort) {
+  const StoredMedium medium = told_by(walks, asked);
+  walks.trace(extinctions_of(medium), part_of(effort, 0.0, 0.8));
+  return lamp_transport(walks, medium, lamp, part_of(effort, 0.8, 1.0));
 }
 
 bool known(const Walks& walks, const StoredMedium& medium) {

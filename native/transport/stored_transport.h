@@ -9,6 +9,7 @@
 
 #include "transport/body.h"
 #include "transport/effort.h"
+#include "transport/lamp.h"
 #include "transport/walks.h"
 
 namespace mesograin::transport {
@@ -19,6 +20,8 @@ struct StoredMedium {
   glm::dvec3 albedo{0.9};
   double eta = 1.0;
   double alpha = 0.0;
+
+  bool operator==(const StoredMedium&) const = default;
 
   bool grey() const {
     return sigma_t.r == sigma_t.g && sigma_t.r == sigma_t.b && albedo.r == albedo.g && albedo.r == albedo.b;
@@ -58,6 +61,11 @@ double densest_told(const glm::vec3& spacing);
 /// Traces what `walks`, which have the medium's interface, do not know yet. The answer does not depend on what they
 /// know.
 StoredTransport compute_transport(Walks& walks, const StoredMedium& medium, const Effort& effort = {});
+
+/// The same of one lamp, which all of the light is: one product, whose lobe is the same number everywhere. It has the
+/// nodes of what compute_transport() tells of parallel light.
+StoredTransport compute_transport(Walks& walks, const StoredMedium& medium, const Lamp& lamp,
+                                  const Effort& effort = {});
 
 /// Whether `walks` were traced for the medium, or for another that is near enough for an answer that is nearly right.
 bool known(const Walks& walks, const StoredMedium& medium);

@@ -9,6 +9,7 @@
 #include "transport/effort.h"
 #include "transport/grid.h"
 #include "transport/interface.h"
+#include "transport/lamp.h"
 
 namespace mesograin::transport {
 
@@ -20,5 +21,10 @@ using KeepLight = std::function<void(std::size_t, const std::vector<float>&)>;
 /// `extinctions` are sigma_t per unit of the body; `across` rays squared for each direction.
 void unscattered_light(const Body& body, const Grid& grid, const Interface& interface,
                        const std::vector<double>& extinctions, int across, const KeepLight& keep, const Effort& effort);
+
+/// The same of a lamp, per its strength: [node * extinctions + extinction], by so many `rays`.
+std::vector<float> unscattered_light(const Body& body, const Grid& grid, const Interface& interface,
+                                     const std::vector<double>& extinctions, int rays, const Lamp& lamp,
+                                     const Effort& effort);
 
 }  // namespace mesograin::transport

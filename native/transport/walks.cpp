@@ -19,6 +19,22 @@ constexpr int solved_a_stored = 2;
 // Steps of the ladder from one that was traced to the farthest that it nearly tells, and a little for rounding.
 constexpr double farthest_told = 1.01;
 
+// All of a lamp's light is one column, in which nothing else smooths noise.
+constexpr int lamp_rays = 1 << 17;
+
+/// Calls work(node) for every used node.
+template <typename Work>
+void of_nodes(const Grid& grid, const Effort& effort, const Work& work) {
+  Effort quiet = effort;
+  quiet.progress = {};
+  constexpr std::size_t nodes_a_piece = 64;
+  const std::size_t nodes = grid.places().size();
+  run_pieces(quiet, (nodes + nodes_a_piece - 1) / nodes_a_piece, [&](std::size_t piece) {
+    for (std::size_t node = piece * nodes_a_piece; node < std::min(nodes, (piece + 1) * nodes_a_piece); ++node)
+      work(node);
+  });
+}
+
 }  // namespace
 
 Walks::Walks(std::shared_ptr<const Body> body, const Interface& interface, const Quality& quality, const Effort& effort)
@@ -89,24 +105,41 @@ const Walks::Step& Walks::step(double sigma_t) const {
 
 // Unscattered light from everywhere is known: what a place sees of the outside, in which radiance is eta^2 less. It
 // takes out what nodes at the surface have wrong by standing for more than themselves.
-Lights Walks::unscattered(const Step& step, double sigma_t, const Effort& effort) const {
-  const NearWeights weights(step.exchange.sigma_t, sigma_t);
-  const std::array<float, octahedron_texels> angles = octahedron_solid_angles();
+template <typename Row>
+float Walks::correction(const Step& step, const NearWeights& weights, std::size_t node, const Row& row) const {
+  static const std::array<float, octahedron_texels> angles = octahedron_solid_angles();
   const Eigen::Map<const Eigen::RowVectorXf> solid_angles(angles.data(), octahedron_texels);
   const auto square = static_cast<float>(interface_.eta() * interface_.eta());
-  const std::size_t nodes = grid_.places().size();
-  Lights light(static_cast<Eigen::Index>(nodes), octahedron_texels);
-  Effort quiet = effort;
-  quiet.progress = {};
-  constexpr std::size_t nodes_a_piece = 64;
-  run_pieces(quiet, (nodes + nodes_a_piece - 1) / nodes_a_piece, [&](std::size_t piece) {
-    for (std::size_t node = piece * nodes_a_piece; node < std::min(nodes, (piece + 1) * nodes_a_piece); ++node) {
-      auto row = light.row(static_cast<Eigen::Index>(node));
-      weights.decayed(&step.light[node * octahedron_texels * near_extinctions], row);
-      const float right = square * weights.decayed(&step.exchange.escapes[node * near_extinctions]);
-      row *= std::clamp(right / std::max(row.dot(solid_angles), 1e-9F), 0.1F, 10.0F);
-    }
+  const float right = square * weights.decayed(&step.exchange.escapes[node * near_extinctions]);
+  return std::clamp(right / std::max(row.dot(solid_angles), 1e-9F), 0.1F, 10.0F);
+}
+
+Lights Walks::unscattered(const Step& step, double sigma_t, const Effort& effort) const {
+  const NearWeights weights(step.exchange.sigma_t, sigma_t);
+  Lights light(static_cast<Eigen::Index>(grid_.places().size()), octahedron_texels);
+  of_nodes(grid_, effort, [&](std::size_t node) {
+    auto row = light.row(static_cast<Eigen::Index>(node));
+    weights.decayed(&step.light[node * octahedron_texels * near_extinctions], row);
+    row *= correction(step, weights, node, row);
   });
+  return light;
+}
+
+Lights Walks::unscattered(const std::vector<double>& extinctions, const Lamp& lamp, const Effort& effort) const {
+  const std::size_t count = extinctions.size();
+  const std::vector<float> found = unscattered_light(*body_, grid_, interface_, extinctions, lamp_rays, lamp, effort);
+  Lights light(static_cast<Eigen::Index>(grid_.places().size()), static_cast<Eigen::Index>(count));
+  for (std::size_t e = 0; e < count; ++e) {
+    const Step& near = step(extinctions[e]);
+    const NearWeights weights(near.exchange.sigma_t, extinctions[e]);
+    of_nodes(grid_, effort, [&](std::size_t node) {
+      Eigen::RowVectorXf row(octahedron_texels);
+      weights.decayed(&near.light[node * octahedron_texels * near_extinctions], row);
+      const auto deputy = static_cast<std::size_t>(grid_.deputies()[node]);
+      light(static_cast<Eigen::Index>(node), static_cast<Eigen::Index>(e)) =
+          found[deputy * count + e] * correction(near, weights, node, row);
+    });
+  }
   return light;
 }
 

@@ -50,6 +50,9 @@ class Walks {
   /// from, per irradiance on a plane that faces it. As all below, what was traced, or of the nearest that was.
   Lights unscattered(double sigma_t, const Effort& effort = {}) const;
 
+  /// The same of a lamp, per its strength, found anew by rays: a column for each of these extinctions.
+  Lights unscattered(const std::vector<double>& extinctions, const Lamp& lamp, const Effort& effort = {}) const;
+
   Exchange exchange(double sigma_t) const;
 
   /// What is seen, and by which lobes light that is scattered once is told: of the ladder's step, for they say but what
@@ -69,6 +72,10 @@ class Walks {
 
   /// Of `step`, as unscattered() has it.
   Lights unscattered(const Step& step, double sigma_t, const Effort& effort) const;
+
+  /// What light at a node is to be multiplied by, of which those from all directions are `row`.
+  template <typename Row>
+  float correction(const Step& step, const NearWeights& weights, std::size_t node, const Row& row) const;
 
   /// That was traced, the nearest to `sigma_t`.
   const Step& step(double sigma_t) const;

@@ -109,6 +109,7 @@ std::shared_ptr<const Computation> Works::ask(Order order) {
   remember(job.about_body, computation);
   job.about = job.about_body + describe(job.order.medium) + describe(thin) + describe(thick) + describe(thickest) +
               fmt::format("thick: {} {}\n", thick_spacing, thickest_spacing);
+  if (job.order.lamp) job.about += fmt::format("lamp:\n{}", job.order.lamp->about);
   Digest digest;
   digest.add(job.about);
   job.name = digest.name();
@@ -116,7 +117,10 @@ std::shared_ptr<const Computation> Works::ask(Order order) {
     computation->tell(std::make_shared<StoredTransport>(std::move(*kept)), {}, true);
     return computation;
   }
-  jobs_.add(std::move(job));
+  if (job.order.lamp)
+    jobs_.add_after_others(std::move(job));
+  else
+    jobs_.add(std::move(job));
   return computation;
 }
 
@@ -172,6 +176,15 @@ void Works::work(const Job& job, const std::stop_token& stop) {
           "this "
           "one has {:.0f}.",
           2.0 * told, 2.0 * most_thinned * told, 2.0 * densest(medium));
+    if (job.order.lamp) {
+      const std::shared_ptr<Walks> many = walks(job, quality, part_of(effort, coarse_share, 2.0 * coarse_share));
+      const auto stored = std::make_shared<StoredTransport>(
+          compute_transport(*many, medium, *job.order.lamp, part_of(effort, 2.0 * coarse_share, 1.0)));
+      cache_.keep(job.name, job.about, *stored);
+      tell(stored, {}, true);
+      let_go();
+      return;
+    }
     const Effort quick = part_of(effort, 0.2 * coarse_share, coarse_share);
     const auto tell_first = [&](StoredTransport stored) {
       tell(std::make_shared<StoredTransport>(std::move(stored)), {}, false);

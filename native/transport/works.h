@@ -24,6 +24,7 @@ struct Order {
   scene::MeshPointer mesh;
   glm::dmat3 stretch{1.0};
   StoredMedium medium;
+  std::shared_ptr<const Lamp> lamp = nullptr;  ///< null: for parallel light from anywhere
 };
 
 /// What is known so far.
@@ -72,7 +73,8 @@ class Works {
   Works(const Works&) = delete;
   Works& operator=(const Works&) = delete;
 
-  /// Returns at once, all being known already if it was kept. The order that came last is worked on first.
+  /// Returns at once, all being known already if it was kept. The order that came last is worked on first, but those of
+  /// lamps after all others.
   std::shared_ptr<const Computation> ask(Order order);
 
   /// Bytes of the walks that are kept for other media, as of the last order that was done or let go of.

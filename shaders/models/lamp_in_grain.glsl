@@ -8,6 +8,7 @@
 #include "models/interface.glsl"
 #include "models/pixel_random.glsl"
 #include "models/stored_grid.glsl"
+#include "models/stored_lamps.glsl"
 #include "models/unscattered.glsl"
 #include "physics/prelude.glsl"
 #include "scene/grain.glsl"
@@ -130,12 +131,22 @@ Spectrum worth_of_lamp(vec3 start, vec3 inwards, vec3 to_light, int collisions, 
 // As models/light_about.glsl has it: `lamp` as seen from `middle`, where grain space begins; `lamp_random`: which point of it.
 void look_about(DeviceLight lamp, vec3 middle, vec2 lamp_random, SurfacePoint point, vec3 to_middle, inout LightSample light) {
   light_about = -1;
-  float near = nearness(lamp, middle, 0.0, grain_unit / stored.units, true);
+#ifdef STORED_LAMPS
+  bool known = lamp_block >= 0;
+#else
+  const bool known = false;
+#endif
+  float near = known ? 1.0 : nearness(lamp, middle, 0.0, grain_unit / stored.units, true);
   if (near == 0.0) return;
   about.lamp = lamp;
   about.random = lamp_random;
   about.middle = middle;
   light_about = light.index;
+  light.entering = lamp.emission.rgb;
+  if (known) {
+    about.parallel = Spectrum(1.0);
+    return;
+  }
   mat3 to_body = grain_to_body();
   vec3 start = to_body * point.on_triangle * stored.units;
   vec3 to_lamp;
@@ -149,6 +160,5 @@ void look_about(DeviceLight lamp, vec3 middle, vec2 lamp_random, SurfacePoint po
   Spectrum worth = worth_of_lamp(start, -(to_body * point.to_viewer), to_lamp, collisions, lamp_irradiance(0.5 * start, unused));
   about.parallel = mix(Spectrum(own), worth, near);
   light.entering_from = transpose(to_body) * to_lamp;
-  light.entering = lamp.emission.rgb;
 }
 #endif

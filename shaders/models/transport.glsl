@@ -15,6 +15,7 @@
 //   GREY                 red, green and blue are the same medium, of which one is stored
 //   SUMMED               the products were summed for each light beforehand (passes/sum_products.comp), and where light is refracted and walked,
 //                        light was followed into the grain (passes/trace_light.comp)
+//   STORED_LAMPS         of some lamps it is stored what they do in the grain (models/stored_lamps.glsl)
 //   TOGETHER             and for all lights together, nothing standing in their way
 //   WALKS_END_IN_WORLD   light is walked, there is a world, and nothing but the grain may stand before it: walks that leave it find it
 #include "heap/open_beyond.glsl"
@@ -25,6 +26,7 @@
 #include "models/pixel_random.glsl"
 #include "models/portions.glsl"
 #include "models/stored_grid.glsl"
+#include "models/stored_lamps.glsl"
 #include "models/stored_products.glsl"
 #include "models/unscattered.glsl"
 #include "physics/prelude.glsl"
@@ -57,6 +59,9 @@ vec4 lobe[LOBE_TEXELS];
 void look_up(vec3 to_light, int light) {
   looked_up = to_light;
   looked_up_light = light;
+#ifdef STORED_LAMPS
+  if (lamp_block >= 0) return;
+#endif
 #ifndef SUMMED
   for (int i = 0; i < LOBE_TEXELS; ++i) lobe[i] = lobe_texel(to_light, i);
 #endif
@@ -73,6 +78,17 @@ float channel_at(vec3 node, vec3 size, int channel) {
   }
   return sum;
 }
+
+Spectrum products_at(vec3 node, vec3 size) {
+#ifdef STORED_LAMPS
+  if (lamp_block >= 0) return SPECTRUM(texture(lamp_sources, vec3(node.xy, node.z + float(lamp_block) * size.z) / vec3(textureSize(lamp_sources, 0))));
+#endif
+#ifdef GREY
+  return channel_at(node, size, 0);
+#else
+  return vec3(channel_at(node, size, 0), channel_at(node, size, 1), channel_at(node, size, 2));
+#endif
+}
 #endif
 
 // Radiance that a mean free path of the medium adds, per irradiance of the light that was looked up; TOGETHER: of all.
@@ -84,11 +100,7 @@ Radiance source_at(vec3 place) {
 #elif defined(SUMMED)
   Spectrum sum = SPECTRUM(texture(summed, vec3(node.xy, node.z + float(looked_up_light) * size.z) / vec3(textureSize(summed, 0))));
 #else
-#ifdef GREY
-  Spectrum sum = channel_at(node, size, 0);
-#else
-  Spectrum sum = vec3(channel_at(node, size, 0), channel_at(node, size, 1), channel_at(node, size, 2));
-#endif
+  Spectrum sum = products_at(node, size);
 #endif
   sum = max(sum, Radiance(0.0));
 #ifndef REFRACTION

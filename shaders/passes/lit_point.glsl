@@ -7,6 +7,7 @@
 //   NEAR_LIGHTS          lights have a place: the light map of each shows the grain from one direction, but each point has its light from where it is
 //   LIGHTS_ABOUT         one of them is so near that it matters where its light comes in; the model looks about itself if it knows the grain inside
 //                        and light goes straight there (LAMP_IN_GRAIN)
+//   STORED_LAMPS         of some it is stored what they do in the grain (models/stored_lamps.glsl)
 //   CLEAR, WORLD         the model knows what crosses the grain unscattered, and there is a world to be seen through it
 //   GATHERED             what is behind some was gathered
 //   TOGETHER             what the model makes of all lights but for mirroring was summed, and nothing stands in their way
@@ -31,7 +32,8 @@
 #include "scene/grain.glsl"
 #include "scene/shadows.glsl"
 #include "models/entries.glsl"
-#if defined(LIGHTS_ABOUT) && defined(WHOLE_GRAIN) && !defined(REFRACTION) && !defined(WALKED)
+#include "models/stored_lamps.glsl"
+#if (defined(LIGHTS_ABOUT) || defined(STORED_LAMPS)) && defined(WHOLE_GRAIN) && !defined(REFRACTION) && !defined(WALKED)
 #define LAMP_IN_GRAIN
 void look_about(DeviceLight lamp, vec3 middle, vec2 lamp_random, SurfacePoint point, vec3 to_middle, inout LightSample light);
 #elif defined(LIGHTS_ABOUT)
@@ -172,11 +174,22 @@ vec3 locally_lit(SurfacePoint point, Outwards outwards) {
 #endif
     LightDraw drawn = draw_light(local_lights[i], place, random);
     LightSample light = parallel_light(drawn.to_light, drawn.irradiance, distant_light_count + i, light_angle(local_lights[i], drawn.reach), i, 0.0);
-#ifdef LIGHTS_ABOUT
+#ifdef STORED_LAMPS
+    look_for_lamp(i);
+    if (lamp_block >= 0) light.entering = local_lights[i].emission.rgb;
+#endif
+#ifdef LAMP_IN_GRAIN
+    look_about(local_lights[i], middle_of_grain(), random, point, light.to_light, light);
+#elif defined(LIGHTS_ABOUT) && defined(STORED_LAMPS)
+    if (lamp_block < 0) look_about(local_lights[i], middle_of_grain(), random, point, light.to_light, light);
+#elif defined(LIGHTS_ABOUT)
     look_about(local_lights[i], middle_of_grain(), random, point, light.to_light, light);
 #endif
     sum += lit_by(point, outwards, light);
   }
+#ifdef STORED_LAMPS
+  lamp_block = -1;
+#endif
   return sum;
 }
 #endif

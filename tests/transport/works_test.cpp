@@ -7,6 +7,7 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <glm/geometric.hpp>
 #include <memory>
 #include <string>
 #include <thread>
@@ -123,6 +124,37 @@ TEST_F(WorksTest, TellsByTheWalksOfAMomentAgo) {
   const auto far = works.ask(thicker(4.0));
   finish(*far);
   EXPECT_EQ(far->news().number, 2) << "they tell nothing of that";
+}
+
+// What a lamp does is found by the same walks, after all that is asked of a grain itself, and kept as that is.
+TEST_F(WorksTest, TellsOfALampAfterAllOthers) {
+  const auto beside = [](double place) {
+    Order order = WorksTest::order();
+    const auto at = [place](const glm::dvec3& from, const glm::dvec2&) {
+      const glm::dvec3 away = glm::dvec3(place, 0.0, 2.0) - from;
+      return LampRay{glm::normalize(away), 1.0 / glm::dot(away, away), glm::length(away)};
+    };
+    order.lamp = std::make_shared<const Lamp>(Lamp{at, "at " + std::to_string(place) + "\n"});
+    return order;
+  };
+  std::shared_ptr<const StoredTransport> found;
+  {
+    Works works{TransportCache(folder_)};
+    const auto first = works.ask(order(0.9));  // is being worked on
+    const auto lamp = works.ask(beside(0.5));
+    const auto second = works.ask(order(0.8));
+    finish(*lamp);
+    EXPECT_TRUE(first->news().final && second->news().final);
+    found = lamp->news().stored;
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->terms, 1);
+    EXPECT_EQ(found->size, second->news().stored->size);
+  }
+  Works works{TransportCache(folder_)};
+  const News known = works.ask(beside(0.5))->news();
+  ASSERT_TRUE(known.final && known.stored);
+  EXPECT_EQ(known.stored->sources, found->sources);
+  EXPECT_FALSE(works.ask(beside(0.6))->news().final) << "another lamp's";
 }
 
 TEST_F(WorksTest, MakesAnewWhatIsDamaged) {

@@ -17,6 +17,7 @@
 #include "render/lighting.h"
 #include "render/passes/targets.h"
 #include "render/portion.h"
+#include "render/stored_lamps.h"
 #include "scene/camera.h"
 
 namespace mesograin::render {
@@ -38,6 +39,7 @@ struct Sample {
   DeviceCache& cache;
   Content& content;
   const Lighting& lighting;
+  const StoredLamps& stored_lamps;
   const Exchange& exchange;
   Targets& targets;
   scene::Camera camera;          ///< a pinhole

@@ -267,6 +267,8 @@ const gl::Program& ShadePass::prepare(const Sample& sample, std::size_t unit, Sh
   shading.near_lights = sample.lighting.any_local() && material.light_maps();
   shading.lights_about = sample.lights_about(unit);
   const Draw* draw = sample.content.draw(unit);
+  const std::size_t number = draw == nullptr ? 0 : static_cast<std::size_t>(draw - sample.content.draws().data());
+  shading.stored_lamps = draw != nullptr && scene::traits_of(material.model()).mesh && sample.stored_lamps.any(number);
   shading.summed = draw != nullptr && !shading.mirrored && !sample.lighting.any_local() &&
                    ProductSums::pay(material, sample.lights.distant, pixels_of(sample, *draw));
   shading.together = shading.summed && shading.shadows == Shadows::none &&
@@ -276,6 +278,7 @@ const gl::Program& ShadePass::prepare(const Sample& sample, std::size_t unit, Sh
   const gl::Program& program = sample.cache.shading(material, shading);
   material.bind(program);
   if (shading.summed) sums_.bind(program);
+  if (shading.stored_lamps) sample.stored_lamps.bind(program, number, material);
   if (world || shading.mirrors_world) {
     set_world(program, sample.lighting);
     program.set("world_density", static_cast<float>(sample.lights.world_density));
