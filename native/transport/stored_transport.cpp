@@ -68,7 +68,7 @@ StoredTransport without_light(const Walks& walks, const StoredMedium& medium, in
                          .distances = walks.surface(),
                          .sources = {},
                          .lobes = {}};
-  const auto products = static_cast<std::size_t>(terms * stored.channels);
+  const std::size_t products = static_cast<std::size_t>(terms) * static_cast<std::size_t>(stored.channels);
   stored.sources.resize(products * stored.nodes(), 0.0F);
   stored.lobes.resize(products * octahedron_texels, 0.0F);
   return stored;

@@ -11,6 +11,7 @@
 #include "transport/exchange.h"
 #include "transport/grid.h"
 #include "transport/interface.h"
+#include "transport/lamp.h"
 #include "transport/multiple.h"
 #include "transport/sights.h"
 #include "transport/surface.h"
