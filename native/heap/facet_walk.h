@@ -41,7 +41,7 @@ class Facets {
   /// Where only that matters: how far it is from inside a grain to where it ends, in less time.
   virtual std::optional<End> end(std::uint32_t grain, const glm::vec3& origin, const glm::vec3& direction) const;
 
-  /// What is met from a grain's surface on: others, and walls.
+  /// What is met from a grain's surface on, or, for `nobody`, a wall's: others, and walls.
   virtual std::optional<Meeting> beyond(std::uint32_t grain, const glm::vec3& origin,
                                         const glm::vec3& direction) const = 0;
 

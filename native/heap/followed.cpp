@@ -6,11 +6,13 @@
 #include <glm/common.hpp>
 #include <glm/exponential.hpp>
 #include <glm/geometric.hpp>
+#include <numbers>
 
 #include "heap/asking.h"
 #include "heap/gather.h"
 #include "heap/medium_walk.h"
 #include "heap/spread.h"
+#include "transport/directions.h"
 
 namespace mesograin::heap {
 namespace {
@@ -82,7 +84,7 @@ Gather::All Gather::walked_in(std::uint32_t grain, const glm::vec3& place, const
     const glm::vec3 leaves_at =
         space_.this_side(seen.middle + place, space_.place(seen, frame * outcome->normal) + aside);
     Ray ray{leaves_at, frame * outcome->direction, outcome->weight, false, grain};
-    if (const std::optional<glm::vec3> sent = walks.once_more ? seen_of_others(ray, random) : sent_along(ray, random))
+    if (const std::optional<glm::vec3> sent = seen_of_others(ray, walks.further, random))
       all.others += *sent;
     else
       all.scattered += even_world(ray);
@@ -93,16 +95,16 @@ Gather::All Gather::walked_in(std::uint32_t grain, const glm::vec3& place, const
 }
 
 bool Gather::is_walked_once_more(std::uint32_t number) const {
-  return number < space_.grains().size() && sees_all(number) && !is_walked_behind(number);
+  return number < space_.grains().size() && sees_all(number) && (ways_ == Ways::whole || !is_walked_behind(number));
 }
 
-glm::vec3 Gather::walked_in(const Source& source, const Ray& ray, transport::Random& random) const {
+glm::vec3 Gather::walked_in(const Source& source, const Ray& ray, int further, transport::Random& random) const {
   const Grain& grain = space_.grains()[source.number];
   const glm::vec3& normal = source.facing;
   const float mu = std::clamp(-glm::dot(normal, ray.direction), 0.0F, 1.0F);
   // What does not go straight through it is in the ray's weight as in the walk's.
   const glm::vec3 met = 1.0F - space_.kind(source.number).from_light->crossing(mu);
-  const All all = walked_in(source.number, grain.radius * normal, normal, -ray.direction, {1}, random);
+  const All all = walked_in(source.number, grain.radius * normal, normal, -ray.direction, {1, further}, random);
   return ray.weight / glm::max(met, 1e-6F) * (all.others + all.scattered);
 }
 
@@ -126,7 +128,7 @@ Gather::All Gather::look_at_all(std::uint32_t grain, const glm::vec3& place, con
   if (const int more = behind.walks(walks.number, random)) {
     const SeenFacet& there = behind.seen;
     const glm::vec3 from_middle = space_.grains()[there.grain].radius * there.normal;
-    behind.show(walked_in(there.grain, from_middle, there.normal, there.towards, {more, walks.once_more}, random), all);
+    behind.show(walked_in(there.grain, from_middle, there.normal, there.towards, {more, walks.further}, random), all);
   }
   all.others = glm::max(all.others, 0.0F);
   show_what_is_behind(through, all);
@@ -210,13 +212,35 @@ glm::vec3 Gather::sent_by(const Meeting& meeting, Ray& ray, transport::Random& r
   return source ? told_by(*source, ray) : glm::vec3(0.0F);
 }
 
+glm::vec3 Gather::sent_by_facet(const Meeting& meeting, const Facets& facets, int further, const Hero& hero,
+                                transport::Random& random) const {
+  const std::uint32_t kind =
+      meeting.wall ? heap_.grains.walls[meeting.number].kind : space_.grains()[meeting.number].kind;
+  const glm::vec3 reflectance(heap_.grains.kinds[kind].reflectance);
+  const std::uint32_t from = meeting.wall ? nobody : meeting.number;
+  glm::vec3 irradiance(0.0F);
+  for (const Draw& draw : draws_) {
+    const double u = random.uniform();
+    const lights::LightDraw light = draw(heap_.anchor + glm::dvec3(meeting.place), {u, random.uniform()});
+    const glm::vec3 to_light(light.to_light);
+    const float cosine = glm::dot(to_light, meeting.normal);
+    if (!(cosine > 0.0F)) continue;
+    const auto reach = static_cast<float>(std::min(light.reach, 1e30));
+    irradiance += cosine * glm::vec3(light.irradiance) * passed_between(from, meeting.place, to_light, reach, facets);
+  }
+  const float u = random.uniform();
+  Ray ray{meeting.place, transport::cosine_lobe(meeting.normal, u, random.uniform()), reflectance};
+  const glm::vec3 others = followed_on(from, std::nullopt, false, ray, facets, further, hero, random);
+  return reflectance * irradiance / std::numbers::pi_v<float> + others + even_world(ray);
+}
+
 bool Gather::is_walked_behind(std::uint32_t grain) const {
   const std::uint32_t kind = space_.grains()[grain].kind;
   return is_transparent(grain) && of_others_[kind].g != heap_.grains.kinds[kind].g;
 }
 
 glm::vec3 Gather::seen_between(std::uint32_t grain, std::optional<Meeting> wall, Crossings crossings, Ray& ray,
-                               const Facets& facets, transport::Random& random, Behind* behind, bool once_more) const {
+                               const Facets& facets, transport::Random& random, Behind* behind, int further) const {
   glm::vec3 seen(0.0F);
   for (int crossed = 0; crossed < most_crossed && largest(ray.weight) >= nothing; ++crossed) {
     const std::optional<Meeting> meeting =
@@ -240,13 +264,14 @@ glm::vec3 Gather::seen_between(std::uint32_t grain, std::optional<Meeting> wall,
       if (random.uniform() >= share) {
         here.weight = ray.weight / (1.0F - share);
         ray.weight = glm::vec3(0.0F);
-        if (once_more && is_walked_once_more(grain) && (end || !is_transparent(grain))) {
+        if (further > 0 && is_walked_once_more(grain) && (end || !is_transparent(grain))) {
           const SeenFacet there{grain, meeting->place, meeting->normal, -ray.direction};
-          const All all = walked_in(there, end, facets, {1}, random);
+          const All all = walked_in(there, end, facets, {1, further - 1}, random);
           return here.weight * (all.others + all.scattered);
         }
         here.weight *= 1.0F - crossing;
-        if (once_more && is_lambert(grain)) return here.weight * sent_by_lambert(grain, meeting->normal, random);
+        if (further > 0 && is_lambert(grain))
+          return here.weight * sent_by_lambert(grain, meeting->normal, further - 1, random);
         return sent_by(*meeting, here, random);
       }
     } else {
@@ -261,8 +286,49 @@ glm::vec3 Gather::seen_between(std::uint32_t grain, std::optional<Meeting> wall,
   return seen;
 }
 
+// Chance goes by one channel on all of the way: no channel then counts more than three times as much as the way is
+// likely.
+glm::vec3 Gather::followed_on(std::uint32_t grain, std::optional<Meeting> wall, bool sees_what_shines, Ray& ray,
+                              const Facets& facets, int further, Hero hero, transport::Random& random) const {
+  hero.choose(random);
+  for (int crossed = 0; crossed < most_crossed && largest(ray.weight) >= nothing; ++crossed) {
+    const std::optional<Meeting> meeting =
+        wall ? wall : beyond_panes(grain, ray.origin, ray.direction, true, facets, ray.weight);
+    if (!meeting) return glm::vec3(0.0F);
+    Ray here = ray;
+    if (meeting->wall) {
+      ray.weight = glm::vec3(0.0F);
+      const glm::vec3 shines = sees_what_shines ? heap_.grains.walls[meeting->number].radiance : glm::vec3(0.0F);
+      const glm::vec3 shown = here.weight * shines;
+      if (further > 0) return shown + here.weight * sent_by_facet(*meeting, facets, further - 1, hero, random);
+      return shown + sent_by(*meeting, here, random);
+    }
+    grain = meeting->number;
+    const std::optional<End> end = end_across(grain, meeting->place, ray.direction, facets);
+    const glm::vec3 crossing = left_across_other(grain, end);
+    if (random.uniform() >= crossing[hero.channel]) {
+      ray.weight = glm::vec3(0.0F);
+      hero.weigh(here.weight, glm::vec3(1.0F), 1.0F - crossing);
+      if (further > 0 && is_walked_once_more(grain) && (end || !is_transparent(grain))) {
+        const SeenFacet there{grain, meeting->place, meeting->normal, -ray.direction};
+        const All all = walked_in(there, end, facets, {1, further - 1}, random, hero);
+        return here.weight * (all.others + all.scattered);
+      }
+      here.weight *= 1.0F - crossing;
+      if (further > 0 && is_lambert(grain))
+        return here.weight * sent_by_facet(*meeting, facets, further - 1, hero, random);
+      return sent_by(*meeting, here, random);
+    }
+    hero.weigh(ray.weight, crossing, crossing);
+    ray.origin = meeting->place + (end ? end->distance : 0.0F) * ray.direction;
+    wall = end && end->wall ? facets.inside(grain, meeting->place, ray.direction) : std::nullopt;
+  }
+  ray.weight = glm::vec3(0.0F);
+  return glm::vec3(0.0F);
+}
+
 Gather::All Gather::walked_in(const SeenFacet& seen, const std::optional<End>& across, const Facets& facets,
-                              const Walks& walks, transport::Random& random) const {
+                              const Walks& walks, transport::Random& random, const Hero& hero) const {
   const Grain& grain = space_.grains()[seen.grain];
   const Optics& optics = heap_.grains.kinds[grain.kind];
   const bool transparent = optics.transparent();
@@ -279,8 +345,9 @@ Gather::All Gather::walked_in(const SeenFacet& seen, const std::optional<End>& a
           of.ask(out->left * light, out->place, random);
       }
     };
+    Hero carried = hero;
     const std::optional<Passage> passage = walk_medium(optics, grain.radius_of_kind(), seen, across, facets, random,
-                                                       transparent ? Scattered(ask) : Scattered());
+                                                       transparent ? Scattered(ask) : Scattered(), &carried);
     for (Asking& of : asking) {
       if (passage && !transparent) of.ask(of.reflected(passage->normal, passage->weight), passage->place, random);
       if (!of.any()) continue;
@@ -292,8 +359,11 @@ Gather::All Gather::walked_in(const SeenFacet& seen, const std::optional<End>& a
     }
     if (!passage) continue;
     Ray ray{passage->place, passage->direction, passage->weight};
-    all.others +=
-        seen_between(seen.grain, passage->wall, Crossings::drawn, ray, facets, random, nullptr, walks.once_more);
+    if (ways_ == Ways::whole)
+      all.others += followed_on(seen.grain, passage->wall, false, ray, facets, walks.further, carried, random);
+    else
+      all.others +=
+          seen_between(seen.grain, passage->wall, Crossings::drawn, ray, facets, random, nullptr, walks.further);
     all.scattered += even_world(ray);
   }
   all.others /= static_cast<float>(walks.number);
@@ -321,10 +391,12 @@ std::optional<Gather::All> Gather::look_at_all_but_world(const SeenFacet& seen, 
       across && across->wall ? facets.inside(seen.grain, seen.place, -seen.towards) : std::nullopt;
   Behind behind;
   all.met = 1.0F - through.weight;
-  all.straight = seen_between(seen.grain, wall, Crossings::all, through, facets, random, &behind);
+  all.straight = ways_ == Ways::whole
+                     ? followed_on(seen.grain, wall, true, through, facets, walks.further, Hero{}, random)
+                     : seen_between(seen.grain, wall, Crossings::all, through, facets, random, &behind);
   all.others += all.straight;
   if (const int more = behind.walks(walks.number, random))
-    behind.show(walked_in(behind.seen, behind.across, facets, {more, walks.once_more}, random), all);
+    behind.show(walked_in(behind.seen, behind.across, facets, {more, walks.further}, random), all);
   all.others = glm::max(all.others, 0.0F);
   return all;
 }

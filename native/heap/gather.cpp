@@ -75,7 +75,7 @@ struct Gather::Found {
   Space space;
 };
 
-Gather::Gather(std::shared_ptr<const Heap> heap, std::shared_ptr<const Found> found)
+Gather::Gather(std::shared_ptr<const Heap> heap, std::shared_ptr<const Found> found, Ways ways)
     : held_(std::move(heap)),
       heap_(*held_),
       found_(std::move(found)),
@@ -83,17 +83,20 @@ Gather::Gather(std::shared_ptr<const Heap> heap, std::shared_ptr<const Found> fo
       space_(found_->space),
       image_(image_of(heap_)),
       draws_(draws_of(heap_, image_)),
-      seen_by_camera_(heap_.world.seen_by_camera()) {
+      seen_by_camera_(heap_.world.seen_by_camera()),
+      ways_(ways) {
   lights_.reserve(heap_.lights.size());
   for (const scene::Light& light : heap_.lights) lights_.push_back(lights::pack(light, heap_.anchor));
-  of_others_ = heap_.exchanges ? of_others(heap_.grains.kinds) : heap_.grains.kinds;
+  // Those that walks tell of take no other medium for their own.
+  const bool similar = heap_.exchanges && ways_ == Ways::short_ones;
+  of_others_ = similar ? of_others(heap_.grains.kinds) : heap_.grains.kinds;
 }
 
-Gather::Gather(const std::shared_ptr<const Heap>& heap, std::shared_ptr<const HeapLight> light)
-    : Gather(heap, std::make_shared<const Found>(heap, std::move(light))) {}
+Gather::Gather(const std::shared_ptr<const Heap>& heap, std::shared_ptr<const HeapLight> light, Ways ways)
+    : Gather(heap, std::make_shared<const Found>(heap, std::move(light)), ways) {}
 
 std::unique_ptr<const Gather> Gather::among(std::shared_ptr<const Heap> heap) const {
-  return std::unique_ptr<const Gather>(new Gather(std::move(heap), found_));
+  return std::unique_ptr<const Gather>(new Gather(std::move(heap), found_, ways_));
 }
 
 glm::vec3 Gather::told_by(const Source& source, const Ray& ray) const {
@@ -106,15 +109,16 @@ std::optional<glm::vec3> Gather::sent_along(Ray& ray, transport::Random& random)
   return told_by(*source, ray);
 }
 
-std::optional<glm::vec3> Gather::seen_of_others(Ray& ray, transport::Random& random) const {
+std::optional<glm::vec3> Gather::seen_of_others(Ray& ray, int further, transport::Random& random) const {
   const std::optional<Source> source = space_.follow(ray, random);
   if (!source) return std::nullopt;
-  return looked_at(*source, ray, random);
+  return looked_at(*source, ray, further, random);
 }
 
-glm::vec3 Gather::looked_at(const Source& source, const Ray& ray, transport::Random& random) const {
-  if (is_lambert(source.number)) return ray.weight * sent_by_lambert(source.number, source.facing, random);
-  return is_walked_once_more(source.number) ? walked_in(source, ray, random) : told_by(source, ray);
+glm::vec3 Gather::looked_at(const Source& source, const Ray& ray, int further, transport::Random& random) const {
+  if (further == 0) return told_by(source, ray);
+  if (is_lambert(source.number)) return ray.weight * sent_by_lambert(source.number, source.facing, further - 1, random);
+  return is_walked_once_more(source.number) ? walked_in(source, ray, further - 1, random) : told_by(source, ray);
 }
 
 bool Gather::is_lambert(std::uint32_t number) const {
@@ -122,7 +126,8 @@ bool Gather::is_lambert(std::uint32_t number) const {
          heap_.grains.kinds[space_.grains()[number].kind].surface == Surface::lambert;
 }
 
-glm::vec3 Gather::sent_by_lambert(std::uint32_t grain, const glm::vec3& normal, transport::Random& random) const {
+glm::vec3 Gather::sent_by_lambert(std::uint32_t grain, const glm::vec3& normal, int further,
+                                  transport::Random& random) const {
   const Grain& of = space_.grains()[grain];
   const glm::vec3 from = space_.place(of, normal);
   const glm::vec3 reflectance(heap_.grains.kinds[of.kind].reflectance);
@@ -140,7 +145,7 @@ glm::vec3 Gather::sent_by_lambert(std::uint32_t grain, const glm::vec3& normal, 
   const glm::vec3 direction =
       TurnedFrame(normal, random.uniform()) * glm::vec3(std::sqrt(height), 0.0F, std::sqrt(1.0F - height));
   Ray ray{from, direction, reflectance};
-  const std::optional<glm::vec3> sent = sent_along(ray, random);
+  const std::optional<glm::vec3> sent = seen_of_others(ray, further, random);
   return reflectance * irradiance / std::numbers::pi_v<float> + (sent ? *sent : even_world(ray));
 }
 
@@ -157,7 +162,7 @@ glm::vec3 Gather::look(std::uint32_t grain, const glm::vec3& normal, const glm::
   for (int i = 0; i < rays; ++i) {
     const Outcome outcome = kind.from_viewer->draw(mu, random.uniform());
     Ray ray{space_.place(space_.grains()[grain], frame * outcome.normal), frame * outcome.direction, outcome.weight};
-    if (const std::optional<glm::vec3> sent = seen_of_others(ray, random))
+    if (const std::optional<glm::vec3> sent = seen_of_others(ray, walks(1, true).further, random))
       sum += *sent;
     else if (ray.crossed)
       sum += even_world(ray);
@@ -269,7 +274,7 @@ void Gather::follow_look(SeenFacet seen, const Facets& facets, const Look& how, 
       Ray ray{passage->place, passage->direction, weight};
       if (!meeting->wall && heap_.grains.kinds[space_.grains()[meeting->number].kind].followed()) {
         const SeenFacet there{meeting->number, meeting->place, meeting->normal, -passage->direction};
-        if (const std::optional<All> all = look_at_all_but_world(there, facets, {1}, random, ray)) {
+        if (const std::optional<All> all = look_at_all_but_world(there, facets, walks(1, false), random, ray)) {
           behind += weight * (all->others + all->scattered);
           see_world(weight * ray.weight);
           return;

@@ -12,6 +12,7 @@
 #include "heap/draws.h"
 #include "heap/exchange.h"
 #include "heap/facet_walk.h"
+#include "heap/flights.h"
 #include "heap/heap.h"
 #include "heap/inner_light.h"
 #include "transport/random.h"
@@ -22,12 +23,18 @@ class Asking;
 
 class Gather {
  public:
+  /// How far light is followed that leaves a grain by way of others.
+  enum class Ways {
+    short_ones,  ///< to the next, or once more
+    whole,       ///< from grain to grain and wall to wall until it ends, where no surface refracts
+  };
+
   /// `light`: the heap's.
-  Gather(const std::shared_ptr<const Heap>& heap, std::shared_ptr<const HeapLight> light);
+  Gather(const std::shared_ptr<const Heap>& heap, std::shared_ptr<const HeapLight> light, Ways ways = Ways::short_ones);
 
   /// The same of a copy.
-  Gather(const Heap& heap, std::shared_ptr<const HeapLight> light)
-      : Gather(std::make_shared<const Heap>(heap), std::move(light)) {}
+  Gather(const Heap& heap, std::shared_ptr<const HeapLight> light, Ways ways = Ways::short_ones)
+      : Gather(std::make_shared<const Heap>(heap), std::move(light), ways) {}
 
   Gather(const Gather&) = delete;
   Gather& operator=(const Gather&) = delete;
@@ -52,7 +59,8 @@ class Gather {
   /// What follows light from what is seen of a grain.
   struct Walks {
     int number;
-    bool once_more = false;  ///< a grain that one of them meets is looked at, too, where a look tells more than numbers
+    int further = 0;  ///< grains that one of them meets, one after the other, are looked at, too, where a look tells
+                      ///< more than numbers
   };
 
   /// What is seen of a grain, by where it comes from.
@@ -78,6 +86,11 @@ class Gather {
   /// Whether a polynomial tells the light in a grain well enough: it scatters evenly and is not so thick that light
   /// stays below its surface.
   bool tells_inner_light(std::uint32_t grain) const;
+
+  /// For a look that follows light as far as this does.
+  Walks walks(int number, bool once_more) const {
+    return {number, ways_ == Ways::whole ? most_followed : once_more ? 1 : 0};
+  }
 
   /// Whether it does of any.
   bool tells_any_inner_light() const;
@@ -165,6 +178,8 @@ class Gather {
   static constexpr float nothing = 1e-3F;
   /// Transparent grains, one behind the other.
   static constexpr int most_crossed = 32;
+  /// And grains that a whole way goes by: what is left of light after so many numbers tell.
+  static constexpr int most_followed = 512;
   /// Clear grains, one behind the other; the last of them is as its neighbours see it.
   static constexpr int most_looked_into = 12;
 
@@ -209,13 +224,16 @@ class Gather {
                            const Facets& facets) const;
   /// What is sent along a ray, if it meets anything.
   std::optional<glm::vec3> sent_along(Ray& ray, transport::Random& random) const;
-  /// The same by another look at what is met.
-  std::optional<glm::vec3> seen_of_others(Ray& ray, transport::Random& random) const;
+  /// The same by another look at what is met, and so on `further` times in all.
+  std::optional<glm::vec3> seen_of_others(Ray& ray, int further, transport::Random& random) const;
   /// What a source sends along a ray that has met it, by more rays from a Lambert grain, by a walk in one that walks
   /// tell: few numbers do not tell how much darker it is where others stand about it.
-  glm::vec3 looked_at(const Source& source, const Ray& ray, transport::Random& random) const;
+  glm::vec3 looked_at(const Source& source, const Ray& ray, int further, transport::Random& random) const;
   bool is_lambert(std::uint32_t number) const;
-  glm::vec3 sent_by_lambert(std::uint32_t grain, const glm::vec3& normal, transport::Random& random) const;
+  glm::vec3 sent_by_lambert(std::uint32_t grain, const glm::vec3& normal, int further, transport::Random& random) const;
+  /// What a Lambert surface sends from a place of a facet, or of a wall, by a ray to others.
+  glm::vec3 sent_by_facet(const Meeting& meeting, const Facets& facets, int further, const Hero& hero,
+                          transport::Random& random) const;
   /// What a world without a picture sends to the end of it.
   glm::vec3 even_world(const Ray& ray) const;
   Ray ray_through(std::uint32_t grain, const glm::vec3& normal, const glm::vec3& towards) const;
@@ -252,14 +270,14 @@ class Gather {
   /// The same by the numbers of what it is.
   glm::vec3 told_by(const Source& source, const Ray& ray) const;
   /// Whether a grain that a walk meets can be walked in. Not what is no grain; nor where what is scattered forwards
-  /// counts as crossing, which such a walk would tell again.
+  /// counts as crossing, which such a walk would tell again: on whole ways it does not.
   bool is_walked_once_more(std::uint32_t number) const;
   /// Of a transparent grain on the way: what it sends and what crosses it, or one of the two, drawn.
   enum class Crossings { all, drawn };
   /// What lights, the world and others do in a grain, from a place of its surface that a view ray meets, but for what
   /// crosses it straight: the mean of all walks.
   All walked_in(const SeenFacet& seen, const std::optional<End>& across, const Facets& facets, const Walks& walks,
-                transport::Random& random) const;
+                transport::Random& random, const Hero& hero = {}) const;
   /// The same where its inner light is known.
   All seen_in(const SeenFacet& seen, const End& across, const InnerLight& light, const Facets& facets,
               transport::Random& random) const;
@@ -267,7 +285,7 @@ class Gather {
   All walked_in(std::uint32_t grain, const glm::vec3& place, const glm::vec3& normal, const glm::vec3& towards,
                 const Walks& walks, transport::Random& random) const;
   /// What a grain that a ray has met sends along it, by a walk in its ball.
-  glm::vec3 walked_in(const Source& source, const Ray& ray, transport::Random& random) const;
+  glm::vec3 walked_in(const Source& source, const Ray& ray, int further, transport::Random& random) const;
   /// Grains that a view ray meets behind others, of which one is walked in for all.
   struct Behind {
     float met = 0.0F;  ///< the share of light that all of them scatter or absorb
@@ -289,13 +307,16 @@ class Gather {
   /// What others send along a ray from a grain's surface, straight through those that let it; `wall`: what it meets
   /// first, if that is known. Leaves it what weight leaves the heap.
   /// What those send that are walked behind is left out where there is a `behind` for them.
-  /// Where crossings are drawn, grains may be looked at `once_more`.
+  /// Where crossings are drawn, grains may be looked at, as Walks::further has it.
   glm::vec3 seen_between(std::uint32_t grain, std::optional<Meeting> wall, Crossings crossings, Ray& ray,
                          const Facets& facets, transport::Random& random, Behind* behind = nullptr,
-                         bool once_more = false) const;
+                         int further = 0) const;
+  /// The same of whole ways; `sees_what_shines`: walls that do, which lights else stand for. `hero`: of the way so far.
+  glm::vec3 followed_on(std::uint32_t grain, std::optional<Meeting> wall, bool sees_what_shines, Ray& ray,
+                        const Facets& facets, int further, Hero hero, transport::Random& random) const;
 
   struct Found;
-  Gather(std::shared_ptr<const Heap> heap, std::shared_ptr<const Found> found);
+  Gather(std::shared_ptr<const Heap> heap, std::shared_ptr<const Found> found, Ways ways);
 
   std::shared_ptr<const Heap> held_;
   const Heap& heap_;  // that is held
@@ -306,7 +327,8 @@ class Gather {
   std::vector<Draw> draws_;
   scene::Backdrop seen_by_camera_;
   std::vector<lights::DeviceLight> lights_;  // of the heap, its places from the anchor
-  std::vector<Optics> of_others_;            // by kind: of grains that are on the way of light
+  Ways ways_;
+  std::vector<Optics> of_others_;  // by kind: of grains that are on the way of light
 };
 
 }  // namespace mesograin::heap

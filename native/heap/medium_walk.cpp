@@ -3,7 +3,6 @@
 
 #include <glm/geometric.hpp>
 
-#include "heap/flights.h"
 #include "transport/directions.h"
 
 namespace mesograin::heap {
@@ -16,7 +15,7 @@ constexpr int most_steps = 1 << 16;
 
 std::optional<Passage> walk_medium(const Optics& optics, float radius, const SeenFacet& seen,
                                    const std::optional<End>& across, const Facets& facets, transport::Random& random,
-                                   const Scattered& scattered) {
+                                   const Scattered& scattered, Hero* hero) {
   const auto lobe = [&](const glm::vec3& normal) {
     const float u = random.uniform();
     return transport::cosine_lobe(normal, u, random.uniform());
@@ -24,7 +23,8 @@ std::optional<Passage> walk_medium(const Optics& optics, float radius, const See
   if (optics.surface == Surface::lambert)
     return Passage{seen.place, lobe(seen.normal), glm::vec3(optics.reflectance), false, false, {}, 0.0F,
                    false,      seen.normal};
-  Flights flights(glm::vec3(optics.sigma_t) / radius, glm::vec3(optics.albedo), random);
+  Flights flights(glm::vec3(optics.sigma_t) / radius, glm::vec3(optics.albedo), random,
+                  hero != nullptr ? *hero : Hero{});
   const bool transparent = optics.transparent();
   Passage passage{seen.place, transparent ? -seen.towards : -lobe(seen.normal), glm::vec3(1.0F), true, false};
   for (int step = 0; step < most_steps; ++step) {
@@ -54,6 +54,7 @@ std::optional<Passage> walk_medium(const Optics& optics, float radius, const See
       passage.normal = met ? met->normal : passage.direction;
       passage.direction = lobe(passage.normal);
     }
+    if (hero != nullptr) *hero = flights.hero();
     return passage;
   }
   return std::nullopt;

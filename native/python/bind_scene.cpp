@@ -328,7 +328,8 @@ void bind_scene(py::module_& module) {
            py::arg("denoise") = true,
            "arrays: InstanceArrays, drawn beside the instances. exchange: 'order_1', and light goes from grain to "
            "grain; 'heaps', where there are arrays of them; 'gathered', and each pixel's share of it is found by rays; "
-           "'off', and it does not. denoise: whether what rays of each pixel find of it is told to its neighbours, "
+           "'path_traced', and it is followed to its end; 'off', and it does not. denoise: whether what rays of each "
+           "pixel find of it is told to its neighbours, "
            "less and "
            "less with each sample. Raises Error for a transform that cannot be inverted.")
       .def_readonly("instances", &scene::Scene::instances)

@@ -17,6 +17,9 @@ constexpr float clear_of_itself = 1e-4F;
 // The same of how far away it is from where places are told from, for rounding.
 constexpr float rounding = 1e-6F;
 
+// The same for a ray that starts from a wall.
+constexpr float clear_of_wall = 1e-5F;
+
 // A ray that starts from no object.
 constexpr auto nothing = static_cast<std::size_t>(-1);
 
@@ -138,11 +141,15 @@ std::optional<heap::Meeting> ContentFacets::inside(std::uint32_t grain, const gl
 
 std::optional<heap::Meeting> ContentFacets::beyond(std::uint32_t grain, const glm::vec3& origin,
                                                    const glm::vec3& direction) const {
-  const std::size_t object = objects_[grain];
-  const float clearance = clear_of(object, origin);
-  // What it lies on begins where it ends. A jar has another wall beyond this one.
-  std::optional<Hit> hit =
-      first_hit(origin - clearance * direction, direction, object, roles_[object].pane ? 2.0F * clearance : 0.0F);
+  std::optional<Hit> hit;
+  if (grain == heap::nobody) {
+    hit = first_hit(origin + clear_of_wall * glm::length(origin) * direction, direction, nothing, 0.0F);
+  } else {
+    const std::size_t object = objects_[grain];
+    const float clearance = clear_of(object, origin);
+    // What it lies on begins where it ends. A jar has another wall beyond this one.
+    hit = first_hit(origin - clearance * direction, direction, object, roles_[object].pane ? 2.0F * clearance : 0.0F);
+  }
   for (int passed = 0; hit && passed < most_passed; ++passed) {
     const RoleInHeap& role = roles_[hit->object];
     // One that reaches into the grain that is looked through is not met from inside.

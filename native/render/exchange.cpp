@@ -296,7 +296,9 @@ void Exchange::set(DeviceCache& cache, const Content& content, const scene::Scen
     gather_.reset();
     return;
   }
-  gathers_ = scene.exchange == scene::Exchange::gathered;
+  const bool followed_paths = std::exchange(follows_paths_, scene.exchange == scene::Exchange::path_traced);
+  if (followed_paths != follows_paths_) gather_.reset();
+  gathers_ = follows_paths_ || scene.exchange == scene::Exchange::gathered;
   shows_more_ = clear || follows;
   const bool straight_elsewhere = !arrays && !clear && !gathers_;
   heap::Heap heap{std::move(gathered.grains), content.anchor(), scene.lights, scene.world, exchanges,
@@ -382,7 +384,9 @@ void Exchange::find_gather() {
   const bool wanted =
       (gathers_ || shows_more_) && known_ && heap::same_places(known_->grains(), solving_->heap().grains);
   if (!wanted) gather_.reset();
-  if (wanted && !gather_) gather_ = std::make_shared<const heap::Gather>(known_->heap, known_->light);
+  if (wanted && !gather_)
+    gather_ = std::make_shared<const heap::Gather>(
+        known_->heap, known_->light, follows_paths_ ? heap::Gather::Ways::whole : heap::Gather::Ways::short_ones);
   // What grains are made of, and lights, are seen to change at once, in the light that others sent before.
   if (wanted && gather_->heap() != solving_->heap() && alike(gather_->heap().grains, solving_->heap().grains))
     gather_ = gather_->among(solving_->shared_heap());

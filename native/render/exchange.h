@@ -94,6 +94,9 @@ class Exchange {
   const std::shared_ptr<const heap::Gather>& gather() const { return gather_; }
   bool gathers_all() const { return gathers_; }
 
+  /// Whether it is followed all the way, where no surface refracts.
+  bool follows_paths() const { return follows_paths_; }
+
   /// Whether all grains are about as round as a sphere.
   bool balls() const { return balls_; }
 
@@ -123,6 +126,7 @@ class Exchange {
   bool balls_ = true;
   std::vector<RoleInHeap> roles_;
   bool gathers_ = false;
+  bool follows_paths_ = false;
   bool follows_ = false;     // light into what is seen of an array's grains, where that is cheap
   bool shows_more_ = false;  // gathering, of some grains
   Means means_;

@@ -165,7 +165,8 @@ Sample Frame::begin_sample(const GoOn& go_on, bool hurried) {
                 .traced = traced,
                 .gathers = gathers,
                 .denoises = scene_.denoise,
-                .learns = !patient_ && cast && gathers && exchange_.gather()->tells_any_inner_light(),
+                .learns = !patient_ && cast && gathers && !exchange_.follows_paths() &&
+                          exchange_.gather()->tells_any_inner_light(),
                 .pixels_at_once = pixels_at_once_,
                 .go_on = go_on};
   if (unwrapping_) return sample;

@@ -53,8 +53,8 @@ class InstanceArray {
 /// Whether light goes from grain to grain: not, where there are arrays of them, or always; as four numbers a channel
 /// for each grain (spherical harmonics to order 1), or so between grains and by rays of its own where a grain is seen.
 /// addon/mesograin/schema/scene.json says the same.
-enum class Exchange { off, heaps, order_1, gathered };
-inline constexpr std::array<std::string_view, 4> exchange_names{"off", "heaps", "order_1", "gathered"};
+enum class Exchange { off, heaps, order_1, gathered, path_traced };
+inline constexpr std::array<std::string_view, 5> exchange_names{"off", "heaps", "order_1", "gathered", "path_traced"};
 inline constexpr Exchange default_exchange = Exchange::heaps;
 constexpr std::span<const std::string_view> names_of(Exchange) { return exchange_names; }
 constexpr std::string_view parameter_of(Exchange) { return "exchange"; }

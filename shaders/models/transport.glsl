@@ -81,7 +81,8 @@ float channel_at(vec3 node, vec3 size, int channel) {
 
 Spectrum products_at(vec3 node, vec3 size) {
 #ifdef STORED_LAMPS
-  if (lamp_block >= 0) return SPECTRUM(texture(lamp_sources, vec3(node.xy, node.z + float(lamp_block) * size.z) / vec3(textureSize(lamp_sources, 0))));
+  if (lamp_block >= 0)
+    return SPECTRUM(texture(lamp_sources, vec3(node.xy, node.z + float(lamp_block) * size.z) / vec3(textureSize(lamp_sources, 0))));
 #endif
 #ifdef GREY
   return channel_at(node, size, 0);

@@ -171,7 +171,7 @@ def main():
     parser.add_argument("--models", nargs="+", default=["model_2"],
                         help="of grains that are no lambert (default: model_2)")
     parser.add_argument("--exchanges", nargs="+", default=["order_1", "gathered"],
-                        choices=["off", "order_1", "heaps", "gathered"])
+                        choices=["off", "order_1", "heaps", "gathered", "path_traced"])
     parser.add_argument("--samples", type=int, default=16, help="of each picture (default: 16)")
     parser.add_argument("--paths", type=int, default=128, help="of the truth, a pixel (default: 128)")
     parser.add_argument("--angle", type=float, default=math.degrees(WIDE), metavar="DEGREES",

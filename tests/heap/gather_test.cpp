@@ -10,6 +10,7 @@
 #include <memory>
 #include <numbers>
 #include <optional>
+#include <tuple>
 #include <utility>
 #include <variant>
 
@@ -189,11 +190,17 @@ glm::vec3 picture(const Gather::All& all) { return all.others + all.scattered + 
 
 // White grains in even light look like the light, by the mean of each grain's looks to one percent.
 TEST(Gather, OfAllLightLosesNone) {
-  for (const auto& [sigma_t, once_more] : {std::pair{0.1, false}, {0.1, true}, {20.0, false}, {20.0, true}}) {
+  using Ways = Gather::Ways;
+  for (const auto& [sigma_t, once_more, ways] : {std::tuple{0.1, false, Ways::short_ones},
+                                                 {0.1, true, Ways::short_ones},
+                                                 {20.0, false, Ways::short_ones},
+                                                 {20.0, true, Ways::short_ones},
+                                                 {0.1, true, Ways::whole},
+                                                 {20.0, true, Ways::whole}}) {
     Heap heap = lattice(medium(sigma_t, 1.0));
     heap.lights.clear();
     heap.world.radiance = glm::dvec3(1.0);
-    const Gather gather(heap, solved(heap));
+    const Gather gather(heap, solved(heap), ways);
     transport::Random random(2, 0);
     const Spread spread(random);
     for (const std::uint32_t grain : {0U, 62U, 124U}) {
@@ -203,9 +210,11 @@ TEST(Gather, OfAllLightLosesNone) {
         const Look look(spread.point(i));
         const glm::vec3 place = heap.grains.grains[grain].radius * look.normal;
         ASSERT_TRUE(gather.sees_all(grain));
-        sum += picture(gather.look_at_all(grain, place, look.normal, look.towards, {1, once_more}, random)).g / looks;
+        sum +=
+            picture(gather.look_at_all(grain, place, look.normal, look.towards, gather.walks(1, once_more), random)).g /
+            looks;
       }
-      EXPECT_NEAR(sum, 1.0, 0.01) << sigma_t << " " << once_more << " " << grain;
+      EXPECT_NEAR(sum, 1.0, 0.01) << sigma_t << " " << once_more << " " << (ways == Ways::whole) << " " << grain;
     }
   }
 }

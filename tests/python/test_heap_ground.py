@@ -149,7 +149,7 @@ def test_an_open_bowl_is_no_ball():
 
 # What goes straight through it is exp(-sigma_t d) of what shines behind; none of it was seen, for it is no light that
 # walls send on.
-@pytest.mark.parametrize("exchange", ["heaps", "gathered"])
+@pytest.mark.parametrize("exchange", ["heaps", "gathered", "path_traced"])
 def test_a_wall_that_shines_is_seen_through_thin_grains_of_a_heap(exchange):
     shining = native.Material(model="lambert", reflectance=(0.0,) * 3, finish=native.Finish(radiance=(1.0, 0.5, 0.2)))
     sigma = numpy.array((0.2, 0.5, 1.0))

@@ -129,7 +129,8 @@ def test_light_leaves_a_grain_by_where_it_came_in(truths, model, boundary, most)
         assert error < most
 
 
-# Measured 1.0 and 0.7 percent, the truth's noise in them; 2.5 and 2.8 by walks beside what is stored for parallel light.
+# Measured 1.0 and 0.7 percent, the truth's noise in them; 2.5 and 2.8 by walks beside what is stored for parallel
+# light.
 @pytest.mark.parametrize("times", [1.0, 4.0])
 @pytest.mark.parametrize("model, most", [("transport", 0.02)])
 def test_a_grain_that_is_no_ball(model, most, times):
@@ -153,7 +154,8 @@ def refracting(**changed):
 
 
 def beside(place, material, colour=(INTENSITY,) * 3, half_axes=HALF_AXES):
-    return native.Scene(instances=[native.Instance(mesh(half_axes), material)], lights=[native.PointLight(place, colour)])
+    return native.Scene(instances=[native.Instance(mesh(half_axes), material)],
+                        lights=[native.PointLight(place, colour)])
 
 
 def known(view):

@@ -115,7 +115,7 @@ def compare(models=arguments.DEFAULT_MODELS, references=None, out="//comparison"
     controls: also tests the significance test: the reference's own renderer with the same and with a wrong material.
     settings: {parameter: value} for every material on both sides: reflectance, sigma_a, sigma_s (1/mm; one number or
     three), g, eta, roughness (GGX alpha), scale, profile. frames: how many are timed for `frame_ms`.
-    exchange: light between grains, 'off', 'heaps', 'order_1' or 'gathered'; None as the scene says.
+    exchange: light between grains, 'off', 'heaps', 'order_1', 'gathered' or 'path_traced'; None as the scene says.
     cache: folder of rendered references, None for the usual one. cache_limit: bytes that it may take.
     report: whether to write report.html. on_progress: called with a `progress.Step` (what, number, count, fraction,
     seconds_left), a few times a second, from any thread. command: the line that repeats this comparison, for

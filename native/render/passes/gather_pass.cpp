@@ -119,7 +119,7 @@ bool GatherPass::run(const Sample& sample, const ArrayVisibility& arrays, Surfac
   // By what is known of grains' inner light it costs less still, and is nearer.
   if (sample.learns) inner_lights_.keep_to(gather);
   const bool knows = first_look && facets && sample.learns;
-  const heap::Gather::Walks walks{rays_a_sample, all};
+  const heap::Gather::Walks walks = gather->walks(rays_a_sample, all);
   const float narrowed = heap::Gather::narrowed(sample.index);
   const std::uint64_t seed = (static_cast<std::uint64_t>(sample.seed) << 32U) + sample.index;
   const bool whole = cast_rows(sample.size.y, sample.go_on, [&](int first, int end) {
@@ -150,7 +150,7 @@ bool GatherPass::run(const Sample& sample, const ArrayVisibility& arrays, Surfac
       } else if (sample.gathers_all_of(number)) {
         const heap::SeenFacet at{*grain, place, normal, towards};
         std::optional<heap::Gather::All> found;
-        const bool by_facets = facets && !roles[number].ball && !first_look;
+        const bool by_facets = facets && (sample.exchange.follows_paths() || (!roles[number].ball && !first_look));
         if (const heap::InnerLight* light = knows ? inner_lights_.of(*grain) : nullptr)
           found = gather->look_at_all(at, *facets, *light, random);
         if (by_facets) found = gather->look_at_all(at, *facets, walks, random);

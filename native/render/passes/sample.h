@@ -74,7 +74,8 @@ struct Sample {
 
   /// Whether any grains are seen into through their own facets.
   bool looks_into_facets() const {
-    return gathers && traced && (learns || exchange.gather()->sees_into_any() || !exchange.balls());
+    return gathers && traced &&
+           (learns || exchange.follows_paths() || exchange.gather()->sees_into_any() || !exchange.balls());
   }
 
   /// Whether what is seen must be of the meshes in full: rays go on from there on this side.
