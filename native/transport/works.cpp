@@ -54,6 +54,12 @@ bool is_told(const StoredMedium& medium, double told) {
   return too_dense == 0 || (too_dense == 1 && densest(medium) <= most_thinned * told);
 }
 
+/// Light that begins in a body comes in nowhere.
+bool is_inside(const Lamp& lamp, const Body& body) {
+  const LampRay ray = lamp.at(glm::dvec3(0.0), glm::dvec2(0.5));
+  return ray.reach < body.unit() && body.contains(glm::vec3(body.axes() * ray.to_lamp * (ray.reach / body.unit())));
+}
+
 std::string describe_body(const Order& order) {
   Digest shape;
   shape.add_numbers(order.mesh->positions());
@@ -177,6 +183,10 @@ void Works::work(const Job& job, const std::stop_token& stop) {
           "one has {:.0f}.",
           2.0 * told, 2.0 * most_thinned * told, 2.0 * densest(medium));
     if (job.order.lamp) {
+      if (is_inside(*job.order.lamp, body)) {
+        tell(nullptr, {}, true);
+        return;
+      }
       const std::shared_ptr<Walks> many = walks(job, quality, part_of(effort, coarse_share, 2.0 * coarse_share));
       const auto stored = std::make_shared<StoredTransport>(
           compute_transport(*many, medium, *job.order.lamp, part_of(effort, 2.0 * coarse_share, 1.0)));

@@ -24,7 +24,8 @@ struct Order {
   scene::MeshPointer mesh;
   glm::dmat3 stretch{1.0};
   StoredMedium medium;
-  std::shared_ptr<const Lamp> lamp = nullptr;  ///< null: for parallel light from anywhere
+  std::shared_ptr<const Lamp> lamp = nullptr;  ///< null: for parallel light from anywhere. Nothing is told of one that
+                                               ///< is in the body
 };
 
 /// What is known so far.

@@ -128,13 +128,14 @@ TEST_F(WorksTest, TellsByTheWalksOfAMomentAgo) {
 
 // What a lamp does is found by the same walks, after all that is asked of a grain itself, and kept as that is.
 TEST_F(WorksTest, TellsOfALampAfterAllOthers) {
-  const auto beside = [](double place) {
+  const auto beside = [](double place, double height = 2.0) {
     Order order = WorksTest::order();
-    const auto at = [place](const glm::dvec3& from, const glm::dvec2&) {
-      const glm::dvec3 away = glm::dvec3(place, 0.0, 2.0) - from;
+    const auto at = [place, height](const glm::dvec3& from, const glm::dvec2&) {
+      const glm::dvec3 away = glm::dvec3(place, 0.0, height) - from;
       return LampRay{glm::normalize(away), 1.0 / glm::dot(away, away), glm::length(away)};
     };
-    order.lamp = std::make_shared<const Lamp>(Lamp{at, "at " + std::to_string(place) + "\n"});
+    order.lamp =
+        std::make_shared<const Lamp>(Lamp{at, "at " + std::to_string(place) + " " + std::to_string(height) + "\n"});
     return order;
   };
   std::shared_ptr<const StoredTransport> found;
@@ -155,6 +156,10 @@ TEST_F(WorksTest, TellsOfALampAfterAllOthers) {
   ASSERT_TRUE(known.final && known.stored);
   EXPECT_EQ(known.stored->sources, found->sources);
   EXPECT_FALSE(works.ask(beside(0.6))->news().final) << "another lamp's";
+  const auto inside = works.ask(beside(0.5, 0.7));
+  finish(*inside);
+  EXPECT_FALSE(inside->news().stored);
+  EXPECT_TRUE(inside->news().unsuitable.empty());
 }
 
 TEST_F(WorksTest, MakesAnewWhatIsDamaged) {
