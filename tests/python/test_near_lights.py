@@ -193,10 +193,14 @@ def test_a_viewport_shows_a_moved_lamp_at_once_and_better_in_a_moment():
 def test_a_lamp_of_another_colour_asks_for_nothing():
     view = native.View(SIDE, SIDE, 0, False)
     view.set_camera(native.Camera.look_at((0, 0, 1000.0), (0, 0, 0), (0, 1, 0), math.degrees(2e-3)))
-    view.set_scene(beside(LAMP, refracting()))
+    grain = native.Instance(mesh(HALF_AXES), refracting())
+
+    def under(colour):
+        view.set_scene(native.Scene(instances=[grain], lights=[native.PointLight(LAMP, colour)]))
+    under((INTENSITY,) * 3)
     known(view)
     grey = drawn(view)
-    view.set_scene(beside(LAMP, refracting(), colour=(2.0 * INTENSITY, INTENSITY, 0.5 * INTENSITY)))
+    under((2.0 * INTENSITY, INTENSITY, 0.5 * INTENSITY))
     assert view.preparing is None
     assert apart(drawn(view), grey * (2.0, 1.0, 0.5)) < 1e-4
 
