@@ -74,13 +74,19 @@ struct HeapLight {
   Field scattered_answer;
   Patches patches;
   std::optional<Neighbourhood> neighbourhood{};  ///< of its grains, where they were not moved since
-  std::vector<Kind> kinds;
+  std::vector<Kind> kinds;                       ///< what each is to the others
+  std::vector<Kind> seen_kinds;                  ///< what is seen of it, where that is something else; or empty
   std::size_t links = 0;
   int steps = 0;
   float residual = 0.0F;
   double milliseconds = 0.0;
   Parts parts;  ///< since its solver began
 };
+
+/// What is seen of grains, by kind.
+inline const std::vector<Kind>& seen_kinds(const HeapLight& light) {
+  return light.seen_kinds.empty() ? light.kinds : light.seen_kinds;
+}
 
 /// Of a heap that exchanges none: what rays must know of its grains, and nothing that any sends. Throws
 /// transport::Stopped.

@@ -95,7 +95,8 @@ Gather::All Gather::walked_in(std::uint32_t grain, const glm::vec3& place, const
 }
 
 bool Gather::is_walked_once_more(std::uint32_t number) const {
-  return number < space_.grains().size() && sees_all(number) && (ways_ == Ways::whole || !is_walked_behind(number));
+  return number < space_.grains().size() && sees_all(number) && !is_lambert(number) &&
+         (ways_ == Ways::whole || !is_walked_behind(number));
 }
 
 glm::vec3 Gather::walked_in(const Source& source, const Ray& ray, int further, transport::Random& random) const {

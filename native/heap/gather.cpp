@@ -68,7 +68,9 @@ struct Gather::Found {
   Found(std::shared_ptr<const Heap> of, std::shared_ptr<const HeapLight> its_light)
       : heap(std::move(of)),
         light(std::move(its_light)),
-        space(heap->grains, light->kinds, light->seats, light->patches, light->neighbourhood) {}
+        space(heap->grains, light->kinds, light->seats, light->patches, light->neighbourhood) {
+    space.answer_as(seen_kinds(*light));
+  }
 
   std::shared_ptr<const Heap> heap;
   std::shared_ptr<const HeapLight> light;
@@ -122,8 +124,9 @@ glm::vec3 Gather::looked_at(const Source& source, const Ray& ray, int further, t
 }
 
 bool Gather::is_lambert(std::uint32_t number) const {
-  return number < space_.grains().size() &&
-         heap_.grains.kinds[space_.grains()[number].kind].surface == Surface::lambert;
+  if (number >= space_.grains().size()) return false;
+  const Optics& optics = heap_.grains.kinds[space_.grains()[number].kind];
+  return optics.surface == Surface::lambert || optics.veiled();
 }
 
 glm::vec3 Gather::sent_by_lambert(std::uint32_t grain, const glm::vec3& normal, int further,
@@ -155,7 +158,7 @@ glm::vec3 Gather::even_world(const Ray& ray) const {
 
 glm::vec3 Gather::look(std::uint32_t grain, const glm::vec3& normal, const glm::vec3& towards, int rays,
                        transport::Random& random) const {
-  const Kind& kind = space_.kind(grain);
+  const Kind& kind = space_.answering(grain);
   const float mu = std::clamp(glm::dot(normal, towards), 0.0F, 1.0F);
   const TurnedFrame frame(normal, -towards);
   glm::vec3 sum(0.0F);

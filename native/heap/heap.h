@@ -81,8 +81,12 @@ class Space {
   void seat(std::shared_ptr<const Seats> seats) { seats_ = std::move(seats); }
   const std::shared_ptr<const Seats>& seats() const { return seats_; }
 
+  /// From now on grains answer as these do, which are for each kind what is seen of it, and send what their own do.
+  void answer_as(const std::vector<Kind>& seen) { seen_ = &seen; }
+
   const std::vector<Grain>& grains() const { return grains_; }
   const Kind& kind(std::uint32_t grain) const { return kinds_[grains_[grain].kind]; }
+  const Kind& answering(std::uint32_t grain) const { return (*seen_)[grains_[grain].kind]; }
   const Kind& kind(const Patches::Node& node) const { return kinds_[walls_[node.wall].kind]; }
   const Patches& patches() const { return patches_; }
   const Neighbourhood& neighbourhood() const { return neighbourhood_; }
@@ -144,6 +148,7 @@ class Space {
   const std::vector<Wall>& walls_;
   const std::vector<Pane>& panes_;
   const std::vector<Kind>& kinds_;
+  const std::vector<Kind>* seen_ = &kinds_;
   std::shared_ptr<const Seats> seats_;
   Patches patches_;
   Neighbourhood neighbourhood_;

@@ -211,7 +211,7 @@ std::vector<Look> looks_from(const Space& space, std::size_t answering, const Ra
   if (space.of_grain(answering)) {
     const std::uint32_t number = space.seats()->number(answering);
     const Grain& grain = space.grains()[number];
-    const GrainTable& table = *space.kind(number).from_viewer;
+    const GrainTable& table = *space.answering(number).from_viewer;
     const int count = rays.of(answering);
     looks.reserve(static_cast<std::size_t>(count));
     for (int i = 0; i < count; ++i) {
@@ -290,7 +290,7 @@ Found found_by(const Space& space, std::size_t answering, const std::vector<Look
   std::vector<Ending> endings(looks.size());
   departing.reserve(looks.size());
   const bool of_grain = space.of_grain(answering);
-  const GrainTable* table = of_grain ? space.kind(space.seats()->number(answering)).from_viewer.get() : nullptr;
+  const GrainTable* table = of_grain ? space.answering(space.seats()->number(answering)).from_viewer.get() : nullptr;
   const std::uint64_t stream = stream_of(space, answering);
   for (std::size_t i = 0; i < looks.size(); ++i) {
     Ray ray = looks[i].ray;
@@ -436,7 +436,7 @@ void Links::gather_scattered(const Field& sent, Field& answer, const transport::
 bool Rays::fine(const Space& space, std::size_t answering) const {
   constexpr int least = 64;
   return space.of_grain(answering) && of(answering) >= least &&
-         space.kind(space.seats()->number(answering)).from_viewer->is_fine();
+         space.answering(space.seats()->number(answering)).from_viewer->is_fine();
 }
 
 Deep find_deep(const Space& space, int ways, const transport::Effort& effort) {

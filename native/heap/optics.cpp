@@ -57,6 +57,8 @@ Optics optics_of(const scene::Material& material, double radius) {
     if (optics.surface == Surface::mirror) optics.roughness = material.roughness;
     return optics;
   }
+  const bool lobes = optics.surface == Surface::lambert_lambert || optics.surface == Surface::lambert_refracted;
+  if (lobes) optics.reflectance = material.reflectance_to_others;
   optics.eta =
       optics.surface == Surface::dielectric || optics.surface == Surface::lambert_refracted ? material.eta : 1.0;
   optics.g = material.g;
@@ -77,6 +79,11 @@ Optics optics_of(const scene::Material& material, double radius) {
 }
 
 Optics of_others(const Optics& optics) {
+  if (optics.veiled()) {
+    Optics veil;
+    veil.reflectance = optics.reflectance;
+    return veil;
+  }
   if (!optics.transparent() || !(optics.g > 0.0)) return optics;
   Optics similar = optics;
   similar.g = 0.0;
@@ -88,6 +95,8 @@ Optics of_others(const Optics& optics) {
   }
   return similar;
 }
+
+Optics seen_among_others(const Optics& optics) { return optics.veiled() ? optics : of_others(optics); }
 
 std::vector<Optics> of_others(std::vector<Optics> kinds) {
   for (Optics& optics : kinds) optics = of_others(optics);

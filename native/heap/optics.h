@@ -17,15 +17,19 @@ inline constexpr std::array<std::string_view, 6> surface_names{"lambert",    "mi
 
 struct Optics {
   Surface surface = Surface::lambert;
-  glm::dvec3 reflectance{0.0};  ///< of an opaque surface
-  glm::dvec3 sigma_t{0.0};      ///< of the medium, per radius
-  glm::dvec3 albedo{0.0};       ///< of one scattering
+  /// Of an opaque surface; of another, unless black, that of the Lambert surface that it is to what others send.
+  glm::dvec3 reflectance{0.0};
+  glm::dvec3 sigma_t{0.0};  ///< of the medium, per radius
+  glm::dvec3 albedo{0.0};   ///< of one scattering
   double g = 0.0;
   double eta = 1.0;
   double roughness = 0.0;  ///< of a mirror
   bool lens = true;        ///< what refracts is as round as the sphere: no crystal, whose facets throw light back
 
   bool opaque() const { return surface == Surface::lambert || surface == Surface::mirror; }
+
+  /// Whether light that others have sent meets a Lambert surface in its place.
+  bool veiled() const { return !opaque() && reflectance != glm::dvec3(0.0); }
 
   /// Whether light may go straight through without meeting anything.
   bool transparent() const { return surface == Surface::index_matched; }
@@ -51,5 +55,8 @@ Optics optics_of(const scene::Material& material, double radius);
 /// scatters evenly, sigma_s (1 - g) (van de Hulst 1980, section 14.1.3).
 Optics of_others(const Optics& optics);
 std::vector<Optics> of_others(std::vector<Optics> kinds);
+
+/// The same, but for what one is to others alone: what it makes of their light where it is seen.
+Optics seen_among_others(const Optics& optics);
 
 }  // namespace mesograin::heap

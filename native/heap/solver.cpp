@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 #include "heap/direct_light.h"
@@ -74,6 +75,13 @@ bool still_seated(const Seats& seats, const std::vector<Grain>& before, const st
     if (seats.shares(i) || ++moved > now.size() / most_moved_of) return false;
   }
   return true;
+}
+
+/// What is seen of grains, if any is something else to others; else nothing.
+std::vector<Kind> seen_of(std::vector<Optics> kinds, int walks, const transport::Effort& effort) {
+  if (std::none_of(kinds.begin(), kinds.end(), std::mem_fn(&Optics::veiled))) return {};
+  std::transform(kinds.begin(), kinds.end(), kinds.begin(), seen_among_others);
+  return kinds_of(kinds, walks, effort);
 }
 
 /// How many cells of Seats below the surface grains begin to share: farther than light goes on one way.
@@ -174,8 +182,10 @@ void Solver::find_matter(const std::shared_ptr<const Heap>& heap, const Quality&
   if (matter_ && matter_->grains.kinds == grains.kinds && matter_->walks >= quality.walks) {
     matter->walks = matter_->walks;
     matter->kinds = matter_->kinds;
+    matter->seen = matter_->seen;
   } else {
     matter->kinds = kinds_of(of_others(grains.kinds), quality.walks, effort);
+    matter->seen = seen_of(grains.kinds, quality.walks, effort);
     ++parts_.tables;
   }
   if (grains.grains.size() >= (any_clear(matter->kinds) ? quality.clear_shared_from : quality.shared_from)) {
@@ -348,6 +358,22 @@ Field Solver::guess() const {
   return carried(sent_, *sent_seats_, space);
 }
 
+void Solver::show_seen(const Heap& heap, HeapLight& light, const transport::Effort& effort) const {
+  Space space(matter_->grains, matter_->kinds, light.seats, light.patches, light.neighbourhood);
+  space.answer_as(matter_->seen);
+  Ways ways;
+  heap::find_ways(space, traced_->rays, {}, glm::vec3(1.0F), ways, effort);
+  if (!traced_->ways.links.fine.empty()) ways.links.fine.resize(space.size(), false);  // others' are told so
+  Field answer;
+  ways.links.gather(light.sent, answer, effort);
+  const glm::vec3 world = heap.world.image ? glm::vec3(0.0F) : glm::vec3(heap.world.radiance);
+  // What has no seat of its own lies too deep to be seen.
+  for (std::size_t seat = 0; seat < light.seats->own(); ++seat)
+    if (heap.grains.kinds[heap.grains.grains[light.seats->number(seat)].kind].veiled())
+      light.answer[seat] = answer[seat] + light.crossed[seat] + ways.world.crossed[seat] * world;
+  light.seen_kinds = matter_->seen;
+}
+
 HeapLight Solver::solve(const std::shared_ptr<const Heap>& shared, const Quality& given,
                         const transport::Effort& effort) {
   const Heap& heap = *shared;
@@ -368,7 +394,7 @@ HeapLight Solver::solve(const std::shared_ptr<const Heap>& shared, const Quality
   if (few_moved) add(first, left_, glm::vec3(-1.0F));
   Solved solved =
       heap::solve(traced_->ways.links, change ? &*change : nullptr, first, guess(),
-                  {quality.tolerance, few_moved ? left_of_moves : 1.0F}, transport::part_of(effort, 0.7, 1.0));
+                  {quality.tolerance, few_moved ? left_of_moves : 1.0F}, transport::part_of(effort, 0.7, 0.9));
   if (few_moved) add(solved.left, left_, glm::vec3(1.0F));
   left_ = std::move(solved.left);
   ++parts_.solutions;
@@ -402,6 +428,7 @@ HeapLight Solver::solve(const std::shared_ptr<const Heap>& shared, const Quality
     traced_->ways.behind.gather(solved.sent, light.behind, effort, change ? &*change : nullptr);
   sent_ = light.sent = SharedField(std::move(solved.sent));
   sent_seats_ = light.seats;
+  if (!matter_->seen.empty()) show_seen(heap, light, transport::part_of(effort, 0.9, 1.0));
   light.links = traced_->ways.links.count();
   light.steps = solved.steps;
   light.residual = solved.residual;

@@ -37,6 +37,7 @@ class Solver {
     const Grains& grains;
     int walks = 0;  ///< of each interval of their tables
     std::vector<Kind> kinds;
+    std::vector<Kind> seen;              ///< what is seen of each, if any is something else to others; else empty
     int cells_below = 0;                 ///< the surface, from where on grains share seats; 0: none do
     bool eights = false;                 ///< of Seats
     std::shared_ptr<const Seats> seats;  ///< where they do; those of a matter before, or found when rays are traced
@@ -70,6 +71,9 @@ class Solver {
   void find_matter(const std::shared_ptr<const Heap>& heap, const Quality& quality, const transport::Effort& effort);
   const Space& space();
   Deep find_deep(const transport::Effort& effort);
+
+  /// Puts what is seen of grains in the place of what they are to others.
+  void show_seen(const Heap& heap, HeapLight& light, const transport::Effort& effort) const;
 
   /// As fine as memory allows.
   Quality within_memory(const Quality& quality);

@@ -77,8 +77,9 @@ class Telling {
  public:
   Telling(const heap::HeapLight& light, const heap::Grains& grains, const std::vector<RoleInHeap>& roles)
       : light_(light), seats_(*light.seats), grains_(grains), roles_(roles) {
-    for (std::size_t kind = 0; kind < light.kinds.size(); ++kind)
-      kinds_.add(*light.kinds[kind].from_light, heap::of_others(grains.kinds[kind]));
+    const std::vector<heap::Kind>& seen = heap::seen_kinds(light);
+    for (std::size_t kind = 0; kind < seen.size(); ++kind)
+      kinds_.add(*seen[kind].from_light, heap::seen_among_others(grains.kinds[kind]));
   }
 
   std::size_t bytes() const { return count() * sizeof(glm::vec4); }

@@ -14,7 +14,8 @@ import time
 import bpy
 import numpy as np
 import pytest
-from cycles_scenes import REFEREE, depsgraph, make_sphere
+from cycles_scenes import RADIUS, REFEREE, depsgraph, make_sphere
+from mathutils import Matrix, Vector
 
 from mesograin import compat, native_module
 from mesograin.cycles import kinds, nodes, reference, shot
@@ -98,6 +99,27 @@ def test_a_thick_grain_agrees_with_both_walks_of_cycles(tmp_path):
         assert case["status"] == "done"
         assert case["metrics"]["relative_l1_blocks"] < 0.02
         assert abs(case["metrics"]["bias"] - 1.0) < 0.01
+
+
+@pytest.mark.parametrize("exchange, total, blocks", [("heaps", 0.04, 0.06), ("gathered", 0.02, 0.025)])
+def test_grains_send_each_other_what_they_send_in_cycles(tmp_path, exchange, total, blocks):
+    """The node walks in the grain that is seen alone, a volume in all that light comes to. Walks in all are 3.3 % too
+    bright beside the node here, 7 % by the grains' own numbers, and 3.7 and 7.6 % off in blocks."""
+    make_sphere([((1.0, 0.4, 0.8), 4.0)], segments=48, rings=24, sigma_a=(0.02, 0.05, 0.2), sigma_s=(2.4, 2.0, 1.5),
+                eta=1.0, roughness=0.0, scale=6.0)
+    grain = next(placed for placed in bpy.data.objects if placed.type == "MESH")
+    for number in range(27):
+        placed = grain if number == 0 else bpy.data.objects.new("Grain", grain.data)
+        where = Vector((number % 3 - 1.0, number // 3 % 3 - 1.0, number // 9 - 1.0))
+        placed.matrix_world = Matrix.Translation(0.62 * RADIUS * where) @ Matrix.Scale(0.3, 4)
+        if number:
+            bpy.context.scene.collection.objects.link(placed)
+    found = compare(tmp_path, models=("model_3",), references=("subsurface", "volume_lambert"), size=(48, 48),
+                    samples=32, reference_samples=96, exchange=exchange)
+    for case in found["cases"]:
+        assert case["status"] == "done"
+        assert abs(case["metrics"]["bias"] - 1.0) < total
+        assert case["metrics"]["relative_l1_blocks"] < blocks
 
 
 def add_ground(colour):

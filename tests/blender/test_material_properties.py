@@ -27,7 +27,8 @@ def test_every_parameter_reaches_the_native_module(native):
     material = bpy.data.materials.new("Grain")
     wanted = {"model": "conductor", "reflectance": (0.25, 0.5, 0.75), "sigma_a": (0.5, 0.25, 0.125),
               "sigma_s": (1.5, 2.5, 3.5), "g": -0.5, "eta": 1.75, "roughness": 0.375, "scale": 2.5, "specular": False,
-              "boundary": "lambert_refracted", "masking": "separable", "profile": "dipole"}
+              "boundary": "lambert_refracted", "reflectance_to_others": (0.75, 0.5, 0.25), "masking": "separable",
+              "profile": "dipole"}
     for parameter, value in wanted.items():
         setattr(material.mesograin, parameter, value)
     made = export.material_values(material, 1.0).to_native(native)

@@ -126,7 +126,7 @@ def test_defaults_are_the_native_module_s(native):
     standard, grain = native.Material(), bpy.data.materials.new("Grain").mesograin
     for parameter in ("model", "g", "eta", "roughness", "scale", "specular", "boundary", "masking", "profile"):
         assert getattr(grain, parameter) == pytest.approx(getattr(standard, parameter))
-    for parameter in ("reflectance", "sigma_a", "sigma_s"):
+    for parameter in ("reflectance", "sigma_a", "sigma_s", "reflectance_to_others"):
         assert tuple(getattr(grain, parameter)) == pytest.approx(getattr(standard, parameter))
 
 

@@ -101,17 +101,27 @@ def test_burley_takes_the_reduced_medium():
     assert skewed["Radius"] == pytest.approx((12.566371,) * 3)
 
 
+@pytest.mark.parametrize("kind", ["subsurface", "subsurface_burley"])
+def test_what_the_node_is_to_others_has_its_colour(kind):
+    medium = {"reflectance": (0.5,) * 3, "sigma_a": (0.1, 0.2, 0.3), "sigma_s": (1.0, 2.0, 0.5), "scale": 2.0, "g": 0.4,
+              "eta": 1.4, "roughness": 0.1}
+    ours = kinds.of_material({"model": "model_2", **kinds.our_side(kind, BLENDER_3)}, medium)
+    node = recipes.recipe(kind, grain_values.GrainValues.from_parameters(medium), BLENDER_3)["nodes"]["Subsurface"]
+    assert ours == {"model": "model_2", "boundary": "lambert_lambert", "reflectance_to_others": node["inputs"]["Color"]}
+    assert 0.1 < min(ours["reflectance_to_others"]) < max(ours["reflectance_to_others"]) < 0.7
+
+
 def test_subsurface_takes_alpha_itself():
     node = recipes.recipe("subsurface", grain(roughness=0.25), BLENDER_4)["nodes"]["Subsurface"]
     assert node["optional"]["Roughness"] == 0.25
 
 
 def test_our_side_solves_what_cycles_solves():
-    assert kinds.our_side("subsurface", BLENDER_3) == {"boundary": "lambert_lambert"}
-    assert kinds.our_side("subsurface", BLENDER_4) == {"boundary": "lambert_refracted"}
+    assert kinds.our_side("subsurface", BLENDER_3)["boundary"] == "lambert_lambert"
+    assert kinds.our_side("subsurface", BLENDER_4)["boundary"] == "lambert_refracted"
+    assert kinds.our_side("subsurface_burley", BLENDER_4)["boundary"] == "lambert_lambert"
     assert kinds.our_side("volume_index_matched", BLENDER_4) == {"boundary": "index_matched"}
-    for kind in ("subsurface_burley", "volume_lambert"):
-        assert kinds.our_side(kind, BLENDER_4) == {"boundary": "lambert_lambert"}
+    assert kinds.our_side("volume_lambert", BLENDER_4) == {"boundary": "lambert_lambert"}
     for kind in ("volume_dielectric", "photon"):
         assert kinds.our_side(kind, BLENDER_3) == {"boundary": "dielectric", "roughness": 0.0, "specular": False}
     assert kinds.our_side("photon_scene", BLENDER_3) == {}

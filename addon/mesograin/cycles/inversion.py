@@ -130,6 +130,17 @@ def colour_of_albedo(albedo, g=0.0):
     return math.exp(high)
 
 
+def walk_colour(values):
+    """The node's colour for a random walk in the medium of GrainValues, RGB."""
+    return tuple(colour_of_albedo(albedo, values.g) for albedo in values.albedo)
+
+
+def profile_colour(values):
+    """That for Christensen and Burley's profile: the reflectance of a half-space, by the fit that the walk inverts."""
+    reduced = tuple((a, (1.0 - values.g) * s) for a, s in zip(values.sigma_a, values.sigma_s))
+    return tuple(colour_of_albedo(s / (a + s)) for a, s in reduced)
+
+
 def radius_of_extinction(sigma_t, g=0.0):
     """The node's radius (scene units, one channel) for a fixed-radius walk of extinction sigma_t (per scene unit)."""
     if not sigma_t > 0.0:

@@ -5,6 +5,8 @@ import math
 from dataclasses import dataclass, replace
 
 from ..schema.models import AUTO, TRANSLUCENT, WITH_LOBES
+from . import inversion
+from .grain_values import GrainValues
 
 
 @dataclass(frozen=True)
@@ -209,7 +211,8 @@ def kind_of(name, part=None):
 
 
 def our_side(kind, features, part=None):
-    """The Mesograin parameters that make our side solve what this kind of reference solves, as {name: value}."""
+    """The Mesograin parameters that make our side solve what this kind of reference solves, as {name: value}; a value
+    may be a function of a material's GrainValues: `of_material`."""
     if kind == "volume_dielectric" and part == "specular":
         # Nothing comes back from inside a medium that does not scatter.
         return {"boundary": "dielectric", "specular": True, "masking": features.glossy_masking, "sigma_s": (0.0,) * 3}
@@ -217,10 +220,23 @@ def our_side(kind, features, part=None):
         return {"masking": features.glossy_masking}
     if kind == "volume_index_matched":
         return {"boundary": "index_matched"}
+    # Where light was diffuse before, Cycles takes the node's radius for nothing (PATH_RAY_DIFFUSE_ANCESTOR in its
+    # closures): a Lambert surface of its colour is left.
     if kind == "subsurface":
-        return {"boundary": "lambert_refracted" if features.subsurface_refracts else "lambert_lambert"}
-    if kind in ("subsurface_burley", "volume_lambert"):
+        return {"boundary": "lambert_refracted" if features.subsurface_refracts else "lambert_lambert",
+                "reflectance_to_others": inversion.walk_colour}
+    if kind == "subsurface_burley":
+        return {"boundary": "lambert_lambert", "reflectance_to_others": inversion.profile_colour}
+    if kind == "volume_lambert":
         return {"boundary": "lambert_lambert"}
     if kind in ("volume_dielectric", "photon"):
         return {"boundary": "dielectric", "roughness": 0.0, "specular": False}
     return {}
+
+
+def of_material(chosen, parameters):
+    """`chosen`, as `our_side` has it, for a material of {name: value}, coefficients per scene unit."""
+    if not any(map(callable, chosen.values())):
+        return dict(chosen)
+    values = GrainValues.from_parameters({**parameters, **chosen})
+    return {name: value(values) if callable(value) else value for name, value in chosen.items()}

@@ -160,14 +160,13 @@ def _principled_specular(values):
 
 
 def _subsurface(values, features):
-    colour = tuple(inversion.colour_of_albedo(albedo, values.g) for albedo in values.albedo)
     radius = tuple(inversion.radius_of_extinction(sigma_t, values.g) for sigma_t in values.sigma_t)
     low, high = limits.IOR_RANGE
     node = {
         "type": "ShaderNodeSubsurfaceScattering",
         "properties": {"falloff": features.subsurface_method},
         "inputs": {
-            "Color": colour,
+            "Color": inversion.walk_colour(values),
             "Scale": 1.0,
             "Radius": radius,
             "IOR": min(max(values.eta, low), high),
@@ -187,8 +186,7 @@ def _subsurface_burley(values, features):
         "type": "ShaderNodeSubsurfaceScattering",
         "properties": {"falloff": "BURLEY"},
         "inputs": {
-            # The reflectance of a half-space, by the fit that the random walk inverts.
-            "Color": tuple(inversion.colour_of_albedo(s / (a + s)) for a, s in reduced),
+            "Color": inversion.profile_colour(values),
             "Scale": 1.0,
             "Radius": tuple(inversion.radius_of_extinction(a + s) for a, s in reduced),
         },

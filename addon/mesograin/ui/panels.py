@@ -16,8 +16,8 @@ ENGINES = {engine.MesograinRenderEngine.bl_idname}
 POPOVER_UNIT = 17
 MEDIUM = ("sigma_s", "sigma_a", "scale", "g", "profile")
 REFRACTING = ("dielectric", "lambert_refracted")
-SURFACE = {"boundary": (), "eta": REFRACTING, "roughness": REFRACTING, "masking": REFRACTING,
-           "specular": ("dielectric",)}
+SURFACE = {"boundary": (), "reflectance_to_others": parameters.COSINE_LOBES, "eta": REFRACTING,
+           "roughness": REFRACTING, "masking": REFRACTING, "specular": ("dielectric",)}
 """A grain's parameters as they are grouped; of the surface's, the boundaries for which they count."""
 
 

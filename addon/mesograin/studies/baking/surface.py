@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy
 
 from ... import __version__, native_module
+from ...cycles import kinds
 from ...cycles.shot import PROVENANCE
 from ...scene import export, meshes
 from ..comparison.results import OutputError
@@ -233,7 +234,9 @@ def _instances(scene, name):
 
 
 def _with(material, overrides):
-    return dataclasses.replace(material, values=tuple({**dict(material.values), **overrides}.items()))
+    values = dict(material.values)
+    values.update(kinds.of_material(overrides, values))
+    return dataclasses.replace(material, values=tuple(values.items()))
 
 
 def _picture_size(scene):

@@ -6,7 +6,7 @@ import statistics
 import time
 
 from ... import native_module
-from ...cycles import beside
+from ...cycles import beside, kinds
 from ...engine import stated_error
 from ...scene import export, lights, meshes
 from ...schema import models
@@ -70,7 +70,8 @@ class Ours:
         def change(material):
             if not direct and material.name in self._staying:
                 return material
-            values = {**dict(material.values), **self._overrides, **chosen}
+            values = {**dict(material.values), **self._overrides}
+            values.update(kinds.of_material(chosen, values))
             return export.MaterialValues(material.name, tuple(values.items()))
 
         return self._scene.with_materials(change)

@@ -5,6 +5,8 @@ import math
 
 import numpy
 
+from ...cycles import kinds
+
 COVERAGE_SAMPLES = 16
 
 
@@ -16,8 +18,8 @@ class Subject:
     """A native.Scene, some of whose drawn things are matched.
 
     instances, arrays: {number in the scene's list: factors of sigma_a and sigma_s, or None}, of what is matched.
-    values: of native.Material, what they share. camera: native.Camera. size: (width, height). samples: of each pixel.
-    name: of their material.
+    values: of native.Material, what they share; a function of the others as cycles.kinds.our_side has it. camera:
+    native.Camera. size: (width, height). samples: of each pixel. name: of their material.
     Raises SubjectError if there is no grain to be matched.
     """
 
@@ -35,13 +37,13 @@ class Subject:
         """(h, w, 4) float32, linear radiance and coverage, by this model and {'sigma_a', 'sigma_s', 'g'}, per unit of
         length of the scene. Raises native.Error."""
         values = {**self.values, **coefficients, "model": model}
-        material = self._native.Material(**values)
+        material = self._material(values)
 
         def of(factors):
             if not factors:
                 return material
             changed = {name: tuple(numpy.multiply(values[name], factor)) for name, factor in factors.items()}
-            return self._native.Material(**{**values, **changed})
+            return self._material({**values, **changed})
 
         scene = self._native.Scene(
             instances=[self._with(drawn, of(self._instances[number])) if number in self._instances else drawn
@@ -90,6 +92,9 @@ class Subject:
     def warnings(self):
         """One sentence for each thing that the last picture did not draw by the model asked for."""
         return list(self._view.warnings)
+
+    def _material(self, values):
+        return self._native.Material(**kinds.of_material(values, values))
 
     def _with(self, drawn, material):
         return self._native.Instance(drawn.mesh, material, drawn.transform, drawn.object)
