@@ -27,6 +27,48 @@ struct Look {
   float choice = 0.0F;     ///< of what becomes of its light there
 };
 
+/// Whether a light is so near that it is another for each place of the grain. One inside is told as if it were not.
+bool is_near(const lights::LightDraw& light, const Grain& grain) {
+  constexpr float near_radii = 40.0F;
+  const auto radii = static_cast<float>(light.reach / static_cast<double>(grain.radius));
+  return radii > 1.0F && radii < near_radii;
+}
+
+/// From where a ray of such a lamp meets the grain: one of all that do, spread evenly as the lamp sees them.
+std::optional<Look> look_at_lamp(const Space& space, const Grain& grain, const glm::dvec3& anchor, const Draw& draw,
+                                 const lights::LightDraw& light, const std::array<float, 5>& point,
+                                 const std::array<float, 5>& light_point, float share) {
+  const double radius = grain.radius;
+  const double way = light.reach;
+  // The cone that the ball fills; written so that a small one keeps its digits.
+  const double sine = radius / way;
+  const double cap = sine * sine / (1.0 + std::sqrt(1.0 - sine * sine));  // 1 - cos of half its angle
+  const double height = static_cast<double>(point[0]) * cap;              // 1 - cos of the ray's
+  const double aside = way * std::sqrt(height * (2.0 - height));          // of the ray from the middle
+  const double inside = std::sqrt(std::max(radius * radius - aside * aside, 0.0));
+  const double distance = way * (1.0 - height) - inside;
+  const glm::vec3 to_lamp(light.to_light);
+  const auto cosine = static_cast<float>(1.0 - height);
+  const glm::vec3 outwards =
+      TurnedFrame(-to_lamp, point[1]) *
+      glm::vec3(static_cast<float>(std::sqrt(height * (2.0 - height))), 0.0F, cosine);  // from the lamp
+  const glm::vec3 normal =
+      glm::normalize((static_cast<float>(way) * to_lamp + static_cast<float>(distance) * outwards) / grain.radius);
+  const glm::vec3 place = space.place(grain, normal);
+  const lights::LightDraw there = draw(anchor + glm::dvec3(place), {light_point[0], light_point[1]});
+  const glm::vec3 to_light(there.to_light);
+  const float mu = glm::dot(normal, to_light);
+  if (!(mu > 0.0F)) return std::nullopt;
+  // Of what a parallel light would bring, as much more as it is brighter here and as its rays are more of the lamp's.
+  const double more = 2.0 * cap * there.reach * there.reach / (radius * radius);
+  return Look{{place, to_light, glm::vec3(1.0F)},
+              static_cast<float>(std::min(there.reach, 1e30)),
+              share * static_cast<float>(more) * glm::vec3(there.irradiance),
+              normal,
+              mu,
+              point[2]};
+}
+
 void look_from_grain(const Space& space, const Grain& grain, const glm::dvec3& anchor, const Draw& draw, int rays,
                      transport::Random& random, std::vector<Look>& looks) {
   const glm::dvec3 middle = anchor + glm::dvec3(grain.middle);
@@ -37,6 +79,11 @@ void look_from_grain(const Space& space, const Grain& grain, const glm::dvec3& a
     const std::array<float, 5> point = spread.point(i);
     const std::array<float, 5> light_point = of_light.point(i);
     const lights::LightDraw light = draw(middle, {light_point[0], light_point[1]});
+    if (is_near(light, grain)) {
+      if (const std::optional<Look> look = look_at_lamp(space, grain, anchor, draw, light, point, light_point, share))
+        looks.push_back(*look);
+      continue;
+    }
     const glm::vec3 irradiance(light.irradiance);
     if (!(std::max({irradiance.r, irradiance.g, irradiance.b}) > 0.0F)) continue;
     const glm::vec3 to_light(light.to_light);

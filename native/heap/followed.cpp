@@ -40,10 +40,10 @@ void Gather::show_what_is_behind(const Ray& through, All& all) const {
 std::vector<Asking> Gather::asking(std::uint32_t grain, transport::Random& random) const {
   std::vector<Asking> asking;
   asking.reserve(draws_.size());
-  const glm::dvec3 middle = heap_.anchor + glm::dvec3(space_.grains()[grain].middle);
+  const Grain& of = space_.grains()[grain];
   for (const Draw& draw : draws_) {
-    const float u = random.uniform();
-    asking.emplace_back(draw(middle, {u, random.uniform()}));
+    const double u = random.uniform();
+    asking.emplace_back(draw, glm::dvec2(u, random.uniform()), heap_.anchor, of.middle, of.radius);
   }
   return asking;
 }
@@ -53,6 +53,7 @@ Gather::All Gather::walked_in(std::uint32_t grain, const glm::vec3& place, const
   // What leaves a facet goes on from where it is, not from the one point of the sphere that faces as it does.
   const glm::vec3 aside = place - space_.grains()[grain].radius * normal;
   const Grain& seen = space_.grains()[grain];
+  const glm::vec3 middle = seen.middle + aside;
   const Optics& optics = heap_.grains.kinds[seen.kind];
   const float mu = std::clamp(glm::dot(normal, towards), 0.0F, 1.0F);
   const TurnedFrame frame(normal, -towards);
@@ -62,11 +63,13 @@ Gather::All Gather::walked_in(std::uint32_t grain, const glm::vec3& place, const
     const auto ask = [&](const glm::vec3& at, const glm::vec3& direction, const glm::vec3& weight) {
       const glm::vec3 in_frame = frame * at;
       for (Asking& of : asking) {
+        of.move_to(middle + seen.radius * in_frame);
         const float along = glm::dot(in_frame, of.to_light());
-        const float chord = -along + std::sqrt(std::max(along * along + 1.0F - glm::dot(at, at), 0.0F));
+        const float out = -along + std::sqrt(std::max(along * along + 1.0F - glm::dot(at, at), 0.0F));
+        const float chord = std::min(out, of.reach() / seen.radius);
         of.ask(of.scattered(static_cast<float>(optics.g), frame * direction, weight) *
                    glm::exp(-glm::vec3(optics.sigma_t) * chord),
-               glm::normalize(in_frame + chord * of.to_light()), random);
+               glm::normalize(in_frame + out * of.to_light()), seen.radius * out, random);
       }
     };
     const std::optional<Outcome> outcome =
@@ -74,11 +77,13 @@ Gather::All Gather::walked_in(std::uint32_t grain, const glm::vec3& place, const
     for (Asking& of : asking) {
       if (outcome && !optics.transparent()) {
         const glm::vec3 leaves_at = frame * outcome->normal;
-        of.ask(of.reflected(leaves_at, outcome->weight), leaves_at, random);
+        of.move_to(middle + seen.radius * leaves_at);
+        of.ask(of.reflected(leaves_at, outcome->weight), leaves_at, 0.0F, random);
       }
       if (!of.any()) continue;
-      Ray ray{space_.place(seen, of.place()) + aside, of.to_light(), glm::vec3(1.0F), false, grain};
-      all.scattered += of.asked() * space_.passed(ray, of.reach());
+      const Asking::Chosen& chosen = of.chosen();
+      Ray ray{space_.place(seen, chosen.place) + aside, chosen.to_light, glm::vec3(1.0F), false, grain};
+      all.scattered += of.asked() * space_.passed(ray, chosen.reach);
     }
     if (!outcome) continue;
     const glm::vec3 leaves_at =
@@ -181,10 +186,12 @@ std::optional<End> Gather::end_across(std::uint32_t grain, const glm::vec3& plac
 }
 
 std::optional<Gather::WayOut> Gather::way_out(std::uint32_t grain, const glm::vec3& place, const glm::vec3& direction,
-                                              const Facets& facets) const {
-  const std::optional<End> end = facets.end(grain, place, direction);
+                                              float reach, const Facets& facets) const {
+  std::optional<End> end = facets.end(grain, place, direction);
+  if (end && end->distance >= reach) end = End{reach, false};
   if (end && end->wall) return std::nullopt;
-  return WayOut{end ? place + end->distance * direction : place, left_across_seen(grain, end)};
+  const float distance = end ? end->distance : 0.0F;
+  return WayOut{place + distance * direction, distance, left_across_seen(grain, end)};
 }
 
 bool Gather::is_transparent(std::uint32_t grain) const {
@@ -339,24 +346,29 @@ Gather::All Gather::walked_in(const SeenFacet& seen, const std::optional<End>& a
     const bool followed_out = transparent && asking.size() <= most_followed_out;
     const auto ask = [&](const glm::vec3& at, const glm::vec3& direction, const glm::vec3& weight) {
       for (Asking& of : asking) {
+        of.move_to(at);
         const glm::vec3 light = of.scattered(static_cast<float>(optics.g), direction, weight);
         if (!followed_out)
-          of.ask(light, at, random);
-        else if (const std::optional<WayOut> out = way_out(seen.grain, at, of.to_light(), facets))
-          of.ask(out->left * light, out->place, random);
+          of.ask(light, at, 0.0F, random);
+        else if (const std::optional<WayOut> out = way_out(seen.grain, at, of.to_light(), of.reach(), facets))
+          of.ask(out->left * light, out->place, out->distance, random);
       }
     };
     Hero carried = hero;
     const std::optional<Passage> passage = walk_medium(optics, grain.radius_of_kind(), seen, across, facets, random,
                                                        transparent ? Scattered(ask) : Scattered(), &carried);
     for (Asking& of : asking) {
-      if (passage && !transparent) of.ask(of.reflected(passage->normal, passage->weight), passage->place, random);
+      if (passage && !transparent) {
+        of.move_to(passage->place);
+        of.ask(of.reflected(passage->normal, passage->weight), passage->place, 0.0F, random);
+      }
       if (!of.any()) continue;
-      std::optional<WayOut> out = WayOut{of.place(), glm::vec3(1.0F)};
-      if (transparent && !followed_out) out = way_out(seen.grain, of.place(), of.to_light(), facets);
+      const Asking::Chosen& from = of.chosen();
+      std::optional<WayOut> out = WayOut{from.place, 0.0F, glm::vec3(1.0F)};
+      if (transparent && !followed_out) out = way_out(seen.grain, from.place, from.to_light, from.reach, facets);
       if (!out) continue;
-      all.scattered +=
-          of.asked() * out->left * passed_between(seen.grain, out->place, of.to_light(), of.reach(), facets);
+      all.scattered += of.asked() * out->left *
+                       passed_between(seen.grain, out->place, from.to_light, from.reach - out->distance, facets);
     }
     if (!passage) continue;
     Ray ray{passage->place, passage->direction, passage->weight};

@@ -257,10 +257,11 @@ class Gather {
   /// Straight to a light from a place in the grain that is seen.
   struct WayOut {
     glm::vec3 place;  ///< of the surface
+    float distance;   ///< to there
     glm::vec3 left;   ///< of the light
   };
-  /// Nothing, where a wall is in the way.
-  std::optional<WayOut> way_out(std::uint32_t grain, const glm::vec3& place, const glm::vec3& direction,
+  /// Nothing, where a wall is in the way. To the light itself, where that is nearer than the surface.
+  std::optional<WayOut> way_out(std::uint32_t grain, const glm::vec3& place, const glm::vec3& direction, float reach,
                                 const Facets& facets) const;
   /// And on through others, on the way from a grain's surface to a light.
   glm::vec3 passed_between(std::uint32_t grain, glm::vec3 place, const glm::vec3& to_light, float reach,

@@ -90,16 +90,18 @@ void Gather::learn(std::uint32_t number, const Facets& facets, int walks, transp
     const SeenFacet seen{number, grain.middle + surface->distance * outwards, outwards, -inwards};
     const std::optional<End> across = facets.end(number, seen.place, inwards);
     if (!across) continue;
-    const std::vector<Asking> asking = this->asking(number, random);
+    std::vector<Asking> asking = this->asking(number, random);
     scatterings.clear();
     const auto told = [&](const glm::vec3& at, const glm::vec3& direction, const glm::vec3& weight) {
       glm::vec3 lit(0.0F);
       // What lights do at the first is seen without it.
       if (!scatterings.empty())
-        for (const Asking& of : asking)
-          if (const std::optional<WayOut> out = way_out(number, at, of.to_light(), facets))
+        for (Asking& of : asking) {
+          of.move_to(at);
+          if (const std::optional<WayOut> out = way_out(number, at, of.to_light(), of.reach(), facets))
             lit += out->left * of.scattered(static_cast<float>(optics.g), direction, weight) *
-                   passed_between(number, out->place, of.to_light(), of.reach(), facets);
+                   passed_between(number, out->place, of.to_light(), of.reach() - out->distance, facets);
+        }
       scatterings.push_back({(at - grain.middle) / grain.radius, weight, lit});
     };
     glm::vec3 found(0.0F);
@@ -139,13 +141,17 @@ Gather::All Gather::seen_in(const SeenFacet& seen, const End& across, const Inne
     const float distance = chord.distance((static_cast<float>(i) + random.uniform()) / lit_places, channel);
     const glm::vec3 at = seen.place - distance * seen.towards;
     const glm::vec3 weight = albedo * chord.met(distance);
-    for (Asking& of : asking)
-      if (const std::optional<WayOut> out = way_out(seen.grain, at, of.to_light(), facets))
-        of.ask(out->left * of.scattered(static_cast<float>(optics.g), -seen.towards, weight), out->place, random);
+    for (Asking& of : asking) {
+      of.move_to(at);
+      if (const std::optional<WayOut> out = way_out(seen.grain, at, of.to_light(), of.reach(), facets))
+        of.ask(out->left * of.scattered(static_cast<float>(optics.g), -seen.towards, weight), out->place, out->distance,
+               random);
+    }
   }
   for (const Asking& of : asking)
     if (of.any())
-      all.scattered += of.asked() * passed_between(seen.grain, of.place(), of.to_light(), of.reach(), facets);
+      all.scattered +=
+          of.asked() * passed_between(seen.grain, of.chosen().place, of.chosen().to_light, of.chosen().reach, facets);
   all.scattered /= static_cast<float>(lit_places);
   return all;
 }

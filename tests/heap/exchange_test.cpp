@@ -31,35 +31,78 @@ TEST(Exchange, KeepsAWhiteFurnaceEven) {
   }
 }
 
-// Of grains that absorb nothing, under a sun alone: what comes out over what came in, by power over that of the sun in
-// a disk that hides the heap.
+/// A disk about a lattice that hides it from everywhere, and places of it seen along a direction.
+class Disk {
+ public:
+  explicit Disk(int side)
+      : middle_(2.05F * 0.5F * static_cast<float>(side - 1)), reach_(1.05F * (std::sqrt(3.0F) * middle_.x + 1.0F)) {}
+
+  Ray ray_along(const glm::vec3& direction, const std::array<float, 5>& point) const {
+    const glm::vec3 on_disk(std::sqrt(point[0]), 0.0F, -2.0F);
+    return {middle_ + reach_ * (TurnedFrame(direction, point[1]) * on_disk), direction, glm::vec3(1.0F)};
+  }
+
+  float farthest() const { return 4.0F * reach_; }
+  double area() const { return std::numbers::pi * static_cast<double>(reach_ * reach_); }
+
+ private:
+  glm::vec3 middle_;
+  float reach_;
+};
+
+constexpr int rays_out = 1 << 18;
+
+/// What all grains of a lattice send out of it, as power.
+double power_out(const Space& space, const HeapLight& light, const Disk& disk) {
+  transport::Random random(7, 0);
+  const Spread spread(random);
+  double sum = 0.0;
+  for (int i = 0; i < rays_out; ++i) {
+    const std::array<float, 5> point = spread.point(i);
+    Ray ray = disk.ray_along(transport::isotropic(point[2], point[3]), point);
+    sum += 4.0 * std::numbers::pi * static_cast<double>(space.seen_along(ray, light.sent, random).r);
+  }
+  return sum / rays_out * disk.area();
+}
+
+// Of grains that absorb nothing, under a sun alone: what comes out over what came in.
 double let_out(int side, const Optics& optics, const Quality& quality, const transport::Effort& effort = {}) {
   Heap heap = lattice(side, optics);
   heap.lights.emplace_back(scene::DirectionalLight{{0.0, 0.6, 0.8}, glm::dvec3(1.0)});
   const HeapLight light = solve_exchange(heap, quality, {}, effort);
   const Space space(heap.grains, light.kinds, light.seats);
-  const glm::vec3 middle(2.05F * 0.5F * static_cast<float>(side - 1));
-  const float reach = 1.05F * (std::sqrt(3.0F) * middle.x + 1.0F);
+  const Disk disk(side);
   transport::Random random(7, 0);
   const Spread spread(random);
-  // From a place on a disk about the middle, seen along `direction`.
-  const auto ray_along = [&](const glm::vec3& direction, const std::array<float, 5>& point) {
-    const glm::vec3 on_disk(std::sqrt(point[0]), 0.0F, -2.0F);
-    return Ray{middle + reach * (TurnedFrame(direction, point[1]) * on_disk), direction, glm::vec3(1.0F)};
-  };
-  constexpr int rays = 1 << 18;
-  double came_in = 0.0;
-  double came_out = 0.0;
-  for (int i = 0; i < rays; ++i) {
-    const std::array<float, 5> point = spread.point(i);
-    Ray from_sun = ray_along({0.0F, -0.6F, -0.8F}, point);
-    came_in += 1.0 - static_cast<double>(space.passed(from_sun, 4.0F * reach).r);
-    Ray from_viewer = ray_along(transport::isotropic(point[2], point[3]), point);
-    const glm::vec3 radiance = space.seen_along(from_viewer, light.sent, random);
-    came_out += 4.0 * std::numbers::pi * static_cast<double>(radiance.r);
+  double met = 0.0;
+  for (int i = 0; i < rays_out; ++i) {
+    Ray from_sun = disk.ray_along({0.0F, -0.6F, -0.8F}, spread.point(i));
+    met += 1.0 - static_cast<double>(space.passed(from_sun, disk.farthest()).r);
   }
-  EXPECT_GT(came_in, 0.05 * rays);
-  return came_out / came_in;
+  EXPECT_GT(met, 0.05 * rays_out);
+  return power_out(space, light, disk) / (met / rays_out * disk.area());
+}
+
+// The same under a lamp amid eight grains, .77 radii from their surfaces.
+double let_out_of_a_lamp(const Optics& optics) {
+  constexpr int side = 6;
+  Heap heap = lattice(side, optics);
+  const glm::vec3 place(2.05F * 2.5F);
+  heap.lights.emplace_back(scene::PointLight{glm::dvec3(place), glm::dvec3(1.0)});
+  Quality quality;
+  quality.rays = quality.light_rays = 8192;
+  const HeapLight light = solve_exchange(heap, quality, {}, {});
+  const Space space(heap.grains, light.kinds, light.seats);
+  const Disk disk(side);
+  transport::Random random(7, 1);
+  double met = 0.0;
+  for (int i = 0; i < rays_out; ++i) {
+    const float u = random.uniform();
+    Ray ray{place, transport::isotropic(u, random.uniform()), glm::vec3(1.0F)};
+    met += 1.0 - static_cast<double>(space.passed(ray, disk.farthest()).r);
+  }
+  EXPECT_GT(met, 0.5 * rays_out);
+  return power_out(space, light, disk) / (4.0 * std::numbers::pi * met / rays_out);
 }
 
 TEST(Exchange, LetsAsMuchLightOutAsCameIn) {
@@ -67,6 +110,12 @@ TEST(Exchange, LetsAsMuchLightOutAsCameIn) {
   quality.rays = quality.light_rays = 1024;  // 216 grains' noise is none of this
   for (const Optics& optics : {medium(0.5, 1.0), medium(3.0, 1.0), medium(10.0, 1.0), lambert(1.0)})
     EXPECT_NEAR(let_out(6, optics, quality), 1.0, 0.01) << optics.sigma_t.r;
+}
+
+TEST(Exchange, LetsAsMuchLightOutAsALampAmidGrainsSends) {
+  // As the grains' middles have it, .92 of it came out.
+  for (const Optics& optics : {medium(0.5, 1.0), medium(3.0, 1.0), lambert(1.0)})
+    EXPECT_NEAR(let_out_of_a_lamp(optics), 1.0, 0.015) << optics.sigma_t.r;
 }
 
 TEST(Exchange, LetsAsMuchLightOutAsCameInWhereDeepGrainsShareTheirNumbers) {
