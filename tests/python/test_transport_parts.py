@@ -5,7 +5,7 @@ import numpy
 import pytest
 
 SIZE = 48
-THIN = 0.02  # mean free paths a unit of length: light is scattered once at most
+THIN = 0.005  # mean free paths a unit of length: light is scattered once at most
 
 
 def boxes(*middles):
@@ -21,7 +21,13 @@ def boxes(*middles):
                        numpy.arange(len(places), dtype=numpy.uint32).reshape(-1, 3))
 
 
-def middle_of(mesh, g, **medium):
+@pytest.fixture(scope="module")
+def held():
+    """Views, which hold on to what rays found in their grains: it serves each g."""
+    return []
+
+
+def middle_of(held, mesh, g, **medium):
     """What is seen in the middle of the picture, far from edges; lit from the side."""
     material = native.Material(model="transport", sigma_s=(THIN,) * 3, sigma_a=(0.0,) * 3, g=g, specular=False,
                                **medium)
@@ -31,16 +37,17 @@ def middle_of(mesh, g, **medium):
     view.set_camera(native.Camera.look_at((0.0, 0.0, 100.0), (0.0,) * 3, (0.0, 1.0, 0.0), 0.8))
     view.render(256 if g else 16)
     assert not view.warnings
+    held.append(view)
     inner = slice(SIZE // 2 - 12, SIZE // 2 + 12)
     return float(view.read()[inner, inner, 0].mean())
 
 
 @pytest.mark.parametrize("medium", [{"boundary": "index_matched"}, {"eta": 1.3}], ids=["matched", "refracting"])
 @pytest.mark.parametrize("g", [0.0, 0.5])
-def test_a_part_behind_another_is_seen_through_it(medium, g):
+def test_a_part_behind_another_is_seen_through_it(held, medium, g):
     """The further part sends as much as the nearer one, and most of it crosses that: of its light inside a face lets
     out 1 - .017 (eta 1.3), and the nearer part's two let through as much of it each."""
     apart = 2.5  # farther than light that is refracted through one at this slant meets the other
-    alone = middle_of(boxes((0.0, 0.0, 0.0)), g, **medium)
-    both = middle_of(boxes((0.0, 0.0, 0.5 * apart), (0.0, 0.0, -0.5 * apart)), g, **medium)
+    alone = middle_of(held, boxes((0.0, 0.0, 0.0)), g, **medium)
+    both = middle_of(held, boxes((0.0, 0.0, 0.5 * apart), (0.0, 0.0, -0.5 * apart)), g, **medium)
     assert both / alone == pytest.approx(1.96, abs=0.1)
