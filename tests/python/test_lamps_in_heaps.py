@@ -20,12 +20,12 @@ def picture(grain, lamp, exchange, samples=16):
     return view.read()[..., 1]
 
 
-# Albedo .9, three mean free paths to the radius, as mesograin-referee has its mesh from 4096 paths. With the lamp where
-# each grain's middle has it these were 54, 64 and 78 % off in the top, 41, 50 and 75 deeper.
+# Albedo .9, three mean free paths to the radius, as mesograin-referee has its mesh from 1536 paths (noise 1.5 %);
+# 5.6, 4.9 and 5.4 % off, most of it noise. With the lamp where each grain's middle has it these were 54, 64 and 78.
 @pytest.mark.parametrize("place, file, exchange, error", [
-    (IN_THE_TOP, "lamp_in_the_top.csv", "heaps", 0.06), (IN_THE_TOP, "lamp_in_the_top.csv", "gathered", 0.05),
-    (IN_THE_TOP, "lamp_in_the_top.csv", "path_traced", 0.06), (DEEPER, "lamp_deeper.csv", "heaps", 0.08),
-    (DEEPER, "lamp_deeper.csv", "gathered", 0.05)])
+    (IN_THE_TOP, "lamp_in_the_top.csv", "heaps", 0.07), (IN_THE_TOP, "lamp_in_the_top.csv", "gathered", 0.06),
+    (IN_THE_TOP, "lamp_in_the_top.csv", "path_traced", 0.07), (DEEPER, "lamp_deeper.csv", "heaps", 0.1),
+    (DEEPER, "lamp_deeper.csv", "gathered", 0.07)])
 def test_a_lamp_in_a_heap_is_what_photons_have(place, file, exchange, error):
     truth = numpy.loadtxt(DATA / file, delimiter=",")
     grain = native.Material(model="model_2", boundary="index_matched", sigma_s=(2.7,) * 3, sigma_a=(0.3,) * 3)
