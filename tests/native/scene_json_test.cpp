@@ -207,7 +207,8 @@ TEST(SceneJson, AMaterialTellsAllItsParameters) {
   EXPECT_EQ(json["boundary"], "dielectric");
   EXPECT_EQ(json["sigma_s"], (Json{0.9, 0.8, 0.7}));
   EXPECT_FALSE(json["specular"].get<bool>());
-  EXPECT_EQ(json.size(), 12U);
+  EXPECT_EQ(json["reflectance_to_others"], (Json{0.0, 0.0, 0.0}));
+  EXPECT_EQ(json.size(), 13U);
 }
 
 }  // namespace
