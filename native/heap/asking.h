@@ -69,8 +69,6 @@ class Asking {
   glm::vec3 asked() const { return all_ * colour_; }
 
  private:
-  static constexpr float near_radii = 40.0F;
-
   struct Light {
     glm::vec3 to_light;
     glm::vec3 irradiance;

@@ -29,7 +29,6 @@ struct Look {
 
 /// Whether a light is so near that it is another for each place of the grain. One inside is told as if it were not.
 bool is_near(const lights::LightDraw& light, const Grain& grain) {
-  constexpr float near_radii = 40.0F;
   const auto radii = static_cast<float>(light.reach / static_cast<double>(grain.radius));
   return radii > 1.0F && radii < near_radii;
 }

@@ -13,6 +13,9 @@
 
 namespace mesograin::heap {
 
+/// Within so many of a grain's radii a lamp is another for each place of the grain.
+inline constexpr float near_radii = 40.0F;
+
 /// A direction of light at a place of the world.
 using Draw = std::function<lights::LightDraw(const glm::dvec3& place, const glm::dvec2& random)>;
 
