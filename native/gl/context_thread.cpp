@@ -23,6 +23,16 @@ std::unique_ptr<ContextThread>& instance_slot() {
   return *slot;
 }
 
+std::mutex& beside_mutex() {
+  static auto* mutex = new std::mutex;
+  return *mutex;
+}
+
+std::shared_ptr<ContextThread>& beside_slot() {
+  static auto* slot = new std::shared_ptr<ContextThread>;
+  return *slot;
+}
+
 // Asked by work on the thread, which must not wait for shut_down(), which waits for it.
 thread_local ContextThread* own = nullptr;
 
@@ -55,9 +65,23 @@ ContextThread& ContextThread::instance() {
   return *slot;
 }
 
+std::shared_ptr<ContextThread> ContextThread::beside() {
+  const std::lock_guard lock(beside_mutex());
+  // At the process' end nothing would shut it down any more.
+  if (!running()) throw Error("The renderer has been shut down; start it again before asking for more.");
+  std::shared_ptr<ContextThread>& slot = beside_slot();
+  if (!slot) slot.reset(new ContextThread);
+  return slot;
+}
+
 void ContextThread::shut_down() {
-  const std::lock_guard lock(instance_mutex());
-  instance_slot().reset();
+  {
+    const std::lock_guard lock(instance_mutex());
+    instance_slot().reset();
+  }
+  const std::lock_guard lock(beside_mutex());
+  if (beside_slot()) beside_slot()->end();
+  beside_slot().reset();
 }
 
 bool ContextThread::running() {
@@ -77,7 +101,9 @@ ContextThread::ContextThread() {
   }
 }
 
-ContextThread::~ContextThread() {
+ContextThread::~ContextThread() { end(); }
+
+void ContextThread::end() {
   {
     const std::lock_guard lock(mutex_);
     stopping_ = true;

@@ -1,4 +1,5 @@
-// The one thread that owns the one GL context for life. All GL work is posted to it; nothing else may call GL.
+// The thread that owns the GL context for life. All GL work is posted to it, but for what has a context beside it;
+// nothing else may call GL.
 //
 // Blender's own context is current on its main thread, where a second one cannot be made current; a thread of our own
 // leaves it unharmed.
@@ -30,7 +31,12 @@ class ContextThread {
   /// itself it is that thread, while it is being shut down as well.
   static ContextThread& instance();
 
-  /// Ends the thread and destroys the context, so that the driver unloads in order; a later instance() starts anew.
+  /// Another, whose context shares nothing with that one's, for work on the device that neither waits for drawing nor
+  /// holds it up. Starts on first use. Throws Error if there is no instance() or no context can be had.
+  static std::shared_ptr<ContextThread> beside();
+
+  /// Ends both threads, whoever holds one, and destroys their contexts, so that the driver unloads in order; a later
+  /// instance() starts anew.
   static void shut_down();
 
   /// True while a thread is running; a destructor that runs after shut_down() has nothing left to free.
@@ -129,6 +135,9 @@ class ContextThread {
     }
     wake_.notify_one();
   }
+
+  /// Once all is done that was asked for before.
+  void end();
 
   /// Throws Error after shut_down().
   void require_running() const;

@@ -79,6 +79,7 @@ struct HeapLight {
   std::size_t links = 0;
   int steps = 0;
   float residual = 0.0F;
+  bool summed_on_device = false;  ///< as Solved has it
   double milliseconds = 0.0;
   Parts parts;  ///< since its solver began
 };

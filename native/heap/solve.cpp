@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <exception>
 #include <glm/common.hpp>
+#include <memory>
 #include <utility>
 
 namespace mesograin::heap {
@@ -52,6 +54,43 @@ glm::dvec3 ratio(const glm::dvec3& over, const glm::dvec3& under) {
   return result;
 }
 
+/// G.
+class Gathering {
+ public:
+  Gathering(const Links& links, const Change* change, const MakeSums& make_sums, const transport::Effort& effort)
+      : links_(links), change_(change), effort_(effort) {
+    if (!make_sums) return;
+    try {
+      sums_ = make_sums(links, change, effort);
+    } catch (const std::exception&) { /* the processor can */
+    }
+  }
+
+  void operator()(const Field& sent, Field& answer) {
+    if (sums_ && take_sums(sent, answer))
+      answer = links_.seats->told(std::move(answer));
+    else
+      links_.gather(sent, answer, effort_, change_);
+  }
+
+  bool by_sums() const { return sums_ != nullptr; }
+
+ private:
+  bool take_sums(const Field& sent, Field& answer) {
+    try {
+      sums_->gather(sent, answer, effort_);
+    } catch (const std::exception&) {
+      sums_.reset();
+    }
+    return by_sums();
+  }
+
+  const Links& links_;
+  const Change* change_;
+  const transport::Effort& effort_;
+  std::unique_ptr<Sums> sums_;
+};
+
 /// What is left falls by about as much with each step.
 double share_done(float begun, float left, float enough) {
   return std::clamp(std::log(begun / std::max(left, enough)) / std::log(begun / enough), 0.0F, 1.0F);
@@ -60,15 +99,16 @@ double share_done(float begun, float left, float enough) {
 }  // namespace
 
 Solved solve(const Links& links, const Change* change, const Field& direct, Field guess, const Goal& goal,
-             const transport::Effort& effort) {
+             const transport::Effort& effort, const MakeSums& make_sums) {
   Solved solved;
   if (guess.size() != direct.size()) guess = direct;
   solved.sent = std::move(guess);
   transport::Effort quiet = effort;
   quiet.progress = {};
+  Gathering gather(links, change, make_sums, quiet);
   // a - G a
   const auto apply = [&](const Field& of, Field& result) {
-    links.gather(of, result, quiet, change);
+    gather(of, result);
     scale_and_add(result, glm::dvec3(-1.0), of);
   };
   const glm::dvec3 size = product(direct, direct);
@@ -120,6 +160,7 @@ Solved solve(const Links& links, const Change* change, const Field& direct, Fiel
     solved.residual = left();
   }
   solved.left = std::move(residual);
+  solved.summed_on_device = gather.by_sums();
   return solved;
 }
 

@@ -375,7 +375,7 @@ void Solver::show_seen(const Heap& heap, HeapLight& light, const transport::Effo
 }
 
 HeapLight Solver::solve(const std::shared_ptr<const Heap>& shared, const Quality& given,
-                        const transport::Effort& effort) {
+                        const transport::Effort& effort, const MakeSums& make_sums) {
   const Heap& heap = *shared;
   const auto started = std::chrono::steady_clock::now();
   const std::size_t renewed_before = parts_.renewed;
@@ -392,9 +392,9 @@ HeapLight Solver::solve(const std::shared_ptr<const Heap>& shared, const Quality
   const bool few_moved = parts_.renewed != renewed_before && left_.size() == first.size();
   constexpr float left_of_moves = 0.02F;
   if (few_moved) add(first, left_, glm::vec3(-1.0F));
-  Solved solved =
-      heap::solve(traced_->ways.links, change ? &*change : nullptr, first, guess(),
-                  {quality.tolerance, few_moved ? left_of_moves : 1.0F}, transport::part_of(effort, 0.7, 0.9));
+  Solved solved = heap::solve(traced_->ways.links, change ? &*change : nullptr, first, guess(),
+                              {quality.tolerance, few_moved ? left_of_moves : 1.0F},
+                              transport::part_of(effort, 0.7, 0.9), make_sums);
   if (few_moved) add(solved.left, left_, glm::vec3(1.0F));
   left_ = std::move(solved.left);
   ++parts_.solutions;
@@ -432,6 +432,7 @@ HeapLight Solver::solve(const std::shared_ptr<const Heap>& shared, const Quality
   light.links = traced_->ways.links.count();
   light.steps = solved.steps;
   light.residual = solved.residual;
+  light.summed_on_device = solved.summed_on_device;
   light.parts = parts_;
   const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - started;
   light.milliseconds = took.count();

@@ -9,6 +9,7 @@
 
 #include "heap/exchange.h"
 #include "heap/links.h"
+#include "heap/sums.h"
 
 namespace mesograin::heap {
 
@@ -20,12 +21,14 @@ class Solver {
   /// `sent` may be a solution for other lights, materials or places.
   explicit Solver(Field sent) : sent_(std::move(sent)) {}
 
-  /// Throws transport::Stopped; what was found until then is kept.
-  HeapLight solve(const std::shared_ptr<const Heap>& shared, const Quality& quality, const transport::Effort& effort);
+  /// Throws transport::Stopped; what was found until then is kept. `make_sums`: as for heap::solve().
+  HeapLight solve(const std::shared_ptr<const Heap>& shared, const Quality& quality, const transport::Effort& effort,
+                  const MakeSums& make_sums = {});
 
   /// The same of a copy.
-  HeapLight solve(const Heap& heap, const Quality& quality, const transport::Effort& effort) {
-    return solve(std::make_shared<const Heap>(heap), quality, effort);
+  HeapLight solve(const Heap& heap, const Quality& quality, const transport::Effort& effort,
+                  const MakeSums& make_sums = {}) {
+    return solve(std::make_shared<const Heap>(heap), quality, effort, make_sums);
   }
 
  private:

@@ -48,7 +48,8 @@ Solvers& Solvers::instance() {
   return solvers;
 }
 
-std::shared_ptr<const Solving> Solvers::ask(Heap heap, const std::shared_ptr<const Solving>& before) {
+std::shared_ptr<const Solving> Solvers::ask(Heap heap, const std::shared_ptr<const Solving>& before,
+                                            MakeSums make_sums) {
   const std::lock_guard lock(mutex_);
   std::erase_if(held_, [](const std::weak_ptr<Solving>& one) { return one.expired(); });
   for (const std::weak_ptr<Solving>& one : held_)
@@ -58,7 +59,8 @@ std::shared_ptr<const Solving> Solvers::ask(Heap heap, const std::shared_ptr<con
   if (before && alike(before->heap(), heap)) known = before->news();
   known.final = false;
   known.failure.clear();
-  auto solving = std::make_shared<Solving>(std::make_shared<const Heap>(std::move(heap)), line, std::move(known));
+  auto solving = std::make_shared<Solving>(std::make_shared<const Heap>(std::move(heap)), line, std::move(known),
+                                           std::move(make_sums));
   line->latest = solving;
   held_.push_back(solving);
   waiting_.add(solving);
@@ -104,14 +106,16 @@ void Solvers::work(const std::weak_ptr<Solving>& of, const std::stop_token& stop
   std::atomic<bool> given_up{false};
   std::shared_ptr<const Heap> heap;
   std::shared_ptr<Line> line;
+  MakeSums make_sums;
   if (const std::shared_ptr<Solving> solving = of.lock()) {
     heap = solving->heap_;
     line = solving->line_;
+    make_sums = solving->make_sums_;
   } else {
     return;
   }
   const auto solve = [&](const Quality& quality, const transport::Effort& part, bool final) {
-    auto light = std::make_shared<const HeapLight>(line->solver.solve(heap, quality, part));
+    auto light = std::make_shared<const HeapLight>(line->solver.solve(heap, quality, part, make_sums));
     tell(of, *line, {++told_, std::move(light), heap, final});
   };
   bool coarse = true;  // what is found now

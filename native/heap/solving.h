@@ -34,8 +34,8 @@ struct Line {
 /// One heap's, for as long as somebody holds it. May be asked from any thread.
 class Solving {
  public:
-  Solving(std::shared_ptr<const Heap> heap, std::shared_ptr<Line> line, News before)
-      : heap_(std::move(heap)), line_(std::move(line)), news_(std::move(before)) {}
+  Solving(std::shared_ptr<const Heap> heap, std::shared_ptr<Line> line, News before, MakeSums make_sums)
+      : heap_(std::move(heap)), line_(std::move(line)), make_sums_(std::move(make_sums)), news_(std::move(before)) {}
 
   const Heap& heap() const { return *heap_; }
   const std::shared_ptr<const Heap>& shared_heap() const { return heap_; }
@@ -58,6 +58,7 @@ class Solving {
 
   const std::shared_ptr<const Heap> heap_;
   const std::shared_ptr<Line> line_;
+  const MakeSums make_sums_;
   mutable std::mutex mutex_;
   mutable std::condition_variable told_;
   News news_;
@@ -77,8 +78,9 @@ class Solvers {
   /// `before`: what was asked for in its place before, with which it may have much in common; or null. What changes
   /// faster than it is solved, a slider that is dragged, a heap that falls, has the light of a moment ago: a coarse
   /// answer that is under way is finished for what was asked for since, if that has about as many grains; all else
-  /// that nobody holds any more is given up.
-  std::shared_ptr<const Solving> ask(Heap heap, const std::shared_ptr<const Solving>& before);
+  /// that nobody holds any more is given up. `make_sums`: as for heap::solve(), called on the thread; of a heap that
+  /// somebody holds already, those asked for then are taken.
+  std::shared_ptr<const Solving> ask(Heap heap, const std::shared_ptr<const Solving>& before, MakeSums make_sums = {});
 
  private:
   void work(const std::weak_ptr<Solving>& of, const std::stop_token& stop);

@@ -230,6 +230,7 @@ py::dict of_exchange(const render::ExchangeStatistics& exchange) {
   result["links"] = exchange.links;
   result["steps"] = exchange.steps;
   result["residual"] = exchange.residual;
+  result["summed_on_device"] = exchange.summed_on_device;
   result["milliseconds"] = exchange.milliseconds;
   result["final"] = exchange.final;
   py::dict found;
@@ -320,6 +321,14 @@ void set_visibility(render::View& view, const std::string& by) {
     throw Error("Visibility must be one of {}; got '{}'.", fmt::join(render::visibility_names, ", "), by);
   const py::gil_scoped_release release;
   view.set_visibility(static_cast<render::Visibility>(found - render::visibility_names.begin()));
+}
+
+void set_summing(render::View& view, const std::string& by) {
+  const auto found = std::find(render::summing_names.begin(), render::summing_names.end(), by);
+  if (found == render::summing_names.end())
+    throw Error("Summing must be one of {}; got '{}'.", fmt::join(render::summing_names, ", "), by);
+  const py::gil_scoped_release release;
+  view.set_summing(static_cast<render::Summing>(found - render::summing_names.begin()));
 }
 
 py::dict uv_use(render::View& view) {
@@ -425,6 +434,10 @@ void bind_view(py::module_& module) {
            "the device's where there is a GPU, else all cores'. Restarts the accumulation. Raises Error where rays "
            "cannot "
            "be cast.")
+      .def("set_summing", &set_summing, py::arg("by"),
+           "Who sums over the ways of light between grains, in scenes that are set from now on: the 'processor' on all "
+           "cores, the 'device', as far as it can, or 'automatic', the device where there is a GPU and a million ways "
+           "or more.")
       .def("set_camera", &render::View::set_camera, py::arg("camera"), Release(),
            "Restarts the accumulation; sends nothing.")
       .def(
@@ -505,7 +518,8 @@ void bind_view(py::module_& module) {
           "device drew for the camera, 'cast': that rays were cast at, 'seen': of those, that rays met, 'exchange': "
           "of light from grain to grain, None where there is none: {'grains': that send light to each other, "
           "'others': objects that do not, 'kinds': of grains, 'links': ways of light between them, 'steps' and "
-          "'residual' of the solution, 'milliseconds' that it took, 'final': no better one is under way, 'found': how "
+          "'residual' of the solution, 'summed_on_device': whether the device took its sums, 'milliseconds' that it "
+          "took, 'final': no better one is under way, 'found': how "
           "often its 'tables', 'links', 'sources' and 'solutions' were found so far, 'balls': whether all grains are "
           "that round, 'gathered': whether rays of the last sample found more of some grains that are seen, 'means': "
           "how "

@@ -311,7 +311,7 @@ void Exchange::set(DeviceCache& cache, const Content& content, const scene::Scen
     count_means();
     return;
   }
-  solving_ = heap::Solvers::instance().ask(std::move(heap), solving_);
+  solving_ = heap::Solvers::instance().ask(std::move(heap), solving_, make_sums(summing_));
   roles_ = std::move(gathered.roles);
   balls_ = gathered.balls;
   if (regrouped) gather_.reset();
@@ -479,6 +479,7 @@ ExchangeStatistics Exchange::statistics() const {
   result.links = light.links;
   result.steps = light.steps;
   result.residual = light.residual;
+  result.summed_on_device = light.summed_on_device;
   result.milliseconds = light.milliseconds;
   result.parts = light.parts;
   return result;

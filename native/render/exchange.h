@@ -12,6 +12,7 @@
 #include "heap/gather.h"
 #include "heap/solving.h"
 #include "render/content.h"
+#include "render/device_sums.h"
 #include "render/told_light.h"
 #include "scene/scene.h"
 
@@ -41,17 +42,18 @@ struct Means {
 
 /// What is drawn of light between grains.
 struct ExchangeStatistics {
-  std::size_t grains = 0;     ///< that send light to each other
-  std::size_t others = 0;     ///< objects that do not
-  std::size_t kinds = 0;      ///< of grains, by material and size
-  std::size_t links = 0;      ///< ways of light between grains
-  int steps = 0;              ///< of the solution
-  float residual = 0.0F;      ///< that they left, of what lights do
-  double milliseconds = 0.0;  ///< that the solution took
-  bool final = true;          ///< no better one is under way
-  heap::Parts parts;          ///< found anew so far
-  bool balls = true;          ///< all grains are about as round as a sphere
-  bool gathered = false;      ///< rays of the last sample found more of what is seen of some grains than is solved
+  std::size_t grains = 0;         ///< that send light to each other
+  std::size_t others = 0;         ///< objects that do not
+  std::size_t kinds = 0;          ///< of grains, by material and size
+  std::size_t links = 0;          ///< ways of light between grains
+  int steps = 0;                  ///< of the solution
+  float residual = 0.0F;          ///< that they left, of what lights do
+  bool summed_on_device = false;  ///< all their sums over links
+  double milliseconds = 0.0;      ///< that the solution took
+  bool final = true;              ///< no better one is under way
+  heap::Parts parts;              ///< found anew so far
+  bool balls = true;              ///< all grains are about as round as a sphere
+  bool gathered = false;          ///< rays of the last sample found more of what is seen of some grains than is solved
   Means means;
   std::vector<Stuff> stuff;
 };
@@ -65,6 +67,9 @@ class Exchange {
   /// Takes what a view draws, and begins to solve if anything has changed that light depends on. Until more is known,
   /// what was known before is drawn.
   void set(DeviceCache& cache, const Content& content, const scene::Scene& scene);
+
+  /// Who sums, where something is solved from now on.
+  void set_summing(Summing by) { summing_ = by; }
 
   /// Whether any light goes from grain to grain.
   bool any() const { return solving_ != nullptr && solving_->heap().exchanges; }
@@ -123,6 +128,7 @@ class Exchange {
   void find_whole();
   void count_means();
 
+  Summing summing_ = Summing::automatic;
   bool balls_ = true;
   std::vector<RoleInHeap> roles_;
   bool gathers_ = false;

@@ -81,6 +81,9 @@ class Frame {
   /// Throws Error where rays are asked for and cannot be cast.
   void set_visibility(Visibility visibility);
 
+  /// Of light between grains, as it is solved from now on.
+  void set_summing(Summing by) { exchange_.set_summing(by); }
+
   /// Adds one sample to the sum. `go_on` is asked between its parts; where it says no, nothing is added, and the answer
   /// is false.
   /// `hurried`: it is shown alone, to someone who waits for it: where the device follows rays itself, rays on this side

@@ -245,6 +245,10 @@ void View::set_visibility(Visibility visibility) {
   shared_->samples = 0;
 }
 
+void View::set_summing(Summing by) {
+  change([&] { frame(id_).set_summing(by); });
+}
+
 void View::render(int samples) { start(samples).get(); }
 
 std::shared_future<double> View::start(int samples, std::shared_ptr<Picture> picture) {

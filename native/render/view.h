@@ -100,6 +100,9 @@ class View {
   /// How it is found what is seen of arrays. Restarts the accumulation. Throws Error where rays cannot be cast.
   void set_visibility(Visibility visibility);
 
+  /// Who sums where light between grains is solved from now on: of scenes that are set.
+  void set_summing(Summing by);
+
   /// Adds `samples` to the mean and returns when they are drawn.
   void render(int samples);
 

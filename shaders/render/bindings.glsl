@@ -16,3 +16,11 @@ const int MESH_CORNERS_BINDING = 12;
 const int MESH_VERTICES_BINDING = 13;
 const int PLACED_MESHES_BINDING = 14;
 const int LONE_MESHES_BINDING = 15;
+
+// Where links are summed, nothing else is bound.
+const int LINKS_BINDING = 0;
+const int FIRST_LINKS_BINDING = 1;
+const int SENT_BINDING = 2;
+const int ANSWERS_BINDING = 3;
+const int SENDERS_BINDING = 4;
+const int RECEIVED_BINDING = 5;

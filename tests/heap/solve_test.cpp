@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <glm/geometric.hpp>
 #include <memory>
+#include <stdexcept>
 #include <vector>
 
 #include "transport/random.h"
@@ -72,6 +73,53 @@ TEST(Solve, GivesItsBestWhereThereIsNoSolutionToBeHad) {
   // The best may be what it began from.
   const Solved again = solve(links, nullptr, light, from_light.sent, {1e-9F}, {});
   EXPECT_LE(again.residual, from_light.residual * 1.01F);
+}
+
+/// The processor's sums, taken as if by something else, which fails after so many.
+class Failing : public Sums {
+ public:
+  Failing(const Links& links, int good) : links_(links), left_(good) {}
+
+  void gather(const Field& sent, Field& answer, const transport::Effort& effort) override {
+    answer = {};
+    if (left_-- == 0) throw std::runtime_error("It is broken.");
+    links_.gather(sent, answer, effort);
+  }
+
+ private:
+  const Links& links_;
+  int left_;
+};
+
+TEST(Solve, IsWhatItIsWhoeverSumsAndWheneverThatFails) {
+  const Field light = ones();
+  const Links links = ring(0.9F, 0.2F);
+  const auto solved = [&](const MakeSums& make_sums) {
+    return solve(links, nullptr, light, {}, {1e-4F}, {}, make_sums);
+  };
+  const auto fails_after = [](int good) {
+    return [good](const Links& of, const Change* /*change*/, const transport::Effort& /*effort*/) {
+      return std::make_unique<Failing>(of, good);
+    };
+  };
+  const Solved right = solved({});
+  EXPECT_FALSE(right.summed_on_device);
+  const auto expect_right = [&](const MakeSums& make_sums, bool summed) {
+    const Solved found = solved(make_sums);
+    EXPECT_EQ(found.summed_on_device, summed);
+    EXPECT_EQ(found.residual, right.residual);
+    for (std::size_t i = 0; i < count; ++i) EXPECT_EQ(found.sent[i].channels, right.sent[i].channels);
+  };
+  expect_right(fails_after(-1), true);
+  for (const int good : {0, 1, 3}) expect_right(fails_after(good), false);
+  expect_right([](const Links&, const Change*, const transport::Effort&) { return nullptr; }, false);
+  expect_right([](const Links&, const Change*,
+                  const transport::Effort&) -> std::unique_ptr<Sums> { throw std::runtime_error("There is no room."); },
+               false);
+  const MakeSums stopped = [](const Links&, const Change*, const transport::Effort&) -> std::unique_ptr<Sums> {
+    throw transport::Stopped{};
+  };
+  EXPECT_THROW(solved(stopped), transport::Stopped);
 }
 
 }  // namespace

@@ -233,6 +233,10 @@ void write_passes(Writer& writer) {
   for (const std::string pass : {"cast_surfaces", "cast_shadows", "cast_shadow_map"})
     writer.write_stage(pass + ".comp", ShaderSource({"passes/" + pass + ".comp"}, {}));
   writer.write_stage("cast_surfaces+textured.comp", ShaderSource({"passes/cast_surfaces.comp"}, {"TEXTURED"}));
+  for (const std::vector<std::string>& defines :
+       std::vector<std::vector<std::string>>{{}, {"FINE", "CHANGED"}, {"SHARED"}, {"FINE", "SHARED", "CHANGED"}})
+    writer.write_stage(fmt::format("sum_links+{}.comp", fmt::join(defines, "+")),
+                       ShaderSource({"passes/sum_links.comp"}, defines));
   for (const std::string name : {"light_map", "light_map+tessellated"})
     writer.write(name, ShaderSource({"passes/light_map.vert"}, {}), ShaderSource({"passes/light_map.frag"}, {}));
   for (const std::string suffix : {".tesc", ".tese"})
