@@ -316,6 +316,22 @@ def test_it_tells_how_many_grains_share_numbers():
     assert told["modelled"] == 40 ** 3 and 0.5 < told["sharing"] / 40 ** 3 < 0.9
 
 
+def test_the_device_sums_it_where_it_is_asked_to_and_it_is_the_same():
+    def summed(by):
+        view = native.View(*MANIFEST["resolution"])
+        view.set_summing(by)
+        view.set_scene(lit(heap(white())))
+        view.set_camera(camera())
+        return green(view), view.statistics()["exchange"]["summed_on_device"]
+
+    right, by_device = summed("processor")
+    assert not by_device
+    found, by_device = summed("device")
+    assert by_device and apart(found, right) < 1e-4
+    with pytest.raises(native.Error, match="automatic, processor, device; got 'nobody'"):
+        native.View(1, 1).set_summing("nobody")
+
+
 def test_who_waits_for_the_light_sees_how_far_it_is_and_can_cancel():
     view = native.View(*MANIFEST["resolution"])
     view.set_scene(lit(heap(white(3.0))))

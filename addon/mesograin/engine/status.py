@@ -21,6 +21,7 @@ class Exchange:
     links: int
     steps: int
     residual: float
+    summed_on_device: bool
     milliseconds: float
     final: bool
     means: dict  # how many grains are shown by which, as native.View.statistics() names them
@@ -33,6 +34,7 @@ class Exchange:
         others = f", {self.others} other objects without" if self.others else ""
         return (f"light between {self.grains} grains of {self.kinds} kinds: {self.milliseconds:.0f} ms{others}",
                 f"{self.links} links, {self.steps} steps, {self.residual:.1g} left"
+                + (", summed by the device" if self.summed_on_device else "")
                 + ("" if self.final else ", being refined"), self._by_which_means())
 
     def _by_which_means(self):
