@@ -1,6 +1,7 @@
 // What the device sums of light between grains is what the processor does, and where it cannot, the processor does.
 #include "render/device_sums.h"
 
+#include <epoxy/gl.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "expect_error.h"
 #include "gl/context_thread.h"
 #include "heap/solver.h"
 #include "heaps.h"
@@ -24,6 +26,7 @@ using heap::Coefficients;
 using heap::Field;
 using heap::HeapLight;
 using heap::Quality;
+using test::expect_error;
 
 /// Of all numbers, relative.
 double apart(const Field& found, const Field& right) {
@@ -162,17 +165,25 @@ TEST_F(DeviceSumsTest, AreTheProcessorsWhereDeepGrainsShareTheirNumbers) {
 }
 
 TEST_F(DeviceSumsTest, AreTheProcessorsOfLinksThatWereFoundAtAnotherMaterial) {
-  for (const double sigma_t : {3.0, 0.0}) {
-    const auto made_of = [&](double albedo) {
-      return lit(heap::lattice(5, sigma_t > 0.0 ? heap::medium(sigma_t, albedo) : heap::lambert(albedo)));
-    };
+  // Every other grain stays what it is.
+  const auto heap_with = [](const heap::Optics& changing, const heap::Optics& other) {
+    heap::Heap heap = lit(heap::lattice(5, changing));
+    heap.grains.kinds.push_back(other);
+    for (std::size_t i = 0; i < heap.grains.grains.size(); i += 2) heap.grains.grains[i].kind = 1;
+    return heap;
+  };
+  const heap::Heap translucent = heap_with(heap::medium(3.0, 0.8), heap::medium(2.0, 0.9));
+  const heap::Heap thinner = heap_with(heap::medium(2.0, 0.9), heap::medium(2.0, 0.9));
+  const heap::Heap bright = heap_with(heap::lambert(0.8), heap::lambert(0.7));
+  const heap::Heap brighter = heap_with(heap::lambert(0.9), heap::lambert(0.7));
+  for (const auto& [before, after] : {std::pair(translucent, thinner), std::pair(bright, brighter)}) {
     Asked asked;
     heap::Solver found;
     heap::Solver right;
-    found.solve(made_of(0.8), exact(), {});
-    right.solve(made_of(0.8), exact(), {});
-    const HeapLight quick = found.solve(made_of(0.9), exact(heap::coarse), {}, compared(asked));
-    expect_alike(quick, right.solve(made_of(0.9), exact(heap::coarse), {}), asked);
+    found.solve(before, exact(), {});
+    right.solve(before, exact(), {});
+    const HeapLight quick = found.solve(after, exact(heap::coarse), {}, compared(asked));
+    expect_alike(quick, right.solve(after, exact(heap::coarse), {}), asked);
     EXPECT_TRUE(asked.changed);
   }
 }
@@ -204,6 +215,26 @@ TEST_F(DeviceSumsTest, AreNoneWhereNoGrainMeetsAnother) {
     EXPECT_FALSE(light.summed_on_device);
     EXPECT_EQ(asked.sums, 0);
   }
+}
+
+TEST_F(DeviceSumsTest, AreTheSameEachTime) {
+  const heap::Heap heap = lit(heap::lattice(5, heap::lambert(0.8)));
+  const auto sent = [&] { return heap::Solver().solve(heap, heap::coarse, {}, make_sums(Summing::device)).sent; };
+  EXPECT_EQ(apart(sent(), sent()), 0.0);
+}
+
+TEST_F(DeviceSumsTest, AreNotTakenOfMoreLinksThanAShaderReads) {
+  const auto most = gl::ContextThread::instance().run([] {
+    GLint64 bytes = 0;
+    glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &bytes);
+    return static_cast<std::size_t>(bytes);
+  });
+  if (most > std::size_t{1} << 28U) GTEST_SKIP() << "It reads all that a heap has.";
+  const heap::PackedPlace place(glm::vec3(0.0F));
+  heap::Links links;
+  links.seats = std::make_shared<const heap::Seats>(1);
+  links.of.emplace_back(most / sizeof(heap::Link) + 1, heap::Link{0, place, place, {glm::vec3(0.5F), 0}});
+  expect_error([&] { make_sums(Summing::device)(links, nullptr, {}); }, "bytes at most");
 }
 
 TEST_F(DeviceSumsTest, AreGivenUpAtOnce) {
