@@ -141,6 +141,20 @@ Gather::All Gather::look_at_all(std::uint32_t grain, const glm::vec3& place, con
   return all;
 }
 
+Gather::All Gather::look_at_told(std::uint32_t grain, const glm::vec3& normal, const glm::vec3& towards,
+                                 transport::Random& random) const {
+  All all;
+  const GrainTable& table = *space_.answering(grain).from_light;
+  const float mu = std::clamp(glm::dot(normal, towards), 0.0F, 1.0F);
+  const glm::vec3 sent = light_->seats->light_at(light_->sent, grain, table.seen_place(normal, towards), true);
+  all.scattered = table.lobe_at(mu) * glm::max(sent, 0.0F);
+  Ray through = ray_through(grain, normal, towards);
+  all.met = 1.0F - through.weight;
+  all.straight = all.others = glm::max(space_.seen_along(through, light_->sent, random), 0.0F);
+  show_what_is_behind(through, all);
+  return all;
+}
+
 void Gather::Behind::add(const SeenFacet& facet, const std::optional<End>& its_end, const glm::vec3& comes,
                          const glm::vec3& crosses, transport::Random& random) {
   const float share = mean(comes * (1.0F - crosses));

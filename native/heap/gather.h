@@ -83,6 +83,10 @@ class Gather {
   std::optional<All> look_at_all(const SeenFacet& seen, const Facets& facets, const Walks& walks,
                                  transport::Random& random) const;
 
+  /// The same by what its neighbours are told of it, lights' share and all, without a walk.
+  All look_at_told(std::uint32_t grain, const glm::vec3& normal, const glm::vec3& towards,
+                   transport::Random& random) const;
+
   /// Whether a polynomial tells the light in a grain well enough: it scatters evenly and is not so thick that light
   /// stays below its surface.
   bool tells_inner_light(std::uint32_t grain) const;

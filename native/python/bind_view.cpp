@@ -248,6 +248,11 @@ py::dict of_exchange(const render::ExchangeStatistics& exchange) {
   means["modelled"] = exchange.means.modelled;
   means["sharing"] = exchange.means.sharing;
   result["means"] = means;
+  py::dict levels;
+  levels["own_shape"] = exchange.levels.own_shape;
+  levels["ball"] = exchange.levels.ball;
+  levels["told"] = exchange.levels.told;
+  result["levels"] = levels;
   const auto pair = [](const render::Range& range) { return py::make_tuple(range.least, range.most); };
   py::list stuff;
   for (const render::Stuff& one : exchange.stuff) {
@@ -438,6 +443,11 @@ void bind_view(py::module_& module) {
            "Who sums over the ways of light between grains, in scenes that are set from now on: the 'processor' on all "
            "cores, the 'device', as far as it can, or 'automatic', the device where there is a GPU and a million ways "
            "or more.")
+      .def("set_levels", &render::View::set_levels, py::arg("by_size"), Release(),
+           "Whether light between grains is followed less closely into those of arrays that are seen small: in a ball, "
+           "not in their own\n"
+           "mesh, below 8 pixels across, by no walk at all below 4 (default); or into all as closely as it can be. "
+           "Restarts the accumulation.")
       .def("set_camera", &render::View::set_camera, py::arg("camera"), Release(),
            "Restarts the accumulation; sends nothing.")
       .def(
@@ -525,7 +535,8 @@ void bind_view(py::module_& module) {
           "how "
           "many grains are shown by which, where rays find what is seen: {'walked': light is followed into them, "
           "'looked_into': clear ones, through their facets, 'modelled': by their model, 'sharing': of all these, those "
-          "so deep that they share numbers}, 'stuff': "
+          "so deep that they share numbers}, 'levels': how many of those walked the last sample showed by which: "
+          "{'own_shape': walks in their mesh, 'ball': in a ball, 'told': none}, 'stuff': "
           "[{'surface', 'thickness', 'albedo', 'g', 'eta'}] of what they are made of, all but the first from least to "
           "most; thickness in mean free paths to the radius, albedo of one scattering}}.")
       .def(

@@ -98,6 +98,11 @@ void Frame::set_visibility(Visibility visibility) {
   forget_view();
 }
 
+void Frame::set_levels(bool by_size) {
+  levels_ = by_size;
+  samples_ = 0;
+}
+
 std::vector<std::shared_ptr<const transport::Computation>> Frame::computations() const {
   std::vector<std::shared_ptr<const transport::Computation>> all = content_->computations(cache_);
   for (auto& computation : stored_lamps_.computations()) all.push_back(std::move(computation));
@@ -165,6 +170,7 @@ Sample Frame::begin_sample(const GoOn& go_on, bool hurried) {
                 .traced = traced,
                 .gathers = gathers,
                 .denoises = scene_.denoise,
+                .levels = levels_ && traced && gathers && exchange_.any() && !exchange_.gathers_all(),
                 .learns = !patient_ && cast && gathers && !exchange_.follows_paths() &&
                           exchange_.gather()->tells_any_inner_light(),
                 .pixels_at_once = pixels_at_once_,
@@ -330,6 +336,7 @@ Statistics Frame::statistics() const {
   if (exchange_.any()) {
     result.exchange = exchange_.statistics();
     result.exchange->gathered = samples_ > 0 && gather_.ran();
+    if (result.exchange->gathered) result.exchange->levels = gather_.levels();
   }
   if (content_->instances() == nullptr) return result;
   result.instances = content_->instances()->count();

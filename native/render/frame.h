@@ -80,6 +80,7 @@ class Frame {
 
   /// Throws Error where rays are asked for and cannot be cast.
   void set_visibility(Visibility visibility);
+  void set_levels(bool by_size);
 
   /// Of light between grains, as it is solved from now on.
   void set_summing(Summing by) { exchange_.set_summing(by); }
@@ -168,6 +169,7 @@ class Frame {
   LightMapPass light_maps_;
   SurfacePass surfaces_;
   ShadowPass shadows_;
+  bool levels_ = true;
   GatherPass gather_;
   ShadePass shade_;
   MirrorPass mirror_;

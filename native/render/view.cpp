@@ -240,6 +240,10 @@ std::vector<std::string> View::warnings() const {
   return sentences;
 }
 
+void View::set_levels(bool by_size) {
+  change([&] { frame(id_).set_levels(by_size); });
+}
+
 void View::set_visibility(Visibility visibility) {
   change([&] { frame(id_).set_visibility(visibility); });
   shared_->samples = 0;

@@ -103,6 +103,10 @@ class View {
   /// Who sums where light between grains is solved from now on: of scenes that are set.
   void set_summing(Summing by);
 
+  /// Whether light is followed less closely into grains of arrays that are seen small, or into all as closely as it
+  /// can be. Restarts the accumulation.
+  void set_levels(bool by_size);
+
   /// Adds `samples` to the mean and returns when they are drawn.
   void render(int samples);
 

@@ -10,6 +10,7 @@
 #include "gl/texture.h"
 #include "render/denoiser.h"
 #include "render/inner_lights.h"
+#include "render/levels.h"
 #include "render/passes/array_visibility.h"
 #include "render/passes/sample.h"
 #include "render/passes/surface_pass.h"
@@ -24,6 +25,9 @@ class GatherPass {
   /// Whether the last run had anything to gather.
   bool ran() const { return ran_; }
 
+  /// Of the grains that it showed.
+  const SeenByLevel& levels() const { return levels_; }
+
   /// That the last run took of this side.
   double milliseconds() const { return milliseconds_; }
 
@@ -31,8 +35,14 @@ class GatherPass {
   void bind(const gl::Program& program) const;
 
  private:
+  void make_amends(const Sample& sample, const std::vector<glm::vec4>& normals);
+
   Denoiser denoiser_;
   InnerLights inner_lights_;
+  Amends amends_;
+  std::vector<std::optional<Amends::Probe>> probes_;
+  SeenByLevel levels_;
+  std::vector<Level> seen_by_;  // of each pixel
   std::vector<Likeness> likenesses_;
   std::vector<glm::vec4> others_;      // of what grains send; w: 1 where it was looked
   std::vector<glm::vec4> lights_;      // and the world, seen through grains

@@ -54,6 +54,7 @@ struct Sample {
   bool traced;       ///< rays can be followed through all of the content
   bool gathers;      ///< light between grains is gathered for pixels that show them
   bool denoises;     ///< and neighbours that show the same tell each other what was found
+  bool levels;       ///< it is followed less closely into those that are seen small
   bool learns;       ///< grains' inner light is found beside it, for another picture of the same light
   Mirrors mirrors = Mirrors::none;
   bool straight_through = false;  ///< light that goes straight through single draws is followed

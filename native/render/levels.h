@@ -1,0 +1,80 @@
+// How closely light is followed into what is seen of an array's grains, by how large they are seen, and what the
+// coarser ways lack, found beside the closest one at a few pixels.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <vector>
+
+#include "heap/gather.h"
+
+namespace mesograin::render {
+
+enum class Level : std::uint8_t {
+  own_shape,  ///< by walks in its own mesh, or in the ball that it is
+  ball,       ///< by walks in the ball of its area
+  told,       ///< by what its neighbours are told of it, which costs no walk
+};
+constexpr std::size_t level_count = 3;
+
+/// How large balls are seen in a picture of this size.
+class PixelsAcross {
+ public:
+  PixelsAcross(const glm::mat4& to_clip, const glm::ivec2& size);
+
+  /// `ball`: its middle and radius. Infinite where the camera may be in it.
+  float of(const glm::vec4& ball) const;
+
+ private:
+  glm::vec4 depth_;
+  float pixels_;  // of what is as long as it is far
+};
+
+/// Of a grain that is seen so many pixels across.
+Level level_of(bool is_ball, float pixels_across);
+
+/// How much more light the closest way finds than a coarser one, over the grains of each unit of the content: few are
+/// asked for both, in each sample, and their means make good for all. What is left is how that differs from place to
+/// place.
+class Amends {
+ public:
+  /// One pixel that was looked at both ways.
+  struct Probe {
+    std::size_t unit;
+    Level level;
+    heap::Gather::All closest;
+    heap::Gather::All coarse;
+  };
+
+  struct Factors {
+    glm::vec3 scattered{1.0F};  ///< and what others send that has met the grain
+    glm::vec3 straight{1.0F};   ///< what is seen straight through it
+  };
+
+  void forget() { sums_.clear(); }
+
+  void add(const Probe& probe);
+
+  /// The fewer pixels have told of a unit, the nearer to 1.
+  Factors factors(std::size_t unit, Level level) const;
+
+ private:
+  struct Pair {
+    glm::dvec3 closest{0.0};
+    glm::dvec3 coarse{0.0};
+  };
+  struct Sums {
+    Pair scattered;
+    Pair straight;
+    int probes = 0;
+  };
+
+  std::vector<std::array<Sums, level_count>> sums_;  // of each unit
+};
+
+}  // namespace mesograin::render
