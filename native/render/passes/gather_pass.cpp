@@ -24,9 +24,14 @@ constexpr int rays_into_clear = 1;
 // Whoever changes something after fewer samples is not likely to look at the same light again.
 constexpr std::uint32_t first_learnt_from = 4;
 
-// One of so many pixels in a row is looked at as closely as can be where the others are not: a picture of 320 x 180
-// tells within half a percent then how much more that finds, after one sample.
-constexpr std::size_t pixels_a_probe = 32;
+// One of so many pixels in a row is looked at as closely as can be where the others are not: with two thousand of them
+// one sample tells within a percent how much more that finds.
+std::size_t pixels_a_probe(std::size_t pixels) {
+  constexpr std::size_t wanted = 2048;
+  constexpr std::size_t densest = 4;
+  constexpr std::size_t sparsest = 32;
+  return std::clamp(pixels / wanted, densest, sparsest);
+}
 
 // In pixels, of the first sample's filter.
 constexpr double deviation = 2.0;
@@ -122,7 +127,8 @@ bool GatherPass::run(const Sample& sample, const ArrayVisibility& arrays, Surfac
   behind_.assign(seen.normals.size(), glm::vec4(0.0F));
   likenesses_.assign(seen.normals.size(), Likeness());
   seen_by_.assign(seen.normals.size(), Level::own_shape);
-  probes_.assign(seen.normals.size() / pixels_a_probe + 1, std::nullopt);
+  const std::size_t in_a_row = pixels_a_probe(seen.normals.size());
+  probes_.assign(seen.normals.size() / in_a_row + 1, std::nullopt);
   if (sample.index == 0) amends_.forget();
   const bool clear = facets && gather->sees_into_any();
   if (clear) {
@@ -193,8 +199,8 @@ bool GatherPass::run(const Sample& sample, const ArrayVisibility& arrays, Surfac
         if (level == Level::told) found = gather->look_at_told(*grain, normal, towards, random);
         if (!found) found = as_closely_as_can_be();
         seen_by_[i] = level;
-        if (level != Level::own_shape && i % pixels_a_probe == (i / pixels_a_probe + seed) % pixels_a_probe)
-          probes_[i / pixels_a_probe] = {unit_of(sample.content, number), level, as_closely_as_can_be(), *found};
+        if (level != Level::own_shape && i % in_a_row == (i / in_a_row + seed) % in_a_row)
+          probes_[i / in_a_row] = {unit_of(sample.content, number), level, as_closely_as_can_be(), *found};
         others_[i] = glm::vec4(found->others - found->straight, 1.0F);
         straight_[i] = glm::vec4(found->straight, 0.0F);
         steady_[i] = glm::vec4(found->steady, 0.0F);
