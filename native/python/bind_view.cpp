@@ -249,9 +249,8 @@ py::dict of_exchange(const render::ExchangeStatistics& exchange) {
   means["sharing"] = exchange.means.sharing;
   result["means"] = means;
   py::dict levels;
-  levels["own_shape"] = exchange.levels.own_shape;
-  levels["ball"] = exchange.levels.ball;
-  levels["told"] = exchange.levels.told;
+  for (std::size_t i = 0; i < exchange.levels.size(); ++i)
+    levels[std::string(render::level_names[i]).c_str()] = exchange.levels[i];
   result["levels"] = levels;
   const auto pair = [](const render::Range& range) { return py::make_tuple(range.least, range.most); };
   py::list stuff;

@@ -13,6 +13,7 @@
 #include "heap/solving.h"
 #include "render/content.h"
 #include "render/device_sums.h"
+#include "render/levels.h"
 #include "render/told_light.h"
 #include "scene/scene.h"
 
@@ -40,13 +41,6 @@ struct Means {
   std::size_t sharing = 0;      ///< of all these, those that lie so deep that they share numbers
 };
 
-/// How many of the grains that are walked in the last sample showed, by how closely: as render::Level.
-struct SeenByLevel {
-  std::size_t own_shape = 0;
-  std::size_t ball = 0;
-  std::size_t told = 0;
-};
-
 /// What is drawn of light between grains.
 struct ExchangeStatistics {
   std::size_t grains = 0;         ///< that send light to each other
@@ -62,7 +56,7 @@ struct ExchangeStatistics {
   bool balls = true;              ///< all grains are about as round as a sphere
   bool gathered = false;          ///< rays of the last sample found more of what is seen of some grains than is solved
   Means means;
-  SeenByLevel levels;
+  GrainsByLevel levels{};  ///< of those walked that the last sample showed
   std::vector<Stuff> stuff;
 };
 

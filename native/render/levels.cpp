@@ -14,12 +14,22 @@ namespace {
 constexpr float shaped_from = 8.0F;
 constexpr float walked_from = 4.0F;
 
-// Small grains' pixels are two fifths off by noise, and coarser ways 3 % by what they are: so many probes that find the
-// same both ways count beside those that there are.
-constexpr double probes_beforehand = 192.0;
+// By how much coarser ways are off, of all light, where probes do not tell that it is more: what they find counts as
+// far as their noise is less.
+constexpr double expected = 0.03;
+
+// Of one probe, at the least: few do not tell their noise.
+constexpr double least_noise = 0.4;
 
 // Beyond that it is noise of very little light.
 constexpr double most = 2.0;
+
+/// Of what a number is found to be off by, how much to believe of it; `noise`: the square of what it may be off by
+/// chance (James and Stein 1961, "Estimation with quadratic loss").
+double share_believed(double off, double noise) {
+  const double meant = std::max(expected * expected, off * off - noise);
+  return meant / (meant + noise);
+}
 
 }  // namespace
 
@@ -40,28 +50,34 @@ Level level_of(bool is_ball, float pixels_across) {
   return is_ball || pixels_across >= shaped_from ? Level::own_shape : Level::ball;
 }
 
+void Amends::Pair::add(const glm::dvec3& one, const glm::dvec3& other) {
+  closest += one;
+  coarse += other;
+  squares += (one - other) * (one - other);
+}
+
 void Amends::add(const Probe& probe) {
   if (probe.unit >= sums_.size()) sums_.resize(probe.unit + 1);
   Sums& sums = sums_[probe.unit][static_cast<std::size_t>(probe.level)];
   const auto scattered = [](const heap::Gather::All& all) { return all.others - all.straight + all.scattered; };
   const auto straight = [](const heap::Gather::All& all) { return all.straight + all.world; };
-  sums.scattered.closest += scattered(probe.closest);
-  sums.scattered.coarse += scattered(probe.coarse);
-  sums.straight.closest += straight(probe.closest);
-  sums.straight.coarse += straight(probe.coarse);
+  sums.scattered.add(scattered(probe.closest), scattered(probe.coarse));
+  sums.straight.add(straight(probe.closest), straight(probe.coarse));
   ++sums.probes;
 }
 
 Amends::Factors Amends::factors(std::size_t unit, Level level) const {
   if (unit >= sums_.size()) return {};
   const Sums& sums = sums_[unit][static_cast<std::size_t>(level)];
-  const double known = sums.probes / (sums.probes + probes_beforehand);
   const auto factor = [&](const Pair& pair) {
     glm::vec3 result(1.0F);
-    for (int channel = 0; channel < 3; ++channel)
-      if (pair.coarse[channel] > 0.0)
-        result[channel] = static_cast<float>(
-            glm::mix(1.0, std::clamp(pair.closest[channel] / pair.coarse[channel], 1.0 / most, most), known));
+    for (int channel = 0; channel < 3; ++channel) {
+      const double coarse = pair.coarse[channel];
+      if (!(coarse > 0.0)) continue;
+      const double noise = std::max(pair.squares[channel] / (coarse * coarse), least_noise * least_noise / sums.probes);
+      const double found = std::clamp(pair.closest[channel] / coarse, 1.0 / most, most);
+      result[channel] = static_cast<float>(glm::mix(1.0, found, share_believed(found - 1.0, noise)));
+    }
     return result;
   };
   return {factor(sums.scattered), factor(sums.straight)};

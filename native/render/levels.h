@@ -9,6 +9,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
+#include <string_view>
 #include <vector>
 
 #include "heap/gather.h"
@@ -20,7 +21,10 @@ enum class Level : std::uint8_t {
   ball,       ///< by walks in the ball of its area
   told,       ///< by what its neighbours are told of it, which costs no walk
 };
-constexpr std::size_t level_count = 3;
+inline constexpr std::array<std::string_view, 3> level_names = {"own_shape", "ball", "told"};
+
+/// How many grains are shown by each.
+using GrainsByLevel = std::array<std::size_t, level_names.size()>;
 
 /// How large balls are seen in a picture of this size.
 class PixelsAcross {
@@ -60,13 +64,16 @@ class Amends {
 
   void add(const Probe& probe);
 
-  /// The fewer pixels have told of a unit, the nearer to 1.
+  /// The less certain the pixels are that have told of a unit, the nearer to 1.
   Factors factors(std::size_t unit, Level level) const;
 
  private:
   struct Pair {
     glm::dvec3 closest{0.0};
     glm::dvec3 coarse{0.0};
+    glm::dvec3 squares{0.0};  ///< of how far they are apart
+
+    void add(const glm::dvec3& one, const glm::dvec3& other);
   };
   struct Sums {
     Pair scattered;
@@ -74,7 +81,7 @@ class Amends {
     int probes = 0;
   };
 
-  std::vector<std::array<Sums, level_count>> sums_;  // of each unit
+  std::vector<std::array<Sums, level_names.size()>> sums_;  // of each unit
 };
 
 }  // namespace mesograin::render

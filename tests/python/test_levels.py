@@ -77,10 +77,3 @@ def test_large_ones_and_those_that_are_gathered_are_looked_at_as_closely_as_ever
     (close, _), (found, counts) = (looked_at(arrays, pixels, by_size, 2, exchange) for by_size in (False, True))
     assert not counts["ball"] and not counts["told"]
     assert numpy.array_equal(close, found)
-
-
-def test_a_first_sample_says_how_it_saw_them():
-    arrays = heap("sand", medium(0.9, 3.0))
-    assert looked_at(arrays, 12.0, True, 1)[1]["own_shape"] == 0  # by balls, which cost less
-    assert looked_at(arrays, 12.0, True, 2)[1]["ball"] == 0
-    assert looked_at(heap("balls", medium(0.9, 3.0)), 12.0, True, 1)[1]["ball"] == 0

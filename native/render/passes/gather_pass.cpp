@@ -144,10 +144,9 @@ bool GatherPass::run(const Sample& sample, const ArrayVisibility& arrays, Surfac
   // A picture's first sample, which a drag shows, costs half as much by balls.
   const bool first_look = sample.index == 0;
   const auto level_at = [&](std::size_t number) {
-    Level level = Level::own_shape;
-    if (sample.levels && number < instances)
-      level = level_of(roles[number].ball, pixels_across.of(sample.content.receiver(number).ball));
-    return level == Level::own_shape && first_look && !roles[number].ball ? Level::ball : level;
+    return sample.levels && number < instances
+               ? level_of(roles[number].ball, pixels_across.of(sample.content.receiver(number).ball))
+               : Level::own_shape;
   };
   // By what is known of grains' inner light it costs less still, and is nearer.
   if (sample.learns) inner_lights_.keep_to(gather);
@@ -185,22 +184,22 @@ bool GatherPass::run(const Sample& sample, const ArrayVisibility& arrays, Surfac
         const auto in_ball = [&] {
           return gather->look_at_all(*grain, glm::vec3(seen.positions[i]), normal, towards, walks, random);
         };
-        const bool by_facets = facets && (sample.exchange.follows_paths() || !roles[number].ball);
-        const auto as_closely_as_can_be = [&] {
-          const auto found = by_facets ? gather->look_at_all(at, *facets, walks, random) : std::nullopt;
+        const bool shaped = facets && (sample.exchange.follows_paths() || !roles[number].ball);
+        const bool by_facets = shaped && (sample.exchange.follows_paths() || !first_look);
+        const auto by_walks = [&](bool in_own_shape) {
+          const auto found = in_own_shape ? gather->look_at_all(at, *facets, walks, random) : std::nullopt;
           return found ? *found : in_ball();
         };
-        Level level = sample.exchange.follows_paths() ? Level::own_shape : level_at(number);
+        Level level = level_at(number);
         std::optional<heap::Gather::All> found;
         if (const heap::InnerLight* light = knows && level != Level::told ? inner_lights_.of(*grain) : nullptr)
           found = gather->look_at_all(at, *facets, *light, random);
-        if (found || (level == Level::ball && !by_facets)) level = Level::own_shape;
-        if (level == Level::ball) found = in_ball();
+        if (found || (level == Level::ball && !shaped)) level = Level::own_shape;
         if (level == Level::told) found = gather->look_at_told(*grain, normal, towards, random);
-        if (!found) found = as_closely_as_can_be();
+        if (!found) found = by_walks(by_facets && level == Level::own_shape);
         seen_by_[i] = level;
         if (level != Level::own_shape && i % in_a_row == (i / in_a_row + seed) % in_a_row)
-          probes_[i / in_a_row] = {unit_of(sample.content, number), level, as_closely_as_can_be(), *found};
+          probes_[i / in_a_row] = {unit_of(sample.content, number), level, by_walks(shaped), *found};
         others_[i] = glm::vec4(found->others - found->straight, 1.0F);
         straight_[i] = glm::vec4(found->straight, 0.0F);
         steady_[i] = glm::vec4(found->steady, 0.0F);
@@ -271,7 +270,7 @@ void GatherPass::make_amends(const Sample& sample, const std::vector<glm::vec4>&
     const std::size_t number = number_of(normals[i]);
     const Level level = seen_by_[i];
     if (!counted[number] && sample.gathers_all_of(number) && !sample.exchange.gather()->sees_into(*roles[number].grain))
-      ++(level == Level::told ? levels_.told : level == Level::ball ? levels_.ball : levels_.own_shape);
+      ++levels_[static_cast<std::size_t>(level)];
     counted[number] = true;
     if (level == Level::own_shape) continue;
     const Amends::Factors factors = amends_.factors(unit_of(sample.content, number), level);
