@@ -1,4 +1,4 @@
-"""Grains that are seen small are looked at less closely: what that leaves out, when it is done, and what is told of it."""
+"""Grains that are seen small are looked at less closely: what that leaves out, when it is done, and what is told."""
 
 import mesograin_native as native
 import numpy

@@ -16,7 +16,7 @@ def module():
 
 
 def exchange(balls=True, gathered=True, **stuff):
-    return {"balls": balls, "gathered": gathered,
+    return {"balls": balls, "gathered": gathered, "levels": {"own_shape": 9, "ball": 0, "told": 0},
             "stuff": [{"surface": "index_matched", "thickness": (3.0, 3.0), "albedo": (0.9, 0.999), "g": (0.0, 0.0),
                        "eta": (1.0, 1.0), **stuff}]}
 
@@ -47,6 +47,14 @@ def test_of_heaps_by_chance_nine_in_ten_are_told(stated_error):
     both["stuff"] += exchange(**SALT)["stuff"]
     assert "blocks of 8 x 8 pixels for nine in ten of 16 heaps" in stated_error.sentence(both)
     assert stated_error.in_blocks(both) >= stated_error.in_blocks(exchange(balls=False, **SALT))
+
+
+def test_more_is_said_of_grains_that_are_seen_small(stated_error):
+    for level in ("ball", "told"):
+        seen = exchange()
+        seen["levels"][level] = 1
+        assert stated_error.sentence(seen) == (stated_error.sentence(exchange())
+                                               + ", and 4% more in blocks of grains below 8 pixels across")
 
 
 @pytest.mark.parametrize("other", [{"thickness": (0.01, 3.0)}, {"thickness": (3.0, 11.0)}, {"albedo": (0.5, 0.9)},

@@ -53,6 +53,10 @@ MEASURED = (
 )
 
 
+SMALL = 0.04
+"""What blocks are off, at most, where grains below 8 pixels across are looked at less closely, from looking closely."""
+
+
 def _found(exchange):
     """Measured of all that grains are made of; empty if anything was not."""
     found = [next((known for known in MEASURED if known.holds(stuff, exchange)), None)
@@ -71,12 +75,16 @@ def sentence(exchange):
     found = _found(exchange)
     if not found:
         return "how far off was not measured for grains like these"
+    small = ""
+    if exchange["levels"]["ball"] or exchange["levels"]["told"]:
+        small = f", and {SMALL:.0%} more in blocks of grains below 8 pixels across"
     total, blocks = (f"{max(getattr(known, name) for known in found):.1%}" for name in ("total", "blocks"))
     heaps = [known.by_chance for known in found if known.by_chance]
     if heaps:
         return (f"within {total} in all and {blocks} in blocks of 8 x 8 pixels for nine in ten of {min(heaps)} heaps of"
-                " such media that were drawn by chance under a wide lamp, of grains that do not lie in each other")
+                " such media that were drawn by chance under a wide lamp, of grains that do not lie in each"
+                f" other{small}")
     low = [known.low_sun for known in found if known.low_sun]
     under = f", {max(low):.0%} under a low sun" if low else ""
     return (f"within {max(known.total for known in found):.0%} in all and {max(known.blocks for known in found):.1%} in"
-            f" blocks of 8 x 8 pixels where it was measured, of grains that do not lie in each other{under}")
+            f" blocks of 8 x 8 pixels where it was measured, of grains that do not lie in each other{under}{small}")

@@ -25,6 +25,7 @@ class Exchange:
     milliseconds: float
     final: bool
     means: dict  # how many grains are shown by which, as native.View.statistics() names them
+    levels: dict  # how many of those walked the last sample showed by which, as it names them
     stated_error: str
 
     def lines(self):
@@ -35,12 +36,16 @@ class Exchange:
         return (f"light between {self.grains} grains of {self.kinds} kinds: {self.milliseconds:.0f} ms{others}",
                 f"{self.links} links, {self.steps} steps, {self.residual:.1g} left"
                 + (", summed by the device" if self.summed_on_device else "")
-                + ("" if self.final else ", being refined"), self._by_which_means())
+                + ("" if self.final else ", being refined"), self._by_which_means(), *self._seen_small())
 
     def _by_which_means(self):
         shown = [f"{self.means[name]} {how}" for name, how in MEANS if self.means[name]]
         sharing = self.means["sharing"]
         return ", ".join(shown) + (f"; {sharing} lie deep and share numbers" if sharing else "")
+
+    def _seen_small(self):
+        ball, told = self.levels["ball"], self.levels["told"]
+        return (f"seen small: {ball} walked in as balls, {told} in none",) if ball or told else ()
 
 
 def exchange(statistics):
