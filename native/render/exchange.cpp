@@ -258,6 +258,29 @@ bool any_translucent(const Content& content) {
                      [](const Draw& draw) { return !is_plain(draw.look); });
 }
 
+// A lamp so many radii away or nearer lights a spot of an opaque grain, of which few numbers tell nothing.
+constexpr float spot_radii = 6.0F;
+
+/// Of grains, which are opaque and have a lamp close by; empty: none has.
+std::vector<bool> about_lamps(const heap::Heap& heap) {
+  const std::vector<heap::Optics>& kinds = heap.grains.kinds;
+  if (std::none_of(kinds.begin(), kinds.end(), std::mem_fn(&heap::Optics::opaque))) return {};
+  std::vector<glm::vec3> lamps;
+  for (const scene::Light& light : heap.lights)
+    if (const std::optional<glm::dvec3> place = scene::place(light)) lamps.emplace_back(*place - heap.anchor);
+  std::vector<bool> about;
+  const std::vector<heap::Grain>& grains = heap.grains.grains;
+  for (const glm::vec3& lamp : lamps)
+    for (std::size_t i = 0; i < grains.size(); ++i) {
+      if (!kinds[grains[i].kind].opaque()) continue;
+      const float reach = spot_radii * grains[i].radius;
+      if (glm::dot(grains[i].middle - lamp, grains[i].middle - lamp) > reach * reach) continue;
+      about.resize(grains.size(), false);
+      about[i] = true;
+    }
+  return about;
+}
+
 /// Whether there is anything that could be seen through a clear grain.
 bool shows_through(const heap::Grains& grains, const scene::Scene& scene) {
   if (grains.grains.size() + grains.walls.size() > 1 || scene.world.shines()) return true;
@@ -299,10 +322,11 @@ void Exchange::set(DeviceCache& cache, const Content& content, const scene::Scen
   const bool followed_paths = std::exchange(follows_paths_, scene.exchange == scene::Exchange::path_traced);
   if (followed_paths != follows_paths_) gather_.reset();
   gathers_ = follows_paths_ || scene.exchange == scene::Exchange::gathered;
-  shows_more_ = clear || follows;
   const bool straight_elsewhere = !arrays && !clear && !gathers_;
   heap::Heap heap{std::move(gathered.grains), content.anchor(), scene.lights, scene.world, exchanges,
                   straight_elsewhere};
+  about_lamps_ = heaps && arrays ? about_lamps(heap) : std::vector<bool>();
+  shows_more_ = clear || follows || !about_lamps_.empty();
   const bool switched = solving_ && solving_->heap().exchanges != exchanges;
   if (switched) known_.reset();
   const bool regrouped = !solving_ || switched || roles_ != gathered.roles;

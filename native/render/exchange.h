@@ -101,6 +101,9 @@ class Exchange {
   const std::shared_ptr<const heap::Gather>& gather() const { return gather_; }
   bool gathers_all() const { return gathers_; }
 
+  /// Whether what others send to this grain is gathered, if not for all: it is opaque and a lamp is close by.
+  bool gathers_for(std::uint32_t grain) const { return !about_lamps_.empty() && about_lamps_[grain]; }
+
   /// Whether it is followed all the way, where no surface refracts.
   bool follows_paths() const { return follows_paths_; }
 
@@ -137,6 +140,7 @@ class Exchange {
   bool follows_paths_ = false;
   bool follows_ = false;     // light into what is seen of an array's grains, where that is cheap
   bool shows_more_ = false;  // gathering, of some grains
+  std::vector<bool> about_lamps_;
   Means means_;
   std::shared_ptr<const heap::Gather> gather_;
   std::vector<std::pair<std::size_t, std::size_t>> alike_;  // objects of one unit: the first, and after the last

@@ -1,6 +1,8 @@
 // A light of any kind.
 #pragma once
 
+#include <glm/vec3.hpp>
+#include <optional>
 #include <variant>
 
 #include "scene/lights/area_light.h"
@@ -11,6 +13,18 @@
 namespace mesograin::scene {
 
 using Light = std::variant<DirectionalLight, PointLight, SpotLight, AreaLight>;
+
+/// Of one that has a place.
+inline std::optional<glm::dvec3> place(const Light& light) {
+  return std::visit(
+      [](const auto& kind) -> std::optional<glm::dvec3> {
+        if constexpr (requires { kind.position; })
+          return kind.position;
+        else
+          return std::nullopt;
+      },
+      light);
+}
 
 /// As its kind has it.
 inline void validate(const Light& light) {

@@ -211,7 +211,7 @@ bool GatherPass::run(const Sample& sample, const ArrayVisibility& arrays, Surfac
               glm::vec4(by_facets && level == Level::own_shape ? gather->lit_behind(at, *facets, random)
                                                                : gather->lit_behind(*grain, normal, towards, random),
                         0.0F);
-      } else if (all) {
+      } else if (all || sample.exchange.gathers_for(*grain)) {
         others_[i] = glm::vec4(gather->look(*grain, normal, towards, rays_a_sample, random), 1.0F);
       }
       if (others_[i].w == 0.0F || seen_by_[i] == Level::told) continue;
