@@ -54,7 +54,7 @@ def test_more_is_said_of_grains_that_are_seen_small(stated_error):
         seen = exchange()
         seen["levels"][level] = 1
         assert stated_error.sentence(seen) == (stated_error.sentence(exchange())
-                                               + ", and 4% more in blocks of grains below 8 pixels across")
+                                               + ", and 6% more in blocks of grains below 8 pixels across")
 
 
 @pytest.mark.parametrize("other", [{"thickness": (0.01, 3.0)}, {"thickness": (3.0, 11.0)}, {"albedo": (0.5, 0.9)},

@@ -53,7 +53,7 @@ MEASURED = (
 )
 
 
-SMALL = 0.04
+SMALL = 0.06
 """What blocks are off, at most, where grains below 8 pixels across are looked at less closely, from looking closely."""
 
 
