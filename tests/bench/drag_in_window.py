@@ -1,6 +1,6 @@
 """Runs inside Blender's window: makes one change after the other and notes how long each takes to be seen: drag.py.
 
-    blender --factory-startup --python drag_in_window.py -- OUT.json CHANGES MODEL ...
+    blender --factory-startup --python drag_in_window.py -- OUT.json SCENE CHANGES MODEL ...
 """
 import json
 import math
@@ -12,6 +12,11 @@ import traceback
 
 import addon_utils
 import bpy
+from mathutils import Quaternion
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+
+import drag_scenes  # noqa: E402
 
 PAUSE = 0.01  # s between looks
 SETTLE = 1.0  # s before a setting is measured
@@ -167,33 +172,36 @@ def measured(clock, area, change, rendered, changes, changed=lambda: True):
     return {"wait": waits, **{name: list(times) for name, times in clock.spent.items()}}
 
 
-def work(out, changes, models):
+def work(out, name, changes, models):
     from mesograin.engine import engine
     from mesograin.schema.models import CHOICES
 
-    path = pathlib.Path(__file__).resolve().parents[2] / "blend_files/sphere.blend"
-    bpy.ops.wm.open_mainfile(filepath=str(path), load_ui=False)
+    stage = drag_scenes.SCENES[name]()
     clock = Clock(engine.MesograinRenderEngine)
     screen = bpy.context.window_manager.windows[0].screen
     area = max((area for area in screen.areas if area.type == "VIEW_3D"), key=lambda area: area.width * area.height)
     region = next(region for region in area.regions if region.type == "WINDOW")
     space = area.spaces.active
     space.overlay.show_overlays = space.show_gizmo = False
-    scene, grain = bpy.context.scene, bpy.data.materials["Translucent"].mesograin
+    scene, grain = bpy.context.scene, stage.material.mesograin
     scene.mesograin.viewport_samples = 1 << 14
     view = space.region_3d
-    view.view_perspective, view.view_distance = "PERSP", 7.0
+    view.view_perspective, view.view_distance = "PERSP", stage.distance
+    view.view_location = stage.middle
+    if stage.rotation:
+        view.view_rotation = stage.rotation
 
     def drag_parameter(number):
-        grain.reflectance = grain.sigma_a = [0.1 + 0.05 * math.sin(0.3 * number + channel) for channel in range(3)]
+        grain.reflectance = grain.sigma_a = [
+            stage.absorption * (1.0 + 0.5 * math.sin(0.3 * number + channel)) for channel in range(3)]
 
     def drag_view(number):
-        view.view_rotation = (math.cos(0.01 * number), 0.0, math.sin(0.01 * number), 0.0)
+        view.view_rotation = Quaternion(stage.axis, 0.02 * number) @ Quaternion(stage.rotation or (1.0, 0.0, 0.0, 0.0))
 
     mouse = Mouse(bpy.context.window_manager.windows[0])
     properties = next(area for area in screen.areas if area.type == "PROPERTIES")
     bpy.context.view_layer.objects.active = next(
-        thing for thing in scene.objects if thing.active_material == grain.id_data)
+        thing for thing in scene.objects if thing.active_material == stage.material)
     slider = Slider(mouse, properties, grain, "scale")
 
     def by_mouse(dragged):
@@ -240,8 +248,8 @@ def work(out, changes, models):
 
 def main():
     addon_utils.enable("mesograin", default_set=True)
-    out, changes, *models = sys.argv[sys.argv.index("--") + 1:]
-    steps = work(pathlib.Path(out), int(changes), models)
+    out, name, changes, *models = sys.argv[sys.argv.index("--") + 1:]
+    steps = work(pathlib.Path(out), name, int(changes), models)
 
     def step():
         try:
