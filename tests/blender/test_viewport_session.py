@@ -64,6 +64,31 @@ class Withheld:
             return False
 
 
+class Known:
+    """A native.View of which something becomes known whenever it is asked, and how often that was."""
+
+    class News:
+        def wait(self, seconds=None):
+            return True
+
+        def result(self):
+            return True
+
+    def __init__(self, view):
+        self._view, self.asked = view, 0
+
+    def __getattr__(self, name):
+        return getattr(self._view, name)
+
+    @property
+    def preparing(self):
+        return 0.5
+
+    def start_news(self):
+        self.asked += 1
+        return Known.News()
+
+
 class Taken:
     """A native.View that has taken a scene once `open` is set: as one of very many instances."""
 
@@ -336,6 +361,62 @@ def test_a_change_gives_up_samples_that_would_only_refine(drag, native):
     while session.advance(1) is None:
         assert time.monotonic() < deadline
     assert session.samples == 1
+
+
+def turn(session, native, eye):
+    session.set_camera(native.Camera.look_at((0.0, 0.0, eye), (0.0, 0.0, 0.0), (0.0, 1.0, 0.0), 45.0), *SIZE)
+
+
+def first_picture(session, target):
+    """When it was there."""
+    deadline = time.monotonic() + 60.0
+    while session.advance(target) is None:
+        assert time.monotonic() < deadline
+    return time.monotonic()
+
+
+def test_a_redraw_waits_for_the_picture_of_its_change_that_is_expected_soon(drag, native):
+    """Another redraw, which would show it, takes longer."""
+    _, session = drag(sample_seconds=0.05, redraw_seconds=0.0)
+    settled(session, 1)
+    at_once = 0
+    for step in range(CHANGES):
+        turn(session, native, 9.0 + step)
+        if session.advance(2) is None:  # the first of its size, or the machine does other things
+            first_picture(session, 2)
+        else:
+            at_once += 1
+    assert at_once >= CHANGES // 2
+
+
+def test_what_becomes_known_after_a_first_picture_comes_once_no_change_does(drag, native):
+    _, session = drag(sample_seconds=0.03, redraw_seconds=0.0)
+    settled(session, 2)
+    view = session._view = Known(session._view)
+    for step in range(4):
+        turn(session, native, 9.0 + step)
+        seen = first_picture(session, 2)
+        assert view.asked == step + 1, "news were taken in before the first picture alone"
+    while view.asked == 4:
+        assert time.monotonic() < seen + 60.0
+        session.look()
+    assert time.monotonic() - seen >= 0.9 * viewport.STILL_SECONDS
+
+
+def test_a_change_gives_up_samples_of_what_became_known_of_a_picture_that_is_shown(drag, native, monkeypatch):
+    _, session = drag(sample_seconds=0.03, redraw_seconds=0.0)
+    settled(session, 2)
+    view = session._view = Known(session._view)
+    turn(session, native, 9.0)
+    first_picture(session, 2)
+    monkeypatch.setattr(viewport, "_start", lambda view, samples: Slow(view.start(samples, read=True), 0.2))
+    deadline = time.monotonic() + 60.0
+    while session._task is None:
+        assert time.monotonic() < deadline
+        session.look()
+    assert view.asked == 2
+    turn(session, native, 10.0)
+    assert session._given_up or session._task is None, "the change waits for them"
 
 
 def test_it_is_known_how_long_a_change_waits_for_its_picture(drag):

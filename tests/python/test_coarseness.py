@@ -122,3 +122,12 @@ def test_a_coarse_picture_covers_the_region():
     assert size((1057, 593), 1) == (1057, 593)
     assert size((1057, 593), 4) == (265, 149)
     assert size((1, 2), 6) == (1, 1)
+
+
+def test_what_a_sample_is_expected_to_take_is_what_the_last_one_of_its_size_took():
+    coarseness = Coarseness()
+    assert coarseness.expected(4) is None
+    coarseness.note(4, 0.03)
+    assert coarseness.expected(4) == 0.03 and coarseness.expected(1) is None
+    coarseness.note(1, 0.5)
+    assert coarseness.expected(1) == 0.5 and coarseness.expected(4) is None

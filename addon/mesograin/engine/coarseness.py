@@ -23,9 +23,11 @@ class Coarseness:
         self._changed = True  # since the last sharp sample
         self._least = 1  # divisor, since then
         self._coarse = []  # seconds of the samples of such scenes
+        self._last = (None, None)  # divisor and seconds of the last sample
 
     def note(self, divisor, seconds):
         """A sample of this divisor took so long."""
+        self._last = (divisor, seconds)
         if divisor == 1:
             self._note_sharp(seconds)
             return
@@ -46,6 +48,11 @@ class Coarseness:
 
     def _forget(self):
         self._sharp, self._coarse = None, []
+
+    def expected(self, divisor):
+        """The seconds of another sample of this divisor; None where the last was of another."""
+        of, seconds = self._last
+        return seconds if of == divisor else None
 
     def divisor(self):
         """Of the next first picture."""

@@ -14,6 +14,9 @@ PATIENCE_SECONDS = 0.028
 LARGEST_DISPLAYED = 65504.0
 # What a better answer changes in the picture comes over this long.
 FADE_SECONDS = 0.3
+# So long it may wait for the first picture of a change that is expected by then: a redraw without it puts off the next,
+# which shows it, by all that Blender itself takes for one.
+EXPECTED_SECONDS = 0.075
 # No sharper or better picture is begun before so long has passed without a change: a change would have to wait for it,
 # or for the redraw that shows it.
 STILL_SECONDS = 0.1
@@ -48,9 +51,11 @@ class Session:
         self._pixels = None  # the same, as it is displayed
         self._kept = None  # (picture, samples) that is finished, and not yet returned
         self._seen = False  # whether a picture of the view's scene and camera was returned
+        self._refines = False  # whether one was before news of them were taken in
         self._restarted = 0.0  # when the view's picture was last begun
         self._task = None
         self._drawn = None  # (samples, divisor) of that
+        self._begun = 0.0  # when that was
         self._given_up = False  # whether that is to be heard of no more
         self._preparing = False  # whether more may become known of what the view draws
         self._fade = None  # (picture before that, when the other's first was read)
@@ -102,7 +107,7 @@ class Session:
             if self._taking.wait(PATIENCE_SECONDS):
                 self._apply()
         elif self._task is not None:
-            if self._task.wait(PATIENCE_SECONDS):
+            if self._task.wait(self._patience()):
                 self._finish()
         elif self._fade:
             self._kept = self._displayed(), self._view.samples
@@ -187,7 +192,7 @@ class Session:
         is finished before the next change, and one that is finished is kept until it was drawn."""
         if self._task is not None and self._task.done:
             self._keep()
-        if self._task is not None and self._seen:  # which would only refine what is shown already
+        if self._task is not None and (self._seen or self._refines):  # which would only refine what is shown already
             self._interrupt()
         self._still, self._rests = None, True
         divisor = self._coarseness.divisor()
@@ -287,17 +292,19 @@ class Session:
     def _took_news(self, news):
         if news.result():
             before = self._pixels.copy() if self._seen else None
+            self._refines = self._refines or self._seen
             self._restart()
             self._fade = None if before is None else (before, None)
 
     def _begin(self):
-        self._preparing = True
+        self._preparing, self._refines = True, False
         self._restart()
 
     def _keep_busy(self):
         if self._taking is not None:
             return
-        if self._task is None and self._preparing:
+        # What becomes known after the first picture of a change makes it better; the next change takes it in, too.
+        if self._task is None and self._preparing and not (self._seen and self._rests):
             self._preparing = self._view.preparing is not None  # asked first, so that the last news is not missed
             self._take(self._view.start_news(), Session._took_news)
             if not self._taking.wait(PATIENCE_SECONDS):  # that of a million grains takes a second
@@ -312,6 +319,14 @@ class Session:
         if self._camera is not None and self._view.samples < self._target:
             count = min(self._chunk, self._target - self._view.samples)
             self._task, self._drawn = _start(self._view, count), (count, self._divisor)
+            self._begun = time.perf_counter()
+
+    def _patience(self):
+        """How long a redraw may wait for the samples under way."""
+        expected = None if self._seen else self._coarseness.expected(self._divisor)
+        if expected is not None and self._begun + expected - time.perf_counter() <= EXPECTED_SECONDS:
+            return EXPECTED_SECONDS
+        return PATIENCE_SECONDS
 
     def _finish(self):
         """Keeps the picture of the task that is done, and goes on. Raises native.Error if it failed."""
