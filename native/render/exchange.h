@@ -56,7 +56,7 @@ struct ExchangeStatistics {
   bool balls = true;              ///< all grains are about as round as a sphere
   bool gathered = false;          ///< rays of the last sample found more of what is seen of some grains than is solved
   Means means;
-  GrainsByLevel levels{};  ///< of those walked that the last sample showed
+  SeenByLevel levels;  ///< in the last sample
   std::vector<Stuff> stuff;
 };
 

@@ -23,8 +23,11 @@ enum class Level : std::uint8_t {
 };
 inline constexpr std::array<std::string_view, 3> level_names = {"own_shape", "ball", "told"};
 
-/// How many grains are shown by each.
-using GrainsByLevel = std::array<std::size_t, level_names.size()>;
+/// How those grains are shown that light is followed into.
+struct SeenByLevel {
+  std::array<std::size_t, level_names.size()> grains{};  ///< that pixels show, by each
+  std::size_t walks_saved = 0;                           ///< that none was followed of, where it was told
+};
 
 /// How large balls are seen in a picture of this size.
 class PixelsAcross {

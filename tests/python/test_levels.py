@@ -41,7 +41,10 @@ def looked_at(arrays, pixels, by_size, samples, exchange="heaps", sky=False):
     view.set_camera(native.Camera.look_at(tuple(middle + away * numpy.array((0.0, -0.6, 0.8))), tuple(middle),
                                           (0.0, 0.0, 1.0), 2.0 * numpy.degrees(numpy.arctan(0.5 * high / away)), 1.0))
     view.render(samples)
-    return view.read(), view.statistics()["exchange"]["levels"]
+    told = view.statistics()["exchange"]
+    assert told["walks_saved"] >= 4 * told["levels"]["told"]
+    assert bool(told["walks_saved"]) == bool(told["levels"]["told"])
+    return view.read(), told["levels"]
 
 
 def blocks(picture):

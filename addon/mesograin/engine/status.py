@@ -26,6 +26,7 @@ class Exchange:
     final: bool
     means: dict  # how many grains are shown by which, as native.View.statistics() names them
     levels: dict  # how many of those walked the last sample showed by which, as it names them
+    walks_saved: int  # in that sample
     stated_error: str
 
     def lines(self):
@@ -45,7 +46,9 @@ class Exchange:
 
     def _seen_small(self):
         ball, told = self.levels["ball"], self.levels["told"]
-        return (f"seen small: {ball} walked in as balls, {told} in none",) if ball or told else ()
+        if not ball and not told:
+            return ()
+        return (f"seen small: {ball} as balls, {told} without walks, {self.walks_saved} of which were saved",)
 
 
 def exchange(statistics):

@@ -270,9 +270,10 @@ void GatherPass::make_amends(const Sample& sample, const std::vector<glm::vec4>&
     const std::size_t number = number_of(normals[i]);
     const Level level = seen_by_[i];
     if (!counted[number] && sample.gathers_all_of(number) && !sample.exchange.gather()->sees_into(*roles[number].grain))
-      ++levels_[static_cast<std::size_t>(level)];
+      ++levels_.grains[static_cast<std::size_t>(level)];
     counted[number] = true;
     if (level == Level::own_shape) continue;
+    if (level == Level::told) levels_.walks_saved += rays_a_sample;
     const Amends::Factors factors = amends_.factors(unit_of(sample.content, number), level);
     others_[i] *= glm::vec4(factors.scattered, 1.0F);
     scattered_[i] *= glm::vec4(factors.scattered, 1.0F);

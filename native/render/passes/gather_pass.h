@@ -26,7 +26,7 @@ class GatherPass {
   bool ran() const { return ran_; }
 
   /// Of the grains that it showed.
-  const GrainsByLevel& levels() const { return levels_; }
+  const SeenByLevel& levels() const { return levels_; }
 
   /// That the last run took of this side.
   double milliseconds() const { return milliseconds_; }
@@ -41,7 +41,7 @@ class GatherPass {
   InnerLights inner_lights_;
   Amends amends_;
   std::vector<std::optional<Amends::Probe>> probes_;
-  GrainsByLevel levels_{};
+  SeenByLevel levels_;
   std::vector<Level> seen_by_;  // of each pixel
   std::vector<Likeness> likenesses_;
   std::vector<glm::vec4> others_;      // of what grains send; w: 1 where it was looked
