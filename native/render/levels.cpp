@@ -25,9 +25,9 @@ constexpr double least_noise = 0.4;
 constexpr double most = 2.0;
 
 /// Of what a number is found to be off by, how much to believe of it; `noise`: the square of what it may be off by
-/// chance (James and Stein 1961, "Estimation with quadratic loss").
+/// chance (James and Stein 1961, "Estimation with quadratic loss", but that chance is given twice its deviation).
 double share_believed(double off, double noise) {
-  const double meant = std::max(expected * expected, off * off - noise);
+  const double meant = std::max(expected * expected, off * off - 4.0 * noise);
   return meant / (meant + noise);
 }
 
