@@ -48,7 +48,7 @@ class Exchange:
         ball, told = self.levels["ball"], self.levels["told"]
         if not ball and not told:
             return ()
-        return (f"seen small: {ball} as balls, {told} without walks, {self.walks_saved} of which were saved",)
+        return (f"seen small: {ball} as balls, {told} without walks ({self.walks_saved} saved)",)
 
 
 def exchange(statistics):
