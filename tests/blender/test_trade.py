@@ -10,7 +10,7 @@ import time
 import bpy
 import numpy as np
 import pytest
-from cycles_scenes import REFEREE, make_sphere
+from cycles_scenes import RADIUS, REFEREE, make_sphere
 from test_export import add_object
 
 from mesograin import native_module
@@ -87,11 +87,11 @@ def test_every_point_is_measured_and_taken_over(tmp_path, native, monkeypatch):
     assert len(begun) == 4, "what was measured on another material is not taken over"
 
 
-def make_heap(side=8):
-    """Balls at the vertices of a grid, which light goes between."""
+def make_heap(side=4):
+    """Balls beside each other at the vertices of a grid, which light goes between."""
     material = make_sphere(SUNS, segments=16, rings=8, sigma_s=(4.0, 4.0, 4.0), sigma_a=(0.2, 0.2, 0.2))
     ball = bpy.data.objects["Sphere"]
-    row = [(number + 0.5) * 2.0 / side - 1.0 for number in range(side)]
+    row = [RADIUS * ((number + 0.5) * 2.0 / side - 1.0) for number in range(side)]
     mesh = bpy.data.meshes.new("Places")
     mesh.from_pydata([(x, y, 0.0) for x in row for y in row], [], [])
     carrier = add_object("Places", mesh)
@@ -104,7 +104,14 @@ def make_heap(side=8):
 
 def test_a_heap_has_pictures_from_nothing_and_in_known_light(tmp_path, monkeypatch):
     make_heap()
-    asked = {"models": ("model_1", "model_2"), "samples": (1,), "exchange": "heaps"}
+    # Grains that walks go into, as they are larger than eight pixels.
+    asked = {
+        "models": ("model_1", "model_2"),
+        "samples": (1,),
+        "exchange": "heaps",
+        "size": (96, 80),
+        "reference_samples": 64,
+    }
     found = trade(tmp_path, **asked)
     firsts = {first["name"]: first for first in found["from_nothing"]}
     assert list(firsts) == ["model_1", "model_2"]
@@ -121,7 +128,7 @@ def test_a_heap_has_pictures_from_nothing_and_in_known_light(tmp_path, monkeypat
     assert len(sentences) == 2 and all("in light that a viewport has shown before" in each for each in sentences)
     sentences = [entry["sentence"] for entry in found["summary_from_nothing"]]
     assert len(sentences) == 2 and all("nothing known of light between grains" in each for each in sentences)
-    without = trade(tmp_path / "without", models=("model_2",), samples=(1,), exchange="off")
+    without = trade(tmp_path / "without", **{**asked, "models": ("model_2",), "exchange": "off"})
     assert without["from_nothing"] == without["in_known_light"] == []
     assert without["points"][0]["error"] > 1.3 * firsts["model_2"]["error"]
 
