@@ -2,7 +2,6 @@
 #include "render/light_map_atlas.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -19,8 +18,8 @@ constexpr double bytes_a_texel = 16.0;
 constexpr int least_resolution = 64;
 
 // Of the coarser grid, in nodes of the finer; both have the edges of the octahedral map.
-constexpr int coarse_step = 3;
-static_assert((LightMapDirections::side - 1) % coarse_step == 0);
+constexpr int coarse_step = 2;
+static_assert(LightMapDirections::half % coarse_step == 0);
 
 double sign_not_zero(double value) { return value < 0.0 ? -1.0 : 1.0; }
 
@@ -52,11 +51,15 @@ glm::dmat4 to_middle(const scene::Mesh& mesh) {
 
 void LightMapDirections::ask_for(const glm::dvec3& to_light) {
   if (all()) return;
-  const glm::dvec2 place = (0.5 * octahedral(to_light) + 0.5) * static_cast<double>(side - 1);
-  const glm::ivec2 low = glm::clamp(glm::ivec2(glm::floor(place)), 0, side - 2);
-  for (int corner = 0; corner < 4; ++corner) {
-    const int number = (low.y + corner / 2) * side + low.x + corner % 2;
-    const auto node = static_cast<std::size_t>(number);
+  const glm::dvec2 flat = octahedral(to_light);
+  const glm::dvec2 place = glm::abs(flat) * static_cast<double>(half);
+  const glm::ivec2 low = glm::min(glm::ivec2(place), half - 1);
+  const glm::dvec2 within = place - glm::dvec2(low);
+  const glm::ivec2 signs(flat.x < 0.0 ? -1 : 1, flat.y < 0.0 ? -1 : 1);
+  const int first = within.x + within.y > 1.0 ? 1 : 0;
+  for (const glm::ivec2& corner : {glm::ivec2(first), glm::ivec2(1, 0), glm::ivec2(0, 1)}) {
+    const glm::ivec2 at = half + signs * (low + corner);
+    const auto node = static_cast<std::size_t>(at.y * side + at.x);
     if (asked_[node]) continue;
     asked_[node] = true;
     --left_;
@@ -92,9 +95,8 @@ void LightMapAtlas::make_room(const LightMapDirections& directions, int resoluti
   if (wanted == 0) return;
   // Room to grow, so that another light or another turn of the heap does not draw everything anew.
   const int room = std::min(2 * wanted, LightMapDirections::count);
-  const auto affordable = static_cast<unsigned>(std::sqrt(most_bytes / bytes_a_texel / room));
-  const int allowed = std::clamp(resolution, least_resolution,
-                                 std::max(static_cast<int>(std::bit_floor(affordable)), least_resolution));
+  const int affordable = static_cast<int>(std::sqrt(most_bytes / bytes_a_texel / room));
+  const int allowed = std::clamp(resolution, least_resolution, std::max(affordable, least_resolution));
   if (maps_ && wanted <= maps_->layers() && allowed <= maps_->width() && level_ <= level) return;
   level_ = level;
   maps_.emplace(GL_RGBA32F, allowed, allowed, room);

@@ -18,11 +18,12 @@
 namespace mesograin::render {
 
 /// Which of the directions of an atlas are asked for: the nodes of a grid over the octahedral map of the sphere (Meyer
-/// et al., "On Floating-Point Normal Vectors", 2010). A direction asks for the four nodes around it, of which each
-/// sample takes one.
+/// et al., "On Floating-Point Normal Vectors", 2010), whose lines follow the octahedron's edges. A direction asks for
+/// the three nodes around it on its face, of which each sample takes one.
 class LightMapDirections {
  public:
-  static constexpr int side = 16;
+  static constexpr int half = 8;
+  static constexpr int side = 2 * half + 1;
   static constexpr int count = side * side;
 
   /// `to_light`: unit length, in the prototype's own axes.

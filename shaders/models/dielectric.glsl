@@ -51,6 +51,7 @@ vec3 facet_reflectance(float mu_h) { return vec3(fresnel_reflectance(mu_h, surfa
 #ifdef SPECULAR
 // Radiance to the viewer that the surface reflects.
 vec3 specular_reflection(SurfacePoint point, Outwards outwards, LightSample light) {
+  light.to_light = light.itself;
   float mu_i = dot(point.normal, light.to_light);
 #ifdef MIRRORS_WORLD
   // Facets look for the world themselves: there is no lobe of few directions to be joined.

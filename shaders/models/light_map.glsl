@@ -4,7 +4,7 @@
 // picture of the grain from there, so equal texels are equal projected areas: a sum over texels already holds the
 // cosine on the light's side.
 //
-// Instances of one prototype share maps, drawn in the prototype's own axes from directions all around it; of the four nearest to the light's
+// Instances of one prototype share maps, drawn in the prototype's own axes from directions all around it; of the three nearest to the light's
 // each sample takes one, so that their mean is as from between them (render::LightMapAtlas).
 #include "render/bindings.glsl"
 #include "render/stored_light_frame.glsl"
@@ -41,7 +41,7 @@ struct LightMapTexel {
 // By node of the grid of directions: the layer of its map, or -1.
 layout(std430, binding = LIGHT_MAP_LAYERS_BINDING) readonly buffer LightMapLayers { int light_map_layers[]; };
 
-const int DIRECTIONS_SIDE = 16;  // as render::LightMapDirections::side
+const int DIRECTIONS_HALF = 8;  // as render::LightMapDirections::half
 
 // To [-1, 1]^2; the lower half is folded over the edges (Meyer et al., "On Floating-Point Normal Vectors", 2010).
 vec2 octahedral(vec3 direction) {
@@ -50,12 +50,32 @@ vec2 octahedral(vec3 direction) {
   return direction.z < 0.0 ? (1.0 - abs(direction.yx)) * signs : direction.xy;
 }
 
+// The octahedron's vertex at a node of one of its map's quarters.
+vec3 octahedron_at(vec2 node) {
+  vec2 flat_place = node / float(DIRECTIONS_HALF);
+  float height = 1.0 - flat_place.x - flat_place.y;
+  return vec3(height < 0.0 ? 1.0 - flat_place.yx : flat_place, height);
+}
+
+// Of a triangle's corners on a face of the octahedron, each as likely as the place is near it and as long as it is: the mean of their unit
+// vectors is the direction itself.
 void turn_to_light_map(inout LightSample light) {
-  vec2 place = (0.5 * octahedral(normalize(light.to_light * grain_axes)) + 0.5) * float(DIRECTIONS_SIDE - 1);
-  vec2 low = clamp(floor(place), 0.0, float(DIRECTIONS_SIDE - 2));
-  vec2 random = vec2(pcg4d(uvec4(uint(grain_instance), uint(sample_index), uint(light.index), 2u)).xy >> 8u) * (1.0 / 16777216.0);
-  ivec2 node = ivec2(low + vec2(lessThan(random, place - low)));
-  int layer = light_map_layers[node.y * DIRECTIONS_SIDE + node.x];
+  vec2 along = octahedral(normalize(light.to_light * grain_axes));
+  vec2 place = abs(along) * float(DIRECTIONS_HALF);
+  vec2 low = min(floor(place), float(DIRECTIONS_HALF - 1));
+  vec2 within = place - low;
+  bool beyond = within.x + within.y > 1.0;
+  vec2 first = low + (beyond ? vec2(1.0) : vec2(0.0));
+  vec2 second = low + vec2(1.0, 0.0);
+  vec2 third = low + vec2(0.0, 1.0);
+  vec2 shares = beyond ? 1.0 - within.yx : within;
+  vec3 weights =
+      vec3(1.0 - shares.x - shares.y, shares) * vec3(length(octahedron_at(first)), length(octahedron_at(second)), length(octahedron_at(third)));
+  float random = low_discrepancy(uint(sample_index), pcg4d(uvec4(uint(grain_instance), uint(light.index), 2u, 0u)).xy).x;
+  random *= weights.x + weights.y + weights.z;
+  vec2 chosen = random < weights.x ? first : random < weights.x + weights.y ? second : third;
+  ivec2 node = DIRECTIONS_HALF + ivec2(chosen) * ivec2(along.x < 0.0 ? -1 : 1, along.y < 0.0 ? -1 : 1);
+  int layer = light_map_layers[node.y * (2 * DIRECTIONS_HALF + 1) + node.x];
   light.map = max(layer, 0);
   light.to_light = normalize(grain_axes * light_frames[light.map].z_axis.xyz);
 }

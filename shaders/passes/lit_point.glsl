@@ -125,6 +125,7 @@ void move_to_point(inout LightSample light, vec3 to_middle, SurfacePoint point) 
   int number = light.index - distant_light_count;
   if (number < 0) return;
   LightDraw drawn = draw_light(local_lights[number], middle_of_grain() + point.on_triangle, local_randoms[number]);
+  light.itself = drawn.to_light;
   light.to_light = normalize(drawn.to_light + light.to_light - to_middle);
   light.irradiance = drawn.irradiance;
   light.entering = drawn.irradiance;
