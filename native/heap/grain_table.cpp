@@ -108,6 +108,14 @@ Optics grey(const Optics& optics, int channel) {
   return grey;
 }
 
+/// Whether light leaves so near where it came in that what is sent out follows what shines on a place: of ten mean free
+/// paths to the radius and albedo .999, order 1 alone is 3 % too bright in all that is seen of a heap, of forty 5.
+bool is_thick(const Optics& optics) {
+  constexpr double least = 8.0;
+  const glm::dvec3 reduced = optics.sigma_t * (1.0 - optics.g * optics.albedo);
+  return !optics.opaque() && std::max({reduced.r, reduced.g, reduced.b}) >= least;
+}
+
 bool is_grey(const Optics& optics) {
   return optics.opaque() || (grey(optics, 0).sigma_t == optics.sigma_t && grey(optics, 0).albedo == optics.albedo);
 }
@@ -116,7 +124,7 @@ bool is_grey(const Optics& optics) {
 
 GrainTable::GrainTable(const Optics& optics, Sense sense, const transport::Effort& effort, int walks)
     : walks_(walks),
-      fine_(optics.opaque() || (optics.clear() && optics.lens)),
+      fine_(optics.opaque() || is_thick(optics) || (optics.clear() && optics.lens)),
       transparent_(optics.transparent()),
       clear_(optics.clear()),
       sigma_t_(optics.sigma_t) {

@@ -53,7 +53,7 @@ class GrainTable {
   const glm::vec2& seen_by() const { return seen_by_; }
 
   /// Whether what it sends out depends on where light came from by more than order 1 tells: where light leaves where it
-  /// came in, and where it goes on as through a lens.
+  /// came in or close by, and where it goes on as through a lens.
   bool is_fine() const { return fine_; }
 
   /// As Optics::clear().

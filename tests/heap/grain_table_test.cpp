@@ -10,6 +10,7 @@
 #include <limits>
 #include <memory>
 #include <set>
+#include <tuple>
 
 #include "heap/exchange.h"
 #include "heap/heap.h"
@@ -216,6 +217,16 @@ TEST(GrainTable, CrystalsAreNoLenses) {
   const glm::vec3 normal(0.0F, 0.0F, 1.0F);
   EXPECT_EQ(table.seen_place(normal, glm::vec3(0.6F, 0.0F, 0.8F)), normal);
   EXPECT_FALSE(table.is_fine());
+}
+
+TEST(GrainTable, OrderTwoTellsOfThickGrainsAlone) {
+  for (const Surface surface : {Surface::index_matched, Surface::dielectric})
+    for (const auto& [radius, g, fine] : {std::tuple{3.0, 0.0, false}, {10.0, 0.0, true}, {40.0, 0.9, false}}) {
+      Optics optics = medium(surface, glm::dvec3(0.1, radius, 0.1), glm::dvec3(0.999));
+      optics.g = g;
+      optics.lens = false;
+      EXPECT_EQ(GrainTable(optics, Sense::from_light, {}, 64).is_fine(), fine) << radius << " " << g;
+    }
 }
 
 TEST(GrainTable, ClearGrainsScatterAsMuchAsTheirWalksDo) {
