@@ -1,5 +1,5 @@
-"""Instances of an array share their prototype's light maps, drawn from directions on a grid: lit from between those they
-look as a single grain does, whose maps are drawn from where its light is."""
+"""Instances of an array share their prototype's light maps, drawn from directions on a grid: lit from between those
+they look as a single grain does, whose maps are drawn from where its light is."""
 
 import pathlib
 import sys
