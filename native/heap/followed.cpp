@@ -155,6 +155,18 @@ Gather::All Gather::look_at_told(std::uint32_t grain, const glm::vec3& normal, c
   return all;
 }
 
+Gather::Straight Gather::look_straight(std::uint32_t grain, const glm::vec3& normal, const glm::vec3& towards,
+                                       transport::Random& random) const {
+  const GrainTable& table = *space_.answering(grain).from_light;
+  const float mu = std::clamp(glm::dot(normal, towards), 0.0F, 1.0F);
+  const glm::vec3 answer = light_->seats->light_at(light_->answer, grain, table.seen_place(normal, towards), true);
+  Ray through = ray_through(grain, normal, towards);
+  const float crosses = mean(through.weight);
+  const glm::vec3 straight = glm::max(space_.seen_along(through, light_->sent, random), 0.0F);
+  const float open = crosses > 0.0F ? std::clamp(mean(through.weight) / crosses, 0.0F, 1.0F) : 0.0F;
+  return {table.lobe_at(mu) * glm::max(answer, 0.0F), straight, open};
+}
+
 void Gather::Behind::add(const SeenFacet& facet, const std::optional<End>& its_end, const glm::vec3& comes,
                          const glm::vec3& crosses, transport::Random& random) {
   const float share = mean(comes * (1.0F - crosses));

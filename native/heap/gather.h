@@ -87,6 +87,15 @@ class Gather {
   All look_at_told(std::uint32_t grain, const glm::vec3& normal, const glm::vec3& towards,
                    transport::Random& random) const;
 
+  /// What others send, by a grain's numbers, but for what is seen straight through it, which a ray finds.
+  struct Straight {
+    glm::vec3 told;      ///< by its numbers
+    glm::vec3 straight;  ///< of others
+    float open;          ///< of what crosses the grain, the share that leaves the heap; the mean of the channels
+  };
+  Straight look_straight(std::uint32_t grain, const glm::vec3& normal, const glm::vec3& towards,
+                         transport::Random& random) const;
+
   /// Whether a polynomial tells the light in a grain well enough: it scatters evenly and is not so thick that light
   /// stays below its surface.
   bool tells_inner_light(std::uint32_t grain) const;

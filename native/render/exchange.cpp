@@ -309,8 +309,8 @@ void Exchange::set(DeviceCache& cache, const Content& content, const scene::Scen
   const heap::Grains& grains = gathered.grains;
   const bool heaped = arrays && grains.grains.size() > 1;
   follows_ = (heaps || !exchanges) && arrays;
-  const bool follows =
-      follows_ && std::any_of(grains.kinds.begin(), grains.kinds.end(), std::mem_fn(&heap::Optics::followed));
+  const bool transparent = std::any_of(grains.kinds.begin(), grains.kinds.end(), std::mem_fn(&heap::Optics::followed));
+  const bool follows = follows_ && transparent;
   const bool lit = exchanges ? heaped || beside || clear || !grains.walls.empty() : heaped && follows;
   if (grains.grains.empty() || !lit) {
     solving_.reset();
@@ -326,7 +326,8 @@ void Exchange::set(DeviceCache& cache, const Content& content, const scene::Scen
   heap::Heap heap{std::move(gathered.grains), content.anchor(), scene.lights, scene.world, exchanges,
                   straight_elsewhere};
   about_lamps_ = heaps && arrays ? about_lamps(heap) : std::vector<bool>();
-  shows_more_ = clear || follows || !about_lamps_.empty();
+  looks_straight_ = arrays && transparent && scene.exchange == scene::Exchange::order_1;
+  shows_more_ = clear || follows || looks_straight_ || !about_lamps_.empty();
   const bool switched = solving_ && solving_->heap().exchanges != exchanges;
   if (switched) known_.reset();
   const bool regrouped = !solving_ || switched || roles_ != gathered.roles;

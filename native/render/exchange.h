@@ -104,6 +104,12 @@ class Exchange {
   /// Whether what others send to this grain is gathered, if not for all: it is opaque and a lamp is close by.
   bool gathers_for(std::uint32_t grain) const { return !about_lamps_.empty() && about_lamps_[grain]; }
 
+  /// Whether of this grain, whose numbers tell what others send, a ray finds what is seen straight through it.
+  bool looks_straight(std::uint32_t grain) const {
+    const heap::Grains& grains = solving_->heap().grains;
+    return looks_straight_ && grains.kinds[grains.grains[grain].kind].followed();
+  }
+
   /// Whether it is followed all the way, where no surface refracts.
   bool follows_paths() const { return follows_paths_; }
 
@@ -138,7 +144,8 @@ class Exchange {
   std::vector<RoleInHeap> roles_;
   bool gathers_ = false;
   bool follows_paths_ = false;
-  bool follows_ = false;     // light into what is seen of an array's grains, where that is cheap
+  bool follows_ = false;  // light into what is seen of an array's grains, where that is cheap
+  bool looks_straight_ = false;
   bool shows_more_ = false;  // gathering, of some grains
   std::vector<bool> about_lamps_;
   Means means_;

@@ -46,7 +46,9 @@ vec3 second_order_at(int first, vec3 p) {
 }
 
 #ifdef GATHERED
-uniform sampler2D gathered;         // w: 1 where a grain was looked at, 2 where its model tells how much crosses it
+// w: 1 where a grain was looked at, 2 where its model tells how much crosses it; 3 and how much of that leaves the heap, where no more than that
+// and what is seen straight through it was looked for.
+uniform sampler2D gathered;
 uniform sampler2D gathered_lights;  // and the world, seen through clear grains; where w is 2, all that is behind one
 #endif
 
@@ -91,7 +93,7 @@ vec3 light_from_grains(int object_number, vec3 place, vec3 normal, vec3 to_viewe
 // Whether what is behind the grain was looked at through its own facets, so that the model is asked how much of it crosses.
 bool looked_through() {
 #if defined(EXCHANGE) && defined(GATHERED)
-  return texelFetch(gathered, ivec2(gl_FragCoord.xy), 0).w > 1.5;
+  return texelFetch(gathered, ivec2(gl_FragCoord.xy), 0).w == 2.0;
 #else
   return false;
 #endif

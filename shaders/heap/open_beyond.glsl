@@ -61,8 +61,9 @@ vec3 seen_straight_on(vec3 left, vec3 direction) {
 float open_beyond(vec3 normal, vec3 to_viewer) {
 #if defined(EXCHANGE) && !defined(SEES_BEHIND)
 #ifdef GATHERED
-  if (looked_through()) return 1.0;
-  if (texelFetch(gathered, ivec2(gl_FragCoord.xy), 0).w > 0.0) return 0.0;
+  float looked = texelFetch(gathered, ivec2(gl_FragCoord.xy), 0).w;
+  if (looked >= 3.0) return looked - 3.0;
+  if (looked > 0.0) return float(looked_through());
 #endif
   vec4 object = heap_light[grain_instance];
   if (object.w <= 0.0) return 0.0;

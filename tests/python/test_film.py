@@ -93,14 +93,13 @@ def of_two(world, exchange):
 
 
 # One behind the other; their light is followed. What is seen straight through is not blurred: .9 % off, 1.4 with it.
-@pytest.mark.parametrize("exchange", ["heaps", "gathered", "off"])
+@pytest.mark.parametrize("exchange", ["heaps", "gathered", "off", "order_1"])
 def test_grains_of_an_array_are_crossed_one_after_the_other(exchange):
     passed = transmittances(1.25, spheres=2)
     within = inside(1.25)
     numpy.testing.assert_allclose(of_two(FILM, exchange)[within, 3], 1.0 - passed[within].mean(axis=-1), atol=0.01)
 
 
-# Or told by a few numbers, which know roughly how much of the world is seen.
 @pytest.mark.parametrize("exchange", ["heaps", "off", "order_1"])
 def test_the_film_lacks_as_much_as_the_world_gives(exchange):
     film = of_two(native.World(film_transparent=True), exchange)

@@ -89,18 +89,18 @@ def blocks(image):
     return image.reshape(image.shape[0] // 8, 8, image.shape[1] // 8, 8).mean(axis=(1, 3))
 
 
-# Measured of model 2 and Lambert, total and blocks: .999, 2.1 %; .990, 1.5; .982, 3.0; .999, 1.2; 1.027, 3.9; .998,
-# 1.9; 1.010, 5.1; 1.005, 1.5.
+# Measured of model 2 and Lambert, `order_1` and `gathered`, total and blocks: .999, 2.4 %; .996, 1.0; .995, 1.6; 1.001,
+# 1.1; 1.018, 3.3; 1.004, 1.7; 1.003, 2.2; 1.003, 1.5.
 @pytest.mark.parametrize("file, model, exchange, total, error", [
     ("L8_s45.exr", "lambert", "order_1", 0.01, 0.025),
     ("L8_s45.exr", "lambert", "gathered", 0.015, 0.02),
-    ("M9_3_s45.exr", "model_2", "order_1", 0.03, 0.035),
-    ("M9_3_s45.exr", "model_3", "order_1", 0.03, 0.035),
+    ("M9_3_s45.exr", "model_2", "order_1", 0.01, 0.025),
+    ("M9_3_s45.exr", "model_3", "order_1", 0.01, 0.025),
     ("M9_3_s45.exr", "model_2", "gathered", 0.01, 0.015),
-    ("M999_3_sky.exr", "model_2", "order_1", 0.03, 0.042),
-    ("M999_3_sky.exr", "model_3", "order_1", 0.03, 0.04),
+    ("M999_3_sky.exr", "model_2", "order_1", 0.025, 0.038),
+    ("M999_3_sky.exr", "model_3", "order_1", 0.02, 0.037),
     ("M999_3_sky.exr", "model_2", "gathered", 0.01, 0.023),
-    ("M9_1_low.exr", "model_2", "order_1", 0.02, 0.06),
+    ("M9_1_low.exr", "model_2", "order_1", 0.015, 0.03),
     ("M9_1_low.exr", "model_3", "gathered", 0.01, 0.02),
     ("M9_3_s45.exr", "model_2", "heaps", 0.01, 0.015),
     ("M999_3_sky.exr", "model_2", "heaps", 0.01, 0.028),
@@ -119,12 +119,13 @@ def test_a_heap_is_as_bright_as_it_is(file, model, exchange, total, error):
 # White and ten mean free paths to the radius, an even sky (its lower half dark), as mesograin-referee heap has it from
 # 1024 paths (noise in blocks .2 %). The bounds are what is asked for; told by numbers alone of what walks meet,
 # `gathered` was 3.0 % off.
-@pytest.mark.parametrize("exchange, error", [("heaps", 0.04), ("gathered", 0.025)])
-def test_white_thick_grains_are_darker_where_others_stand_about_them(exchange, error):
+@pytest.mark.parametrize("model, exchange, error", [("transport", "order_1", 0.04), ("model_2", "heaps", 0.04),
+                                                    ("model_2", "gathered", 0.025)])
+def test_white_thick_grains_are_darker_where_others_stand_about_them(model, exchange, error):
     truth = numpy.loadtxt(DATA / "M999_10_sky.csv", delimiter=",")
     image = {"material": {"kind": "subsurface", "sigma_s": 9.99, "sigma_a": 0.01, "g": 0.0,
                           "boundary": "index_matched"}, "light": {"type": "hemisphere", "radiance": 1.0}}
-    found = blocks(picture(image, "model_2", exchange))
+    found = blocks(picture(image, model, exchange))
     assert found.sum() == pytest.approx(truth.sum(), rel=0.015)
     assert numpy.abs(found - truth).sum() < error * truth.sum()
 

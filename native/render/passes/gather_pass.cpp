@@ -213,6 +213,11 @@ bool GatherPass::run(const Sample& sample, const ArrayVisibility& arrays, Surfac
                         0.0F);
       } else if (all || sample.exchange.gathers_for(*grain)) {
         others_[i] = glm::vec4(gather->look(*grain, normal, towards, rays_a_sample, random), 1.0F);
+      } else if (sample.exchange.looks_straight(*grain)) {
+        const heap::Gather::Straight found = gather->look_straight(*grain, normal, towards, random);
+        others_[i] = glm::vec4(found.told, 3.0F + found.open);
+        straight_[i] = glm::vec4(found.straight, 0.0F);
+        continue;  // it has no noise
       }
       if (others_[i].w == 0.0F || seen_by_[i] == Level::told) continue;
       likenesses_[i].object = std::abs(facing.w);
