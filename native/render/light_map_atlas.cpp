@@ -59,7 +59,8 @@ void LightMapDirections::ask_for(const glm::dvec3& to_light) {
   const int first = within.x + within.y > 1.0 ? 1 : 0;
   for (const glm::ivec2& corner : {glm::ivec2(first), glm::ivec2(1, 0), glm::ivec2(0, 1)}) {
     const glm::ivec2 at = half + signs * (low + corner);
-    const auto node = static_cast<std::size_t>(at.y * side + at.x);
+    const int number = at.y * side + at.x;
+    const auto node = static_cast<std::size_t>(number);
     if (asked_[node]) continue;
     asked_[node] = true;
     --left_;
