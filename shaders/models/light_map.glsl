@@ -71,7 +71,7 @@ void turn_to_light_map(inout LightSample light) {
   vec2 shares = beyond ? 1.0 - within.yx : within;
   vec3 weights =
       vec3(1.0 - shares.x - shares.y, shares) * vec3(length(octahedron_at(first)), length(octahedron_at(second)), length(octahedron_at(third)));
-  float random = low_discrepancy(uint(sample_index), pcg4d(uvec4(uint(grain_instance), uint(light.index), 2u, 0u)).xy).x;
+  float random = low_discrepancy_beside_pixel(uint(sample_index), pcg4d(uvec4(uint(grain_instance), uint(light.index), 2u, 0u)).xy).x;
   random *= weights.x + weights.y + weights.z;
   vec2 chosen = random < weights.x ? first : random < weights.x + weights.y ? second : third;
   ivec2 node = DIRECTIONS_HALF + ivec2(chosen) * ivec2(along.x < 0.0 ? -1 : 1, along.y < 0.0 ? -1 : 1);
