@@ -110,6 +110,9 @@ class Exchange {
     return looks_straight_ && grains.kinds[grains.grains[grain].kind].followed();
   }
 
+  /// Whether it is followed into any grain that is seen.
+  bool follows() const { return gathers_ || follows_; }
+
   /// Whether it is followed all the way, where no surface refracts.
   bool follows_paths() const { return follows_paths_; }
 
