@@ -110,6 +110,9 @@ class Exchange {
     return looks_straight_ && grains.kinds[grains.grains[grain].kind].followed();
   }
 
+  /// Whether nothing else is gathered of any.
+  bool looks_straight_alone() const { return looks_straight_ && !gather_->sees_into_any(); }
+
   /// Whether it is followed into any grain that is seen.
   bool follows() const { return gathers_ || follows_; }
 

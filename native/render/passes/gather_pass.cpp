@@ -45,10 +45,19 @@ double deviation_by_chance(double cone) {
   return std::clamp(most_deviation * cone_of_ten_degrees / cone, deviation, most_deviation);
 }
 
-void upload(std::optional<gl::Texture>& texture, const glm::ivec2& size, const std::vector<glm::vec4>& pixels) {
+void resize(std::optional<gl::Texture>& texture, const glm::ivec2& size) {
   if (!texture || texture->width() != size.x || texture->height() != size.y)
     texture.emplace(GL_RGBA32F, size.x, size.y);
+}
+
+void upload(std::optional<gl::Texture>& texture, const glm::ivec2& size, const std::vector<glm::vec4>& pixels) {
+  resize(texture, size);
   texture->upload(GL_RGBA, GL_FLOAT, pixels.data());
+}
+
+void clear(std::optional<gl::Texture>& texture, const glm::ivec2& size) {
+  resize(texture, size);
+  texture->clear();
 }
 
 /// Each look goes through another place of the pixel, as far as the grain is seen there.
@@ -105,18 +114,61 @@ std::size_t unit_of(const Content& content, std::size_t number) {
 
 std::size_t number_of(const glm::vec4& facing) { return static_cast<std::size_t>(std::abs(facing.w)) - 1; }
 
+std::uint64_t seed_of(const Sample& sample) { return (static_cast<std::uint64_t>(sample.seed) << 32U) + sample.index; }
+
+struct Looked {
+  glm::vec3 place;    ///< in the heap
+  glm::vec3 towards;  ///< the viewer
+};
+
+Looked looked_from(const Sample& sample, const SeenSurfaces& seen, std::size_t pixel) {
+  const glm::vec3 middle(sample.content.receiver(number_of(seen.normals[pixel])).ball);
+  const glm::vec3 place = middle + glm::vec3(seen.positions[pixel]);
+  return {place, glm::normalize(glm::vec3(seen.viewer) - seen.viewer.w * place)};
+}
+
 }  // namespace
 
 bool GatherPass::run(const Sample& sample, const ArrayVisibility& arrays, SurfacePass& surfaces) {
-  const std::shared_ptr<const heap::Gather>& gather = sample.exchange.gather();
-  const bool all = sample.exchange.gathers_all();
-  const bool alone = !sample.exchange.any();
   ran_ = sample.gathers;
   if (!ran_) return true;
   const auto start = std::chrono::steady_clock::now();
+  const SeenSurfaces seen = surfaces.seen(sample);
+  const bool whole =
+      sample.exchange.looks_straight_alone() ? look_straight(sample, seen) : follow_light(sample, arrays, seen);
+  milliseconds_ = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  return whole;
+}
+
+bool GatherPass::look_straight(const Sample& sample, const SeenSurfaces& seen) {
+  const heap::Gather& gather = *sample.exchange.gather();
+  levels_ = {};
+  others_.assign(seen.normals.size(), glm::vec4(0.0F));
+  const auto width = static_cast<std::size_t>(sample.size.x);
+  const std::uint64_t seed = seed_of(sample);
+  const bool whole = cast_rows(sample.size.y, sample.go_on, [&](int first, int end) {
+    for (std::size_t i = width * static_cast<std::size_t>(first); i < width * static_cast<std::size_t>(end); ++i) {
+      if (seen.normals[i].w == 0.0F) continue;
+      const std::optional<std::uint32_t>& grain = sample.exchange.roles()[number_of(seen.normals[i])].grain;
+      if (!grain || !sample.exchange.looks_straight(*grain)) continue;
+      transport::Random random(seed, i);
+      const heap::Gather::Straight found =
+          gather.look_straight(*grain, glm::vec3(seen.normals[i]), looked_from(sample, seen, i).towards, random);
+      others_[i] = glm::vec4(found.told + found.straight, 3.0F + found.open);
+    }
+  });
+  if (!whole) return false;
+  upload(device_others_, sample.size, others_);
+  clear(device_lights_, sample.size);
+  return true;
+}
+
+bool GatherPass::follow_light(const Sample& sample, const ArrayVisibility& arrays, const SeenSurfaces& seen) {
+  const std::shared_ptr<const heap::Gather>& gather = sample.exchange.gather();
+  const bool all = sample.exchange.gathers_all();
+  const bool alone = !sample.exchange.any();
   std::optional<ContentFacets> facets;
   if (sample.looks_into_facets()) facets.emplace(arrays.tree(), sample.content, sample.exchange);
-  const SeenSurfaces seen = surfaces.seen(sample);
   const std::vector<RoleInHeap>& roles = sample.exchange.roles();
   others_.assign(seen.normals.size(), glm::vec4(0.0F));
   lights_.assign(seen.normals.size(), glm::vec4(0.0F));
@@ -153,7 +205,7 @@ bool GatherPass::run(const Sample& sample, const ArrayVisibility& arrays, Surfac
   const bool knows = first_look && facets && sample.learns;
   const heap::Gather::Walks walks = gather->walks(rays_a_sample, all);
   const float narrowed = heap::Gather::narrowed(sample.index);
-  const std::uint64_t seed = (static_cast<std::uint64_t>(sample.seed) << 32U) + sample.index;
+  const std::uint64_t seed = seed_of(sample);
   const bool whole = cast_rows(sample.size.y, sample.go_on, [&](int first, int end) {
     for (std::size_t i = width * static_cast<std::size_t>(first); i < width * static_cast<std::size_t>(end); ++i) {
       const glm::vec4& facing = seen.normals[i];
@@ -161,8 +213,7 @@ bool GatherPass::run(const Sample& sample, const ArrayVisibility& arrays, Surfac
       const std::size_t number = number_of(facing);
       const std::optional<std::uint32_t>& grain = roles[number].grain;
       if (!grain) continue;
-      const glm::vec3 place = glm::vec3(sample.content.receiver(number).ball) + glm::vec3(seen.positions[i]);
-      const glm::vec3 towards = glm::normalize(glm::vec3(seen.viewer) - seen.viewer.w * place);
+      const auto [place, towards] = looked_from(sample, seen, i);
       transport::Random random(seed, i);
       const glm::vec3 normal(facing);
       if (clear && gather->sees_into(*grain)) {
@@ -260,7 +311,6 @@ bool GatherPass::run(const Sample& sample, const ArrayVisibility& arrays, Surfac
         if (const auto& grain = roles[number_of(seen.normals[i])].grain) ++pixels[*grain];
     inner_lights_.learn(pixels, *facets, sample.seed, sample.go_on);
   }
-  milliseconds_ = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   return true;
 }
 
@@ -291,8 +341,8 @@ void GatherPass::bind(const gl::Program& program) const {
   if (!ran_) return;
   program.offer("gathered", *device_others_);
   program.offer("gathered_lights", *device_lights_);
-  program.offer("gathered_scattered", *device_scattered_);
-  program.offer("gathered_mirrored", *device_mirrored_);
+  if (device_scattered_) program.offer("gathered_scattered", *device_scattered_);
+  if (device_mirrored_) program.offer("gathered_mirrored", *device_mirrored_);
 }
 
 }  // namespace mesograin::render

@@ -35,6 +35,8 @@ class GatherPass {
   void bind(const gl::Program& program) const;
 
  private:
+  bool follow_light(const Sample& sample, const ArrayVisibility& arrays, const SeenSurfaces& seen);
+  bool look_straight(const Sample& sample, const SeenSurfaces& seen);
   void make_amends(const Sample& sample, const std::vector<glm::vec4>& normals);
 
   Denoiser denoiser_;
