@@ -28,7 +28,7 @@ Quality quality_for(std::size_t grains) {
 }
 
 Quality affordable(const Quality& quality, std::size_t seats, std::size_t sharing) {
-  constexpr std::size_t most_links = 16'000'000;
+  constexpr std::size_t most_links = 15'000'000;
   constexpr std::size_t most_of_sharing = most_links / 4;
   // Fewer tell too little of a cell's light.
   constexpr int fewest_of_sharing = 12;

@@ -171,6 +171,7 @@ Sample Frame::begin_sample(const GoOn& go_on, bool hurried) {
                 .gathers = gathers,
                 .denoises = scene_.denoise,
                 .levels = levels_ && traced && gathers && exchange_.any() && !exchange_.gathers_all(),
+                .awaited = !patient_ && index == 0,
                 .learns = !patient_ && cast && gathers && exchange_.follows() && !exchange_.follows_paths() &&
                           exchange_.gather()->tells_any_inner_light(),
                 .pixels_at_once = pixels_at_once_,

@@ -14,6 +14,9 @@ namespace {
 constexpr float shaped_from = 8.0F;
 constexpr float walked_from = 4.0F;
 
+// Of one sample the noise of walks is no less than what numbers lack.
+constexpr float walked_from_where_awaited = 8.0F;
+
 // By how much coarser ways are off, of all light, where probes do not tell that it is more: what they find counts as
 // far as their noise is less.
 constexpr double expected = 0.03;
@@ -45,8 +48,8 @@ float PixelsAcross::of(const glm::vec4& ball) const {
   return depth > 0.0F ? ball.w * pixels_ / depth : std::numeric_limits<float>::infinity();
 }
 
-Level level_of(bool is_ball, float pixels_across) {
-  if (pixels_across < walked_from) return Level::told;
+Level level_of(bool is_ball, float pixels_across, bool awaited) {
+  if (pixels_across < (awaited ? walked_from_where_awaited : walked_from)) return Level::told;
   return is_ball || pixels_across >= shaped_from ? Level::own_shape : Level::ball;
 }
 

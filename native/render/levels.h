@@ -42,8 +42,8 @@ class PixelsAcross {
   float pixels_;  // of what is as long as it is far
 };
 
-/// Of a grain that is seen so many pixels across.
-Level level_of(bool is_ball, float pixels_across);
+/// Of a grain that is seen so many pixels across. `awaited`: of the one sample of a picture that a drag shows.
+Level level_of(bool is_ball, float pixels_across, bool awaited = false);
 
 /// How much more light the closest way finds than a coarser one, over the grains of each unit of the content: few are
 /// asked for both, in each sample, and their means make good for all. What is left is how that differs from place to

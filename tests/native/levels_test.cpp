@@ -29,6 +29,7 @@ TEST(Levels, TheSmallerTheLessClosely) {
   EXPECT_EQ(level_of(true, 7.0F), Level::own_shape);
   EXPECT_EQ(level_of(false, 3.0F), Level::told);
   EXPECT_EQ(level_of(true, 3.0F), Level::told);
+  EXPECT_EQ(level_of(true, 7.0F, true), Level::told) << "of one sample";
   EXPECT_EQ(level_of(false, NAN), Level::ball) << "of nothing that is known";
 }
 

@@ -195,9 +195,9 @@ bool GatherPass::follow_light(const Sample& sample, const ArrayVisibility& array
   const PixelsAcross pixels_across(anchor_to_clip(sample.content, sample.camera), sample.size);
   // A picture's first sample, which a drag shows, costs half as much by balls.
   const bool first_look = sample.index == 0;
-  const auto level_at = [&](std::size_t number) {
+  const auto level_at = [&](std::size_t number, bool awaited) {
     return sample.levels && number < instances
-               ? level_of(roles[number].ball, pixels_across.of(sample.content.receiver(number).ball))
+               ? level_of(roles[number].ball, pixels_across.of(sample.content.receiver(number).ball), awaited)
                : Level::own_shape;
   };
   // By what is known of grains' inner light it costs less still, and is nearer.
@@ -241,10 +241,11 @@ bool GatherPass::follow_light(const Sample& sample, const ArrayVisibility& array
           const auto found = in_own_shape ? gather->look_at_all(at, *facets, walks, random) : std::nullopt;
           return found ? *found : in_ball();
         };
-        Level level = level_at(number);
+        Level level = level_at(number, false);
         std::optional<heap::Gather::All> found;
         if (const heap::InnerLight* light = knows && level != Level::told ? inner_lights_.of(*grain) : nullptr)
           found = gather->look_at_all(at, *facets, *light, random);
+        if (!found && sample.awaited) level = level_at(number, true);
         if (found || (level == Level::ball && !shaped)) level = Level::own_shape;
         if (level == Level::told) found = gather->look_at_told(*grain, normal, towards, random);
         if (!found) found = by_walks(by_facets && level == Level::own_shape);

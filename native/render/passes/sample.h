@@ -55,6 +55,7 @@ struct Sample {
   bool gathers;      ///< light between grains is gathered for pixels that show them
   bool denoises;     ///< and neighbours that show the same tell each other what was found
   bool levels;       ///< it is followed less closely into those that are seen small
+  bool awaited;      ///< it is a picture of its own, to someone who may change something before there is another
   bool learns;       ///< grains' inner light is found beside it, for another picture of the same light
   Mirrors mirrors = Mirrors::none;
   bool straight_through = false;  ///< light that goes straight through single draws is followed
