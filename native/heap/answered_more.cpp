@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <glm/common.hpp>
 #include <optional>
 
 #include "heap/sphere_walk.h"
@@ -29,21 +30,25 @@ glm::vec3 leaves(const Optics& optics) {
 
 }  // namespace
 
-glm::vec3 answered_more(const Optics& now, const Optics& before) {
-  glm::vec3 more(1.0F);
+AnsweredMore answered_more(const Optics& now, const Optics& before) {
+  AnsweredMore more;
   if (now == before) return more;
   const glm::vec3 is = leaves(now);
   const glm::vec3 was = leaves(before);
-  for (int channel = 0; channel < 3; ++channel)
-    if (was[channel] > black) more[channel] = is[channel] / was[channel];
+  const glm::vec3 met_more(now.met() / glm::max(before.met(), 1e-12));
+  for (int channel = 0; channel < 3; ++channel) {
+    if (was[channel] <= black) continue;
+    more.of_all[channel] = is[channel] / was[channel];
+    more.of_met[channel] = more.of_all[channel] / std::max(met_more[channel], 1e-12F);
+  }
   return more;
 }
 
-std::vector<glm::vec3> answered_more(const std::vector<Optics>& now, const std::vector<Optics>& before) {
-  std::vector<glm::vec3> more;
+std::vector<AnsweredMore> answered_more(const std::vector<Optics>& now, const std::vector<Optics>& before) {
+  std::vector<AnsweredMore> more;
   for (std::size_t kind = 0; kind < std::min(now.size(), before.size()); ++kind)
     more.push_back(answered_more(now[kind], before[kind]));
-  more.resize(now.size(), glm::vec3(1.0F));
+  more.resize(now.size());
   return more;
 }
 

@@ -9,11 +9,15 @@
 
 namespace mesograin::heap {
 
-/// What leaves `now`, unless it crosses straight, over what leaves `before`, of light from everywhere; 1 where they are
-/// alike.
-glm::vec3 answered_more(const Optics& now, const Optics& before);
+/// Of light from everywhere; 1 where two materials are alike.
+struct AnsweredMore {
+  glm::vec3 of_all{1.0F};  ///< what leaves the one, unless it crosses straight, over what leaves the other
+  glm::vec3 of_met{1.0F};  ///< the same of what did not cross
+};
 
-/// The same of as many kinds.
-std::vector<glm::vec3> answered_more(const std::vector<Optics>& now, const std::vector<Optics>& before);
+AnsweredMore answered_more(const Optics& now, const Optics& before);
+
+/// Of as many kinds.
+std::vector<AnsweredMore> answered_more(const std::vector<Optics>& now, const std::vector<Optics>& before);
 
 }  // namespace mesograin::heap

@@ -147,7 +147,7 @@ Gather::All Gather::look_at_told(std::uint32_t grain, const glm::vec3& normal, c
   const GrainTable& table = *space_.answering(grain).from_light;
   const float mu = std::clamp(glm::dot(normal, towards), 0.0F, 1.0F);
   const glm::vec3 sent = light_->seats->light_at(light_->sent, grain, table.seen_place(normal, towards), true);
-  all.scattered = answered_more_[space_.grains()[grain].kind] * table.lobe_at(mu) * glm::max(sent, 0.0F);
+  all.scattered = table.lobe_at(mu) * glm::max(sent, 0.0F);
   Ray through = ray_through(grain, normal, towards);
   all.met = 1.0F - through.weight;
   all.straight = all.others = glm::max(space_.seen_along(through, light_->sent, random), 0.0F);

@@ -9,7 +9,6 @@
 #include <numbers>
 #include <utility>
 
-#include "heap/answered_more.h"
 #include "heap/spread.h"
 #include "lights/device_light.h"
 #include "lights/world_light.h"
@@ -93,7 +92,6 @@ Gather::Gather(std::shared_ptr<const Heap> heap, std::shared_ptr<const Found> fo
   // Those that walks tell of take no other medium for their own.
   const bool similar = heap_.exchanges && ways_ == Ways::short_ones;
   of_others_ = similar ? of_others(heap_.grains.kinds) : heap_.grains.kinds;
-  answered_more_ = answered_more(of_others(heap_.grains.kinds), of_others(found_->heap->grains.kinds));
 }
 
 Gather::Gather(const std::shared_ptr<const Heap>& heap, std::shared_ptr<const HeapLight> light, Ways ways)

@@ -342,8 +342,7 @@ class Gather {
   scene::Backdrop seen_by_camera_;
   std::vector<lights::DeviceLight> lights_;  // of the heap, its places from the anchor
   Ways ways_;
-  std::vector<Optics> of_others_;         // by kind: of grains that are on the way of light
-  std::vector<glm::vec3> answered_more_;  // by kind: than in the heap of the light
+  std::vector<Optics> of_others_;  // by kind: of grains that are on the way of light
 };
 
 }  // namespace mesograin::heap

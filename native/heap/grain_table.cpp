@@ -25,14 +25,6 @@ glm::dvec3 met_at(const glm::vec3& sigma_t, double mu) {
   return -glm::dvec3(std::expm1(-depth.r), std::expm1(-depth.g), std::expm1(-depth.b));
 }
 
-/// 2 int (1 - e^(-2 sigma mu)) mu dmu from 0 to 1, of a sphere of radius 1 (van de Hulst, "Light Scattering by Small
-/// Particles", 1957, section 11.22: the efficiency of geometric extinction).
-double met_from_everywhere(double sigma_t) {
-  const double depth = 2.0 * sigma_t;
-  if (depth < 0.02) return depth * (2.0 / 3.0 - depth / 4.0 + depth * depth / 15.0);
-  return 1.0 + 2.0 * (std::exp(-depth) * (depth + 1.0) - 1.0) / (depth * depth);
-}
-
 /// Of light from everywhere, what enters a sphere whose surface refracts and meets something before it leaves, times
 /// the albedo: inside it comes to the surface at the same angle ever again, and is reflected as often as outside.
 glm::dvec3 scattered_once(const Optics& optics) {
@@ -129,9 +121,7 @@ GrainTable::GrainTable(const Optics& optics, Sense sense, const transport::Effor
       clear_(optics.clear()),
       sigma_t_(optics.sigma_t) {
   if (clear_) scattered_ = glm::vec3(scattered_once(optics));
-  if (transparent_)
-    for (int channel = 0; channel < 3; ++channel)
-      met_[channel] = static_cast<float>(met_from_everywhere(optics.sigma_t[channel]));
+  met_ = glm::vec3(optics.met());
   trace(optics, sense, effort);
   // Walks that are shared by channels are noisier in each than its own.
   for (int channel = 0; channel < 3 && !is_grey(optics); ++channel)

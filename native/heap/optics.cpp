@@ -29,7 +29,20 @@ Surface surface_of(const scene::Material& material) {
   }
 }
 
+/// 2 int (1 - e^(-2 sigma mu)) mu dmu from 0 to 1, of a sphere of radius 1 (van de Hulst, "Light Scattering by Small
+/// Particles", 1957, section 11.22: the efficiency of geometric extinction).
+double met_from_everywhere(double sigma_t) {
+  const double depth = 2.0 * sigma_t;
+  if (depth < 0.02) return depth * (2.0 / 3.0 - depth / 4.0 + depth * depth / 15.0);
+  return 1.0 + 2.0 * (std::exp(-depth) * (depth + 1.0) - 1.0) / (depth * depth);
+}
+
 }  // namespace
+
+glm::dvec3 Optics::met() const {
+  if (!transparent()) return glm::dvec3(1.0);
+  return {met_from_everywhere(sigma_t.r), met_from_everywhere(sigma_t.g), met_from_everywhere(sigma_t.b)};
+}
 
 bool Optics::followed() const {
   // Mean free paths to the radius: in thicker ones that costs more than the maps and shadows of a model. Between cosine

@@ -34,6 +34,9 @@ struct Optics {
   /// Whether light may go straight through without meeting anything.
   bool transparent() const { return surface == Surface::index_matched; }
 
+  /// Of light from everywhere, the share that does not go straight through without meeting anything.
+  glm::dvec3 met() const;
+
   /// Whether light is followed to each scattering in what is seen of it.
   bool followed() const;
 

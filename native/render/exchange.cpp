@@ -13,6 +13,7 @@
 #include <numbers>
 #include <utility>
 
+#include "heap/changed_light.h"
 #include "heap/moved_light.h"
 #include "heap/scaled_light.h"
 
@@ -387,17 +388,24 @@ glm::vec3 growth(const heap::Heap& before, const heap::Heap& now) {
 
 }  // namespace
 
-// Rays that looked for grains where these are no more would begin in some and miss others, and a sun that was turned
-// down would go on to glare from all grains. Returns whether what is known is of other places or lights now.
+// Rays that looked for grains where these are no more would begin in some and miss others, a sun that was turned down
+// would go on to glare from all grains, and grains of another colour to shine in the old one. Returns whether what is
+// known is of other places, lights or materials now.
 bool Exchange::keep_up() {
   if (!known_) return false;
-  const bool stay = heap::same_places(known_->grains(), solving_->heap().grains);
+  const heap::Grains& before = known_->grains();
+  const heap::Grains& now = solving_->heap().grains;
+  const bool stay = heap::same_places(before, now);
+  // Of more it would be twice in memory.
+  constexpr std::size_t most_changed = 300'000;
+  const bool changed = before.kinds != now.kinds && alike(before, now) && now.grains.size() <= most_changed;
   const glm::vec3 grown = growth(*known_->heap, solving_->heap());
   constexpr float noticed = 0.01F;
   const bool shines_alike = glm::all(glm::lessThan(glm::abs(grown - 1.0F), glm::vec3(noticed)));
-  if (stay && shines_alike) return false;
-  std::optional<heap::HeapLight> light = heap::moved_light(*known_->light, known_->grains(), solving_->heap().grains);
+  if (stay && shines_alike && !changed) return false;
+  std::optional<heap::HeapLight> light = heap::moved_light(*known_->light, before, now);
   if (!light) return false;
+  if (changed) heap::change(*light, before, now);
   if (!shines_alike) heap::scale(*light, grown);
   known_ = Known{solving_->shared_heap(), std::make_shared<const heap::HeapLight>(std::move(*light)), known_->number};
   gather_.reset();

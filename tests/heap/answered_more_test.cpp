@@ -28,10 +28,12 @@ TEST(AnsweredMore, IsTheRatioOfTablesWhateverChanges) {
       const Optics now = ball_of(surface, glm::dvec3(thick), brown);
       const GrainTable was(before, Sense::from_light, {});
       const GrainTable is(now, Sense::from_light, {});
-      const glm::vec3 more = answered_more(now, before);
+      const glm::vec3 more = answered_more(now, before).of_all;
       for (int channel = 0; channel < 3; ++channel) {
         const float right = is.albedo()[channel] / was.albedo()[channel];
         EXPECT_NEAR(more[channel], right, 0.06F * right) << static_cast<int>(surface) << " " << thin << " " << channel;
+        const float of_met = right * was.met()[channel] / is.met()[channel];
+        EXPECT_NEAR(answered_more(now, before).of_met[channel], of_met, 0.06F * of_met);
       }
     }
 }
@@ -42,15 +44,15 @@ TEST(AnsweredMore, HasNoNoiseWhereLittleChanges) {
   now.albedo = glm::dvec3(0.91);
   const GrainTable was(before, Sense::from_light, {});
   const GrainTable is(now, Sense::from_light, {});
-  EXPECT_NEAR(answered_more(now, before).g, is.albedo().g / was.albedo().g, 0.004F);
-  EXPECT_EQ(answered_more(before, before), glm::vec3(1.0F));
+  EXPECT_NEAR(answered_more(now, before).of_all.g, is.albedo().g / was.albedo().g, 0.004F);
+  EXPECT_EQ(answered_more(before, before).of_all, glm::vec3(1.0F));
 }
 
 TEST(AnsweredMore, TellsNothingOfWhatWasBlack) {
   const Optics black = ball_of(Surface::index_matched, glm::dvec3(3.0), glm::dvec3(0.0));
   const Optics white = ball_of(Surface::index_matched, glm::dvec3(3.0), glm::dvec3(0.99));
-  EXPECT_EQ(answered_more(white, black), glm::vec3(1.0F));
-  EXPECT_LT(answered_more(black, white).g, 1e-3F);
+  EXPECT_EQ(answered_more(white, black).of_all, glm::vec3(1.0F));
+  EXPECT_LT(answered_more(black, white).of_all.g, 1e-3F);
   EXPECT_EQ(answered_more(std::vector<Optics>{white, black}, {white}).size(), 2U);
 }
 

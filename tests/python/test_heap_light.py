@@ -446,6 +446,29 @@ def test_a_slider_that_does_not_rest_is_seen_in_the_light_of_a_moment_ago(viewpo
     assert apart(last, patiently(scene)) < 1e-3
 
 
+@pytest.mark.parametrize("before, now, eta", [(0.9, 0.97, 1.0), (0.97, 0.9, 1.0), (0.9, 0.97, 1.5)])
+@pytest.mark.parametrize("exchange", ["order_1", "heaps"])
+def test_the_picture_after_a_sliders_step_is_within_a_tenth_before_its_light_is_known(before, now, eta, exchange):
+    """In the light that grains of the colour before had sent it was 20 to 50 % off."""
+    def scene(albedo):
+        boundary = {"boundary": "index_matched"} if eta == 1.0 else {"eta": eta}
+        material = native.Material(model="model_2", sigma_a=(3.0 * (1.0 - albedo),) * 3, sigma_s=(3.0 * albedo,) * 3,
+                                   **boundary)
+        lights = [native.DirectionalLight((0.0, 0.6, 0.8), (numpy.pi,) * 3)]
+        return native.Scene(arrays=[array.with_material(material)], lights=lights, exchange=exchange)
+
+    array = heap(white())
+    view = native.View(*MANIFEST["resolution"], patient=False)
+    view.set_scene(scene(before))
+    view.set_camera(camera())
+    *_, was = each_news(view)
+    view.set_scene(scene(now))
+    at_once = green(view)
+    assert view.preparing is not None
+    *_, right = each_news(view)
+    assert apart(at_once, right) < min(0.1, 0.3 * apart(was, right))
+
+
 def test_what_is_no_heap_pays_nothing():
     view = native.View(16, 16)
     view.set_scene(native.Scene(instances=[native.Instance(ROUND, white())], exchange="order_1"))

@@ -1,5 +1,7 @@
 """Grains that are seen small are looked at less closely: what that leaves out, when it is done, and what is told."""
 
+import time
+
 import mesograin_native as native
 import numpy
 import pytest
@@ -27,12 +29,13 @@ def heap(grains, *materials):
             for number, material in enumerate(materials)]
 
 
-def looked_at(arrays, pixels, by_size, samples, exchange="heaps", sky=False):
-    """(picture, counts by level): from aside, a grain of diameter 2 so many pixels across."""
+def looked_at(arrays, pixels, by_size, samples, exchange="heaps", sky=False, patient=True):
+    """(picture, counts by level): from aside, a grain of diameter 2 so many pixels across. patient: else as a viewport
+    shows it once the light is known."""
     shines = ({"world": native.World((0.3, 0.3, 0.4))} if sky else
               {"lights": [native.DirectionalLight((1.0, 0.4, 1.0), (3.0,) * 3, angle=0.01)],
                "world": native.World((0.1, 0.1, 0.1))})
-    view = native.View(SIZE, SIZE)
+    view = native.View(SIZE, SIZE, patient=patient)
     view.set_levels(by_size)
     view.set_scene(native.Scene(arrays=arrays, exchange=exchange, **shines))
     middle = numpy.array([25.0, 25.0, 5.0])
@@ -40,6 +43,10 @@ def looked_at(arrays, pixels, by_size, samples, exchange="heaps", sky=False):
     away = 400.0
     view.set_camera(native.Camera.look_at(tuple(middle + away * numpy.array((0.0, -0.6, 0.8))), tuple(middle),
                                           (0.0, 0.0, 1.0), 2.0 * numpy.degrees(numpy.arctan(0.5 * high / away)), 1.0))
+    if not patient:
+        while view.preparing is not None:
+            time.sleep(0.002)
+        view.take_news()
     view.render(samples)
     told = view.statistics()["exchange"]
     assert told["walks_saved"] >= 4 * told["levels"]["told"]
@@ -71,6 +78,18 @@ def test_what_is_seen_through_thin_ones_is_as_bright():
     assert counts["told"] > 500
     assert found[..., :3].sum() == pytest.approx(close[..., :3].sum(), rel=0.02)
     assert numpy.abs(blocks(found) - blocks(close)).sum() < 0.05 * blocks(close).sum()
+
+
+@pytest.mark.parametrize("pixels, told", [(3.0, True), (6.0, True), (12.0, False)])
+def test_a_viewports_first_sample_looks_closely_at_large_ones_alone(pixels, told):
+    """Whose noise is no less than what numbers lack; its next sample looks as closely as others do."""
+    arrays = heap("sand", medium(0.9, 3.0))
+    right, _ = looked_at(arrays, pixels, False, 24)
+    found, counts = looked_at(arrays, pixels, True, 1, patient=False)
+    assert (counts["told"] > 0) == told and (counts["own_shape"] + counts["ball"] > 0) != told
+    assert numpy.abs(blocks(found) - blocks(right)).sum() < 0.07 * blocks(right).sum()
+    _, further = looked_at(arrays, pixels, True, 2, patient=False)
+    assert (further["told"] > 0) == (pixels < 4.0)
 
 
 @pytest.mark.parametrize("exchange, pixels", [("heaps", 12.0), ("order_1", 3.0), ("gathered", 3.0),
