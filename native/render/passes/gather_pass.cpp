@@ -213,7 +213,9 @@ bool GatherPass::follow_light(const Sample& sample, const ArrayVisibility& array
       const std::size_t number = number_of(facing);
       const std::optional<std::uint32_t>& grain = roles[number].grain;
       if (!grain) continue;
-      const auto [place, towards] = looked_from(sample, seen, i);
+      const Looked looked = looked_from(sample, seen, i);
+      const glm::vec3& place = looked.place;
+      const glm::vec3& towards = looked.towards;
       transport::Random random(seed, i);
       const glm::vec3 normal(facing);
       if (clear && gather->sees_into(*grain)) {
