@@ -6,16 +6,16 @@
 #include <tuple>
 
 #include "heap/grain_table.h"
+#include "heaps.h"
 
 namespace mesograin::heap {
 namespace {
 
-Optics ball_of(Surface surface, const glm::dvec3& sigma_t, const glm::dvec3& albedo) {
-  Optics optics;
+Optics ball_of(Surface surface, double sigma_t, const glm::dvec3& albedo) {
+  Optics optics = medium(sigma_t, 1.0);
   optics.surface = surface;
-  optics.sigma_t = sigma_t;
   optics.albedo = albedo;
-  optics.eta = surface == Surface::dielectric ? 1.5 : 1.0;
+  if (surface == Surface::dielectric) optics.eta = 1.5;
   return optics;
 }
 
@@ -24,8 +24,8 @@ TEST(AnsweredMore, IsTheRatioOfTablesWhateverChanges) {
   const glm::dvec3 brown(0.99, 0.95, 0.9);
   for (const Surface surface : {Surface::index_matched, Surface::dielectric})
     for (const auto& [thin, thick] : {std::tuple{1.0, 1.1}, {3.0, 3.0}, {3.0, 4.0}, {10.0, 9.0}}) {
-      const Optics before = ball_of(surface, glm::dvec3(thin), white);
-      const Optics now = ball_of(surface, glm::dvec3(thick), brown);
+      const Optics before = ball_of(surface, thin, white);
+      const Optics now = ball_of(surface, thick, brown);
       const GrainTable was(before, Sense::from_light, {});
       const GrainTable is(now, Sense::from_light, {});
       const glm::vec3 more = answered_more(now, before).of_all;
@@ -39,7 +39,7 @@ TEST(AnsweredMore, IsTheRatioOfTablesWhateverChanges) {
 }
 
 TEST(AnsweredMore, HasNoNoiseWhereLittleChanges) {
-  const Optics before = ball_of(Surface::index_matched, glm::dvec3(3.0), glm::dvec3(0.9));
+  const Optics before = medium(3.0, 0.9);
   Optics now = before;
   now.albedo = glm::dvec3(0.91);
   const GrainTable was(before, Sense::from_light, {});
@@ -49,8 +49,8 @@ TEST(AnsweredMore, HasNoNoiseWhereLittleChanges) {
 }
 
 TEST(AnsweredMore, TellsNothingOfWhatWasBlack) {
-  const Optics black = ball_of(Surface::index_matched, glm::dvec3(3.0), glm::dvec3(0.0));
-  const Optics white = ball_of(Surface::index_matched, glm::dvec3(3.0), glm::dvec3(0.99));
+  const Optics black = medium(3.0, 0.0);
+  const Optics white = medium(3.0, 0.99);
   EXPECT_EQ(answered_more(white, black).of_all, glm::vec3(1.0F));
   EXPECT_LT(answered_more(black, white).of_all.g, 1e-3F);
   EXPECT_EQ(answered_more(std::vector<Optics>{white, black}, {white}).size(), 2U);
