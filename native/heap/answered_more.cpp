@@ -13,28 +13,30 @@
 namespace mesograin::heap {
 namespace {
 
-constexpr int walks = 256;
+constexpr int most_walks = 256;
+
+// A redraw waits for them: where kinds are many, each has fewer, which are off alike in all.
+constexpr std::size_t walks_of_all = 1024;
+constexpr std::size_t fewest_walks = 32;
 
 // What sends out less than this was black, and nothing tells how much more it is now.
 constexpr float black = 1e-6F;
 
-glm::vec3 leaves(const Optics& optics) {
+glm::vec3 leaves(const Optics& optics, int walks) {
   glm::vec3 sum(0.0F);
   for (int i = 0; i < walks; ++i) {
     transport::Random random(0, static_cast<std::uint64_t>(i));
-    const float mu = std::sqrt((static_cast<float>(i) + random.uniform()) / walks);
+    const float mu = std::sqrt((static_cast<float>(i) + random.uniform()) / static_cast<float>(walks));
     if (const std::optional<Outcome> outcome = walk(optics, Sense::from_light, mu, random)) sum += outcome->weight;
   }
   return sum / static_cast<float>(walks);
 }
 
-}  // namespace
-
-AnsweredMore answered_more(const Optics& now, const Optics& before) {
+AnsweredMore found_by(const Optics& now, const Optics& before, int walks) {
   AnsweredMore more;
   if (now == before) return more;
-  const glm::vec3 is = leaves(now);
-  const glm::vec3 was = leaves(before);
+  const glm::vec3 is = leaves(now, walks);
+  const glm::vec3 was = leaves(before, walks);
   const glm::vec3 met_more(now.met() / glm::max(before.met(), 1e-12));
   for (int channel = 0; channel < 3; ++channel) {
     if (was[channel] <= black) continue;
@@ -44,10 +46,16 @@ AnsweredMore answered_more(const Optics& now, const Optics& before) {
   return more;
 }
 
+}  // namespace
+
+AnsweredMore answered_more(const Optics& now, const Optics& before) { return found_by(now, before, most_walks); }
+
 std::vector<AnsweredMore> answered_more(const std::vector<Optics>& now, const std::vector<Optics>& before) {
+  const std::size_t each = walks_of_all / std::max(now.size(), std::size_t{1});
+  const int walks = static_cast<int>(std::clamp(each, fewest_walks, std::size_t{most_walks}));
   std::vector<AnsweredMore> more;
   for (std::size_t kind = 0; kind < std::min(now.size(), before.size()); ++kind)
-    more.push_back(answered_more(now[kind], before[kind]));
+    more.push_back(found_by(now[kind], before[kind], walks));
   more.resize(now.size());
   return more;
 }

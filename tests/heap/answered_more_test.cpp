@@ -46,6 +46,8 @@ TEST(AnsweredMore, HasNoNoiseWhereLittleChanges) {
   const GrainTable is(now, Sense::from_light, {});
   EXPECT_NEAR(answered_more(now, before).of_all.g, is.albedo().g / was.albedo().g, 0.004F);
   EXPECT_EQ(answered_more(before, before).of_all, glm::vec3(1.0F));
+  for (const AnsweredMore& more : answered_more(std::vector<Optics>(64, now), std::vector<Optics>(64, before)))
+    EXPECT_NEAR(more.of_all.g, is.albedo().g / was.albedo().g, 0.008F) << "of many kinds, by fewer walks";
 }
 
 TEST(AnsweredMore, TellsNothingOfWhatWasBlack) {
