@@ -17,7 +17,7 @@ constexpr int most_walks = 256;
 
 // A redraw waits for them: where kinds are many, each has fewer, which are off alike in all.
 constexpr std::size_t walks_of_all = 1024;
-constexpr std::size_t fewest_walks = 32;
+constexpr std::size_t fewest_walks = 64;
 
 // What sends out less than this was black, and nothing tells how much more it is now.
 constexpr float black = 1e-6F;
