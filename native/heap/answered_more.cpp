@@ -22,25 +22,34 @@ constexpr std::size_t fewest_walks = 64;
 // What sends out less than this was black, and nothing tells how much more it is now.
 constexpr float black = 1e-6F;
 
-glm::vec3 leaves(const Optics& optics, int walks) {
-  glm::vec3 sum(0.0F);
+struct Leaves {
+  glm::vec3 all{0.0F};
+  glm::vec3 entered{0.0F};
+};
+
+Leaves leaves(const Optics& optics, int walks) {
+  Leaves sum;
   for (int i = 0; i < walks; ++i) {
     transport::Random random(0, static_cast<std::uint64_t>(i));
     const float mu = std::sqrt((static_cast<float>(i) + random.uniform()) / static_cast<float>(walks));
-    if (const std::optional<Outcome> outcome = walk(optics, Sense::from_light, mu, random)) sum += outcome->weight;
+    const std::optional<Outcome> outcome = walk(optics, Sense::from_light, mu, random);
+    if (!outcome) continue;
+    sum.all += outcome->weight / static_cast<float>(walks);
+    if (outcome->entered()) sum.entered += outcome->weight / static_cast<float>(walks);
   }
-  return sum / static_cast<float>(walks);
+  return sum;
 }
 
 AnsweredMore found_by(const Optics& now, const Optics& before, int walks) {
   AnsweredMore more;
   if (now == before) return more;
-  const glm::vec3 is = leaves(now, walks);
-  const glm::vec3 was = leaves(before, walks);
+  const Leaves is = leaves(now, walks);
+  const Leaves was = leaves(before, walks);
   const glm::vec3 met_more(now.met() / glm::max(before.met(), 1e-12));
   for (int channel = 0; channel < 3; ++channel) {
-    if (was[channel] <= black) continue;
-    more.of_all[channel] = is[channel] / was[channel];
+    if (was.entered[channel] > black) more.of_entered[channel] = is.entered[channel] / was.entered[channel];
+    if (was.all[channel] <= black) continue;
+    more.of_all[channel] = is.all[channel] / was.all[channel];
     more.of_met[channel] = more.of_all[channel] / std::max(met_more[channel], 1e-12F);
   }
   return more;

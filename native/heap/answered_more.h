@@ -13,6 +13,8 @@ namespace mesograin::heap {
 struct AnsweredMore {
   glm::vec3 of_all{1.0F};  ///< what leaves the one, unless it crosses straight, over what leaves the other
   glm::vec3 of_met{1.0F};  ///< the same of what did not cross
+  /// The same of what entered a surface that refracts.
+  glm::vec3 of_entered{1.0F};
 };
 
 AnsweredMore answered_more(const Optics& now, const Optics& before);

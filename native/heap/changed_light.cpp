@@ -73,7 +73,11 @@ void change(HeapLight& light, const Grains& before, const Grains& now) {
     if (told < light.scattered.size()) light.scattered[told].scale(whole.growth);
     if (told < light.scattered_answer.size()) light.scattered_answer[told].scale(of_others);
   };
-  for (std::size_t seat = 0; seat < seats.own(); ++seat) scale(seat, more[now.grains[seats.number(seat)].kind].of_all);
+  for (std::size_t seat = 0; seat < seats.own(); ++seat) {
+    const AnsweredMore& of_kind = more[now.grains[seats.number(seat)].kind];
+    scale(seat, of_kind.of_all);
+    if (seat < light.entered.size()) heap::scale(light.entered[seat], of_kind.of_entered);
+  }
   for (std::size_t term = seats.own(); term < seats.told(); ++term) scale(term, whole.more);
   const std::vector<Patches::Node>& nodes = light.patches.nodes();
   for (std::size_t node = 0; node < nodes.size() && seats.told() + node < sent.size(); ++node)

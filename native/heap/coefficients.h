@@ -180,11 +180,4 @@ class SharedField {
   std::shared_ptr<const Field> field_;
 };
 
-/// What leaves grains and walls because of lights: without and with other grains on the way.
-struct Lit {
-  Field direct;
-  Field crossed;
-  Field scattered;  ///< of both, what clear grains have scattered; empty where none is clear
-};
-
 }  // namespace mesograin::heap

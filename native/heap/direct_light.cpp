@@ -115,15 +115,22 @@ void look_from_node(const Space& space, const Patches::Node& node, const glm::dv
   }
 }
 
-/// `scattered`: what of it a clear grain has scattered; or null.
-void add_grain(const GrainTable& table, const Look& look, const glm::vec3& left, bool fine, Coefficients& sum,
-               Coefficients* scattered) {
+/// What a grain makes of light.
+struct Made {
+  Coefficients* sum;
+  Coefficients* scattered;  ///< of that, what a clear grain has; or null
+  Coefficients* entered;    ///< what has entered a turbid one; or null
+};
+
+void add_grain(const GrainTable& table, const Look& look, const glm::vec3& left, bool fine, const Made& made) {
   const Outcome outcome = table.draw(look.mu, look.choice);
   const TurnedFrame frame(look.normal, -look.ray.direction);
   const glm::vec3 light = left * look.brings * outcome.weight;
   const glm::vec3 place = table.seen_place(frame * outcome.normal, frame * outcome.direction);
-  sum.add(light, place, fine);
-  if (scattered != nullptr && outcome.scattered && table.is_clear()) scattered->add(light, place, fine);
+  made.sum->add(light, place, fine);
+  if (made.scattered != nullptr && outcome.scattered && table.is_clear()) made.scattered->add(light, place, fine);
+  if (made.entered != nullptr && table.is_turbid())
+    table.response(look.mu).add_to(*made.entered, frame, left * look.brings);
 }
 
 /// Whether any of these meets a place where a grain was or is that has moved.
@@ -140,6 +147,7 @@ void find_direct_light(const Space& space, const Heap& heap, const Rays& rays, c
                        const transport::Effort& effort) {
   const std::vector<Draw> draws = draws_of(heap, image_of(heap));
   const std::size_t count = space.size();
+  lit.entered.resize(space.told_entered());
   if (draws.empty()) return;
   constexpr std::size_t grains_a_piece = 64;
   transport::run_pieces(effort, (count + grains_a_piece - 1) / grains_a_piece, [&](std::size_t piece) {
@@ -159,15 +167,18 @@ void find_direct_light(const Space& space, const Heap& heap, const Rays& rays, c
       lit.crossed[i] = {};
       Coefficients* scattered = lit.scattered.empty() ? nullptr : &lit.scattered[i];
       if (scattered != nullptr) *scattered = {};
+      Coefficients entered;
+      Coefficients* const told_entered = i < lit.entered.size() ? &entered : nullptr;
       for (Look& look : looks) {
         const glm::vec3 left = space.passed(look.ray, look.reach);
         if (left == glm::vec3(0.0F)) continue;
         Coefficients& sum = look.ray.crossed ? lit.crossed[i] : lit.direct[i];
         if (of_grain)
-          add_grain(*space.kind(number).from_light, look, left, rays.fine(space, i), sum, scattered);
+          add_grain(*space.kind(number).from_light, look, left, rays.fine(space, i), {&sum, scattered, told_entered});
         else
           sum.add(left * look.brings, glm::vec3(0.0F), false);  // as much at every normal
       }
+      if (told_entered != nullptr) lit.entered[i] = PackedCoefficients(entered);
     }
   });
 }

@@ -4,6 +4,7 @@
 #include "heap/coefficients.h"
 #include "heap/heap.h"
 #include "heap/links.h"
+#include "heap/lit.h"
 
 namespace mesograin::heap {
 

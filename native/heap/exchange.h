@@ -9,6 +9,7 @@
 
 #include "heap/coefficients.h"
 #include "heap/heap.h"
+#include "heap/packed_coefficients.h"
 
 namespace mesograin::heap {
 
@@ -72,6 +73,9 @@ struct HeapLight {
   /// answers to what others send; empty where none is clear.
   Field scattered;
   Field scattered_answer;
+  /// Of turbid grains in seats of their own, to order 2: what of `sent` lights make them send, but for what their
+  /// surface reflects of these; at the places that GrainTable::entered() has. Empty where none is turbid.
+  PackedField entered;
   Patches patches;
   std::optional<Neighbourhood> neighbourhood{};  ///< of its grains, where they were not moved since
   std::vector<Kind> kinds;                       ///< what each is to the others

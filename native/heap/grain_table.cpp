@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 #include <list>
 #include <mutex>
+#include <numeric>
 
 #include "physics/physics.h"
 #include "transport/directions.h"
@@ -108,6 +109,64 @@ bool is_thick(const Optics& optics) {
   return !optics.opaque() && std::max({reduced.r, reduced.g, reduced.b}) >= least;
 }
 
+/// What leaves in each interval of cosines, of light from everywhere, and the mean cosines of the normal and of the
+/// direction in which it leaves with the way that it came.
+struct Flux {
+  std::array<glm::dvec3, GrainTable::lobe_nodes> by_cosine{};
+  glm::dvec2 along{0.0};
+
+  void add(const Outcome& outcome, const glm::vec3& travelling) {
+    constexpr int nodes = GrainTable::lobe_nodes;
+    const float leaves = std::clamp(glm::dot(outcome.normal, outcome.direction), 0.0F, 1.0F);
+    by_cosine[static_cast<std::size_t>(std::min(static_cast<int>(leaves * nodes), nodes - 1))] +=
+        glm::dvec3(outcome.weight);
+    along += static_cast<double>(mean(outcome.weight)) *
+             glm::dvec2(glm::dot(outcome.normal, travelling), glm::dot(outcome.direction, travelling));
+  }
+
+  void add(const Flux& other) {
+    for (std::size_t node = 0; node < by_cosine.size(); ++node) by_cosine[node] += other.by_cosine[node];
+    along += other.along;
+  }
+
+  glm::dvec3 all() const { return std::accumulate(by_cosine.begin(), by_cosine.end(), glm::dvec3(0.0)); }
+};
+
+/// Of a sum p of the normal and the direction the mean square is 1, and its mean cosine with the way that light came is
+/// to be greatest: M^-1 along, M their means of products.
+glm::vec2 seen_by(const glm::dvec2& along) {
+  // Sent out evenly, normal . direction is on average two thirds.
+  constexpr double between = 2.0 / 3.0;
+  const glm::dvec2 best(along.x - between * along.y, along.y - between * along.x);
+  const double square = best.x * best.x + best.y * best.y + 2.0 * between * best.x * best.y;
+  if (!(square > 0.0)) return {1.0F, 0.0F};
+  // A place that faces the viewer, so that two media's numbers are told by the same.
+  const double sign = between * best.x + best.y < 0.0 ? -1.0 : 1.0;
+  return {best * (sign / std::sqrt(square))};
+}
+
+/// Radiance is flux over 2 mu dmu; between the intervals' middles it is linear, and flat beyond the last ones.
+std::array<glm::vec3, GrainTable::lobe_nodes> lobe_of(const Flux& flux) {
+  constexpr int nodes = GrainTable::lobe_nodes;
+  const glm::dvec3 all = flux.all();
+  GrainTable::Leaving leaving;
+  for (int channel = 0; channel < 3; ++channel)
+    for (int node = 0; node < nodes; ++node) {
+      const double share = static_cast<double>(2 * node + 1) / (nodes * nodes);
+      const auto index = static_cast<std::size_t>(node);
+      leaving.lobe[index][channel] =
+          all[channel] > 0.0 ? static_cast<float>(flux.by_cosine[index][channel] / all[channel] / share) : 1.0F;
+    }
+  constexpr int steps = 64 * nodes;
+  glm::vec3 exitance(0.0F);
+  for (int step = 0; step < steps; ++step) {
+    const float mu = (static_cast<float>(step) + 0.5F) / steps;
+    exitance += leaving.lobe_at(mu) * (2.0F * mu / steps);
+  }
+  for (glm::vec3& node : leaving.lobe) node /= exitance;
+  return leaving.lobe;
+}
+
 bool is_grey(const Optics& optics) {
   return optics.opaque() || (grey(optics, 0).sigma_t == optics.sigma_t && grey(optics, 0).albedo == optics.albedo);
 }
@@ -119,6 +178,7 @@ GrainTable::GrainTable(const Optics& optics, Sense sense, const transport::Effor
       fine_(optics.opaque() || is_thick(optics) || (optics.clear() && optics.lens)),
       transparent_(optics.transparent()),
       clear_(optics.clear()),
+      turbid_(optics.turbid()),
       sigma_t_(optics.sigma_t) {
   if (clear_) scattered_ = glm::vec3(scattered_once(optics));
   met_ = glm::vec3(optics.met());
@@ -126,9 +186,17 @@ GrainTable::GrainTable(const Optics& optics, Sense sense, const transport::Effor
   // Walks that are shared by channels are noisier in each than its own.
   for (int channel = 0; channel < 3 && !is_grey(optics); ++channel)
     take_albedo(GrainTable(grey(optics, channel), sense, effort, walks), channel);
+  if (turbid_) find_responses();
   if (!clear_) return;
   for (const Outcome& outcome : outcomes_)
     if (outcome.scattered) scattered_out_ += outcome.weight / static_cast<float>(outcomes_.size());
+}
+
+void GrainTable::find_responses() {
+  responses_.resize(entries);
+  for (std::size_t i = 0; i < outcomes_.size(); ++i)
+    if (const Outcome& of = outcomes_[i]; of.entered())
+      responses_[i / outcomes].add(of.weight / static_cast<float>(outcomes), entered_.place(of.normal, of.direction));
 }
 
 void GrainTable::take_albedo(const GrainTable& grey, int channel) {
@@ -141,20 +209,22 @@ void GrainTable::take_albedo(const GrainTable& grey, int channel) {
       outcomes_[index * outcomes + static_cast<std::size_t>(outcome)].weight[channel] *= factor;
   }
   albedo_[channel] = grey.albedo_[channel];
-  for (std::size_t node = 0; node < lobe_nodes; ++node) lobe_[node][channel] = grey.lobe_[node][channel];
+  for (std::size_t node = 0; node < lobe_nodes; ++node) {
+    leaving_.lobe[node][channel] = grey.leaving_.lobe[node][channel];
+    entered_.lobe[node][channel] = grey.entered_.lobe[node][channel];
+  }
 }
 
 void GrainTable::trace(const Optics& optics, Sense sense, const transport::Effort& effort) {
   std::vector<std::vector<Outcome>> kept(entries);
-  std::vector<std::array<glm::dvec3, lobe_nodes>> leaving(entries);
+  std::vector<Flux> leaving(entries);
+  std::vector<Flux> entered(entries);
   std::vector<std::vector<Entries::Passage>> passages(entries);
-  std::vector<glm::dvec2> along(entries, glm::dvec2(0.0));
   transport::run_pieces(effort, entries, [&](std::size_t entry) {
     transport::Random of_all(effort.seed, static_cast<std::size_t>(walks_) * entries + entry);
     const float turn = of_all.uniform();
     std::vector<Outcome> walks;
     glm::dvec3 sum(0.0);
-    leaving[entry].fill(glm::dvec3(0.0));
     for (int i = 0; i < walks_; ++i) {
       // Numbers of its own, so that one that a slider makes longer moves no other.
       transport::Random random(effort.seed, entry * static_cast<std::size_t>(walks_) + static_cast<std::size_t>(i));
@@ -164,60 +234,38 @@ void GrainTable::trace(const Optics& optics, Sense sense, const transport::Effor
       std::optional<Outcome> outcome = optics.surface == Surface::lambert ? sent_evenly(optics, i, walks_, turn, random)
                                                                           : walk(optics, sense, mu, random);
       if (!outcome) continue;
-      const glm::vec3 light = outcome->weight;
       passages[entry].push_back({mu, *outcome});
+      const glm::vec3 travelling(std::sqrt(std::max(0.0F, 1.0F - squared)), 0.0F, -mu);
+      leaving[entry].add(*outcome, travelling);
+      if (outcome->entered()) entered[entry].add(*outcome, travelling);
       if (transparent_) outcome->weight /= glm::max(glm::vec3(met_at(sigma_t_, mu)), 1e-30F);
       sum += glm::dvec3(outcome->weight);
-      // Flux in each interval of cosines outside.
-      const float leaves = std::clamp(glm::dot(outcome->normal, outcome->direction), 0.0F, 1.0F);
-      leaving[entry][static_cast<std::size_t>(std::min(static_cast<int>(leaves * lobe_nodes), lobe_nodes - 1))] +=
-          glm::dvec3(light);
-      const glm::vec3 travelling(std::sqrt(std::max(0.0F, 1.0F - squared)), 0.0F, -mu);
-      along[entry] += static_cast<double>(mean(light)) *
-                      glm::dvec2(glm::dot(outcome->normal, travelling), glm::dot(outcome->direction, travelling));
       walks.push_back(*outcome);
     }
     albedos_[entry] = glm::vec3(sum / static_cast<double>(walks_));
     resample(walks, walks_, of_all, kept[entry]);
   });
   outcomes_.reserve(static_cast<std::size_t>(entries) * outcomes);
-  glm::dvec3 all(0.0);
-  std::array<glm::dvec3, lobe_nodes> flux{};
+  Flux all;
+  Flux all_entered;
   for (int entry = 0; entry < entries; ++entry) {
     const auto index = static_cast<std::size_t>(entry);
     outcomes_.insert(outcomes_.end(), kept[index].begin(), kept[index].end());
-    for (std::size_t node = 0; node < lobe_nodes; ++node) {
-      flux[node] += leaving[index][node];
-      all += leaving[index][node];
-    }
+    all.add(leaving[index]);
+    all_entered.add(entered[index]);
   }
-  albedo_ = glm::vec3(all / static_cast<double>(walks_ * entries));
+  albedo_ = glm::vec3(all.all() / static_cast<double>(walks_ * entries));
   if (!optics.opaque()) {
     std::vector<Entries::Passage> joined;
     for (const std::vector<Entries::Passage>& of : passages) joined.insert(joined.end(), of.begin(), of.end());
     came_in_ = Entries(joined);
   }
-  // Radiance is flux over 2 mu dmu; between the intervals' middles it is linear, and flat beyond the last ones.
-  for (int channel = 0; channel < 3; ++channel)
-    for (int node = 0; node < lobe_nodes; ++node) {
-      const double share = static_cast<double>(2 * node + 1) / (lobe_nodes * lobe_nodes);
-      const auto index = static_cast<std::size_t>(node);
-      lobe_[index][channel] =
-          all[channel] > 0.0 ? static_cast<float>(flux[index][channel] / all[channel] / share) : 1.0F;
-    }
-  constexpr int steps = 64 * lobe_nodes;
-  glm::vec3 exitance(0.0F);
-  for (int step = 0; step < steps; ++step) {
-    const float mu = (static_cast<float>(step) + 0.5F) / steps;
-    exitance += lobe_at(mu) * (2.0F * mu / steps);
-  }
-  for (glm::vec3& node : lobe_) node /= exitance;
-  if (optics.surface == Surface::dielectric && optics.lens) {
-    glm::dvec2 sum(0.0);
-    for (const glm::dvec2& of_entry : along) sum += of_entry;
-    find_seen_place(sum);
-  }
+  leaving_.lobe = lobe_of(all);
+  entered_.lobe = lobe_of(all_entered);
+  if (optics.surface == Surface::dielectric && optics.lens) leaving_.by = seen_by(all.along);
+  entered_.by = seen_by(all_entered.along);
   if (!transparent_) return;
+  constexpr int steps = 64 * lobe_nodes;
   double square = 0.0;
   double all_seen = 0.0;
   for (int step = 0; step < steps; ++step) {
@@ -230,21 +278,8 @@ void GrainTable::trace(const Optics& optics, Sense sense, const transport::Effor
   seen_place_scale_ = static_cast<float>(std::sqrt(all_seen / square));
 }
 
-void GrainTable::find_seen_place(const glm::dvec2& along) {
-  // Sent out evenly, normal . direction is on average two thirds.
-  constexpr double between = 2.0 / 3.0;
-  // Of a sum p of the two the mean square is 1, and its mean cosine p . way is to be greatest: M^-1 along, M their
-  // means of products.
-  const glm::dvec2 best(along.x - between * along.y, along.y - between * along.x);
-  const double square = best.x * best.x + best.y * best.y + 2.0 * between * best.x * best.y;
-  if (!(square > 0.0)) return;
-  // A place that faces the viewer, so that two media's numbers are told by the same.
-  const double sign = between * best.x + best.y < 0.0 ? -1.0 : 1.0;
-  seen_by_ = glm::vec2(best * (sign / std::sqrt(square)));
-}
-
 glm::vec3 GrainTable::seen_place(const glm::vec3& normal, const glm::vec3& towards) const {
-  if (!transparent_) return seen_by_.x * normal + seen_by_.y * towards;
+  if (!transparent_) return leaving_.place(normal, towards);
   const float mu = std::clamp(glm::dot(normal, towards), 0.0F, 1.0F);
   return seen_place_scale_ * (normal - static_cast<float>(seen_depth(sigma_t_, mu)) * towards);
 }
@@ -257,10 +292,10 @@ Outcome GrainTable::draw(float mu, float choice) const {
   return outcome;
 }
 
-glm::vec3 GrainTable::lobe_at(float mu) const {
+glm::vec3 GrainTable::Leaving::lobe_at(float mu) const {
   const float node = std::clamp(mu * lobe_nodes - 0.5F, 0.0F, static_cast<float>(lobe_nodes - 1));
   const auto below = static_cast<std::size_t>(std::min(node, static_cast<float>(lobe_nodes - 2)));
-  return glm::mix(lobe_[below], lobe_[below + 1], node - static_cast<float>(below));
+  return glm::mix(lobe[below], lobe[below + 1], node - static_cast<float>(below));
 }
 
 glm::vec3 GrainTable::crossing(float mu) const {

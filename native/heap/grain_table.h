@@ -1,6 +1,7 @@
 // What one grain of a kind does to light, as a table of equally likely outcomes for each angle at which light comes in.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -9,6 +10,7 @@
 
 #include "heap/entries.h"
 #include "heap/optics.h"
+#include "heap/response.h"
 #include "heap/sphere_walk.h"
 #include "transport/effort.h"
 
@@ -37,20 +39,36 @@ class GrainTable {
   /// The share of light from everywhere that does not go straight through, 2 int (1 - crossing) mu dmu.
   const glm::vec3& met() const { return met_; }
 
-  /// Radiance of light that leaves, over exitance / pi, for light from everywhere: at the middles of intervals of the
-  /// cosine, linear between them, flat beyond.
-  const std::array<glm::vec3, lobe_nodes>& lobe() const { return lobe_; }
-  glm::vec3 lobe_at(float mu) const;
+  /// Where and in which directions light leaves that comes from everywhere.
+  struct Leaving {
+    /// Radiance over exitance / pi: at the middles of intervals of the cosine, linear between them, flat beyond.
+    std::array<glm::vec3, lobe_nodes> lobe{};
+    /// How much of the normal and of the direction is in place().
+    glm::vec2 by{1.0F, 0.0F};
 
-  /// By what four numbers know a place of the surface that is seen from a direction: the mean place of what is seen
-  /// there if it is sent out evenly, in a transparent grain some way below the surface; scaled so that its mean square
-  /// is that of normals. Of a surface that refracts, which sends on light by its direction as much as by its place:
-  /// what of both tells most of where light came from.
+    glm::vec3 lobe_at(float mu) const;
+
+    /// By what four numbers know a place of the surface that is seen from a direction. Light is sent on by its
+    /// direction as much as by its place where the surface refracts: what of both tells most of where it came from.
+    glm::vec3 place(const glm::vec3& normal, const glm::vec3& towards) const { return by.x * normal + by.y * towards; }
+  };
+
+  const Leaving& leaving() const { return leaving_; }
+  glm::vec3 lobe_at(float mu) const { return leaving_.lobe_at(mu); }
+
+  /// Of what has entered it, if its surface refracts; of leaving() the surface has reflected some.
+  const Leaving& entered() const { return entered_; }
+
+  /// Of a turbid grain, what of light that comes in at this cosine leaves it that has entered, by the places that
+  /// entered() has.
+  const Response& response(float mu) const {
+    return responses_[static_cast<std::size_t>(std::min(static_cast<int>(mu * mu * entries), entries - 1))];
+  }
+
+  /// As of leaving(); in a transparent grain the mean place of what is seen there if it is sent out evenly, some way
+  /// below the surface; scaled so that its mean square is that of normals.
   glm::vec3 seen_place(const glm::vec3& normal, const glm::vec3& towards) const;
   float seen_place_scale() const { return seen_place_scale_; }
-
-  /// Of what is not transparent: how much of the normal and of the direction is in seen_place().
-  const glm::vec2& seen_by() const { return seen_by_; }
 
   /// Whether what it sends out depends on where light came from by more than order 1 tells: where light leaves where it
   /// came in or close by, and where it goes on as through a lens.
@@ -58,6 +76,9 @@ class GrainTable {
 
   /// As Optics::clear().
   bool is_clear() const { return clear_; }
+
+  /// As Optics::turbid().
+  bool is_turbid() const { return turbid_; }
 
   /// Of a clear grain, the share of light from everywhere that is scattered in it, times the albedo of the first of its
   /// scatterings; 0 of others.
@@ -71,16 +92,14 @@ class GrainTable {
 
  private:
   void take_albedo(const GrainTable& grey, int channel);
+  void find_responses();
   void trace(const Optics& optics, Sense sense, const transport::Effort& effort);
-
-  /// Of light from everywhere, the mean cosines with its way of the normal and of the direction in which it leaves: the
-  /// best of all sums of the two, of given mean square.
-  void find_seen_place(const glm::dvec2& along);
 
   int walks_;
   bool fine_;
   bool transparent_;
   bool clear_;
+  bool turbid_;
   glm::vec3 sigma_t_;
   glm::vec3 met_{1.0F};
   glm::vec3 scattered_{0.0F};
@@ -88,10 +107,11 @@ class GrainTable {
   glm::vec3 albedo_{0.0F};
   std::array<glm::vec3, entries> albedos_{};  // of what light of each interval meets
   std::vector<Outcome> outcomes_;
-  std::array<glm::vec3, lobe_nodes> lobe_{};
+  Leaving leaving_;
+  Leaving entered_;
+  std::vector<Response> responses_;
   Entries came_in_;
   float seen_place_scale_ = 1.0F;
-  glm::vec2 seen_by_{1.0F, 0.0F};
 };
 
 /// Tables that were made before are found by what they were made of: those that somebody has, and the last 64 that

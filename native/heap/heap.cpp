@@ -86,6 +86,10 @@ bool any_clear(const std::vector<Kind>& kinds) {
   return std::any_of(kinds.begin(), kinds.end(), [](const Kind& kind) { return kind.from_light->is_clear(); });
 }
 
+bool any_turbid(const std::vector<Kind>& kinds) {
+  return std::any_of(kinds.begin(), kinds.end(), [](const Kind& kind) { return kind.from_light->is_turbid(); });
+}
+
 WallPlace Space::place(const Patches::Node& node, float u, float v) const {
   // As the node's share of the light falls off.
   const auto tent = [](float at) {

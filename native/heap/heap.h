@@ -41,6 +41,8 @@ std::vector<Kind> kinds_of(const std::vector<Optics>& optics, int walks, const t
 
 /// Whether grains of any kind are clear.
 bool any_clear(const std::vector<Kind>& kinds);
+/// The same of turbid ones.
+bool any_turbid(const std::vector<Kind>& kinds);
 
 /// A straight line between grains, with what is left of its weight.
 struct Ray {
@@ -92,6 +94,8 @@ class Space {
   const Neighbourhood& neighbourhood() const { return neighbourhood_; }
 
   bool any_clear() const { return heap::any_clear(kinds_); }
+  /// Of how many seats it is told what enters a turbid grain there: those of one grain each, if any is turbid.
+  std::size_t told_entered() const { return heap::any_turbid(kinds_) ? seats_->own() : 0; }
 
   /// Of all that answers: grains in their seats, then nodes.
   std::size_t size() const { return seats_->answering() + patches_.nodes().size(); }

@@ -11,6 +11,7 @@
 #include <numeric>
 #include <utility>
 
+#include "heap/entered.h"
 #include "heap/moves.h"
 #include "heap/spread.h"
 #include "transport/directions.h"
@@ -489,7 +490,8 @@ void find_ways(const Space& space, const Rays& rays, const Rays& rays_through, c
   lit.direct.resize(count);
   lit.crossed.resize(count);
   lit.scattered.resize(links.scattered.size());
-  for_each(count, transport::part_of(effort, 0.0, 0.8), [&](std::size_t i) {
+  find_entered(space, rays, radiance, lit.entered, transport::part_of(effort, 0.0, 0.2));
+  for_each(count, transport::part_of(effort, 0.2, 0.8), [&](std::size_t i) {
     Found found =
         found_by(space, i, looks_from(space, i, rays, effort.seed), rays.fine(space, i), radiance, effort.seed);
     take(std::move(found), i, links, lit);
@@ -505,9 +507,10 @@ void find_ways(const Space& space, const Rays& rays, const Rays& rays_through, c
 
 std::size_t renew(const Space& space, const Moves& moves, const Rays& rays, const Rays& rays_through,
                   const glm::vec3& radiance, Ways& ways, const transport::Effort& effort) {
+  renew_entered(space, moves, rays, radiance, ways.world.entered, transport::part_of(effort, 0.0, 0.2));
   std::mutex mutex;
   std::vector<std::pair<std::size_t, Found>> found;
-  for_each(space.size(), transport::part_of(effort, 0.0, 0.8), [&](std::size_t i) {
+  for_each(space.size(), transport::part_of(effort, 0.2, 0.8), [&](std::size_t i) {
     const std::vector<Look> looks = looks_from(space, i, rays, effort.seed);
     const bool moved = space.of_grain(i) && moves.moved(space.seats()->number(i));
     if (!moved && !touched(space, moves, looks, i, effort.seed)) return;

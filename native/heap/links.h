@@ -10,6 +10,7 @@
 
 #include "heap/coefficients.h"
 #include "heap/heap.h"
+#include "heap/lit.h"
 #include "heap/packed.h"
 
 namespace mesograin::heap {

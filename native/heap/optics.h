@@ -43,6 +43,9 @@ struct Optics {
   /// Whether its surface refracts and 1 % of the light or more goes through its middle, in some channel.
   bool clear() const;
 
+  /// Whether its surface refracts and hardly anything goes through its middle unscattered.
+  bool turbid() const { return surface == Surface::dielectric && !clear() && !veiled(); }
+
   /// Whether of light through its middle less is scattered than is not, in every channel.
   bool scatters_little() const;
 

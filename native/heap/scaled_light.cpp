@@ -24,6 +24,7 @@ void scale(HeapLight& light, const glm::vec3& by) {
   };
   for (Field* field : {&light.answer, &light.crossed, &light.behind, &light.scattered, &light.scattered_answer})
     scale(*field);
+  for (PackedCoefficients& one : light.entered) heap::scale(one, by);
   Field sent = light.sent;
   scale(sent);
   light.sent = SharedField(std::move(sent));

@@ -291,8 +291,10 @@ const Solver::Source& Solver::find_source(Heap light, const Quality& quality, co
   } else {
     ++parts_.sources;
   }
-  if (!moves && !refines)
-    source.lit = {Field(space().size()), Field(space().size()), Field(space().any_clear() ? space().size() : 0)};
+  if (!moves && !refines) {
+    const std::size_t count = space().size();
+    source.lit = {Field(count), Field(count), Field(space().any_clear() ? count : 0), {}};
+  }
   find_direct_light(space(), source.light, source.rays, moves ? &*moves : nullptr, refines ? same->lit : source.lit,
                     effort);
   if (refines) source.lit = std::move(same->lit);
@@ -308,7 +310,8 @@ Solver::Direct Solver::find_direct(const Heap& heap, const Quality& quality, con
     return std::find(lights.begin(), lights.end(), source.light) == lights.end();
   });
   const std::size_t count = traced_->ways.world.direct.size();
-  Lit sum{Field(count), Field(count), Field(traced_->ways.world.scattered.size())};
+  Lit sum{Field(count), Field(count), Field(traced_->ways.world.scattered.size()),
+          PackedField(traced_->ways.world.entered.size())};
   const auto add_lit = [&](const Lit& lit, const Matter& with, const glm::vec3& by) {
     std::optional<Change> change;
     if (with.grains != matter_->grains) change = change_from(with);
@@ -322,6 +325,7 @@ Solver::Direct Solver::find_direct(const Heap& heap, const Quality& quality, con
     const Source& source = find_source(lights[i], quality, part);
     const Matter& matter = *source.matter;
     add_lit(source.lit, matter, glm::vec3(1.0F));
+    if (source.lit.entered.size() == sum.entered.size()) heap::add(sum.entered, source.lit.entered, glm::vec3(1.0F));
     if (source.lit.scattered.empty()) continue;
     Field scattered = source.lit.scattered;
     scale_scattered(scattered, *matter.space->seats(), matter.grains, matter.kinds);
@@ -335,9 +339,10 @@ Solver::Direct Solver::find_direct(const Heap& heap, const Quality& quality, con
     if (!scattered.empty())
       scale_scattered(scattered, traced_->ways.links, traced_->matter->grains, traced_->matter->kinds);
     add(sum.scattered, scattered, glm::vec3(heap.world.radiance));
+    heap::add(sum.entered, traced_->ways.world.entered, glm::vec3(heap.world.radiance));
   }
-  Field scattered = sum.scattered.empty() ? Field() : seats.told(std::move(sum.scattered));
-  return {{seats.told(std::move(sum.direct)), seats.told(std::move(sum.crossed)), std::move(scattered)},
+  const auto told = [&](Field& field) { return field.empty() ? Field() : seats.told(std::move(field)); };
+  return {{told(sum.direct), told(sum.crossed), told(sum.scattered), std::move(sum.entered)},
           std::move(lights_crossed)};
 }
 
@@ -417,6 +422,7 @@ HeapLight Solver::solve(const std::shared_ptr<const Heap>& shared, const Quality
     light.scattered = lit.scattered;
     add(light.scattered, light.scattered_answer, glm::vec3(1.0F));
   }
+  light.entered = std::move(lit.entered);
   light.open = traced_->ways.links.open;
   light.open.resize(light.seats->own());
   for (std::size_t i = 0; i < light.open.size(); ++i)

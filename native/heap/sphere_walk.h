@@ -17,6 +17,9 @@ struct Outcome {
   glm::vec3 weight;        ///< linear RGB, of what came in
   bool refracted = false;  ///< through a surface that refracts, and scattered nowhere
   bool scattered = false;  ///< below a surface that refracts
+
+  /// Whether it is no light that a surface which refracts has reflected.
+  bool entered() const { return refracted || scattered; }
 };
 
 /// Which way light is followed: the same but where what enters and what leaves meet different surfaces.

@@ -59,10 +59,12 @@ struct Kinds {
     const std::vector<glm::vec2>& offsets = table.came_in().offsets();
     numbers.emplace_back(optics.transparent() ? glm::vec3(optics.sigma_t) : glm::vec3(1e30F),
                          offsets.empty() ? 0.0F : table.seen_place_scale());
-    const std::size_t lobe = numbers.size();
-    for (const glm::vec3& node : table.lobe()) numbers.emplace_back(node, 0.0F);
-    numbers[lobe].w = table.seen_by().x;
-    numbers[lobe + 1].w = table.seen_by().y;
+    for (const heap::GrainTable::Leaving* leaving : {&table.leaving(), &table.entered()}) {
+      const std::size_t begin = numbers.size();
+      for (const glm::vec3& node : leaving->lobe) numbers.emplace_back(node, 0.0F);
+      numbers[begin].w = leaving->by.x;
+      numbers[begin + 1].w = leaving->by.y;
+    }
     for (std::size_t pair = 0; pair < offsets.size(); pair += 2) numbers.emplace_back(offsets[pair], offsets[pair + 1]);
   }
 };
@@ -93,7 +95,7 @@ class Telling {
 
  private:
   std::size_t count() const {
-    constexpr std::size_t of_seat = 7;
+    const std::size_t of_seat = 7 + (light_.entered.empty() ? 0 : 8);
     constexpr std::size_t of_term = 3;
     std::size_t of_second_order = 0;
     for (std::size_t seat = 0; seat < seats_.own(); ++seat)
@@ -122,12 +124,19 @@ class Telling {
     writer.add(light_.answer[seat]);
     writer.add(light_.behind[seat]);
     writer.add(light_.open[seat].first);
+    if (!light_.entered.empty()) tell_entered(light_.entered[seat].whole(), writer);
     const heap::SecondOrders::Numbers* second = light_.answer[seat].second.get();
     if (second == nullptr) return;
     places_.back().second_order = static_cast<std::uint32_t>(writer.place());
     const heap::SecondOrder& open = light_.open[seat].second;
     for (std::size_t i = 0; i < open.size(); ++i)
       writer.add({(*second)[0][i], (*second)[1][i], (*second)[2][i], open[i]});
+  }
+
+  static void tell_entered(const heap::Coefficients& entered, Writer& writer) {
+    writer.add(entered);
+    const heap::SecondOrders::Numbers& of = *entered.second.get();
+    for (std::size_t i = 0; i < of[0].size(); ++i) writer.add({of[0][i], of[1][i], of[2][i], 0.0F});
   }
 
   void tell_objects(gl::Buffer& numbers) const {
@@ -175,10 +184,12 @@ void ToldLight::tell(const heap::HeapLight& light, const heap::Grains& grains, c
   // A device may keep one that is gone for as long as it could read it.
   if (!numbers_ || numbers_->bytes() != telling.bytes()) numbers_.emplace(telling.bytes());
   const std::size_t nodes_begin = telling.tell(*numbers_);
+  tells_entered_ = !light.entered.empty();
   walls_.emplace(light.patches.packed(static_cast<std::uint32_t>(nodes_begin)));
 }
 
 void ToldLight::tell_darkness(std::size_t objects) {
+  tells_entered_ = false;
   numbers_.emplace(objects * sizeof(glm::vec4));
   Writer writer(*numbers_, 0);
   for (std::size_t object = 0; object < objects; ++object) writer.add(darkness);

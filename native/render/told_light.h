@@ -33,9 +33,13 @@ class ToldLight {
   void bind() const;
   void reset() { numbers_.reset(); }
 
+  /// Whether of turbid grains it tells what of lights' and the world's light has entered them.
+  bool tells_entered() const { return numbers_ && tells_entered_; }
+
  private:
   std::optional<gl::Buffer> numbers_;  // a vec4 of each object, which says where its others are, and these behind them
   std::optional<gl::Buffer> walls_;
+  bool tells_entered_ = false;
 };
 
 }  // namespace mesograin::render

@@ -4,6 +4,7 @@
 // What is chosen at compile time:
 //   EXCHANGE             light goes from grain to grain
 //   GATHERED             and was gathered for some pixels
+//   TOLD                 what has entered the grain of lights' light and the world's is told, too
 #include "render/bindings.glsl"
 
 #ifdef EXCHANGE
@@ -12,14 +13,16 @@
 // answers is, or 0; of one that shares, where in the cell it is (heap/seats.h): of three numbers of 8 bits, 128 is the middle.
 // Of each kind: mean free paths across its radius, and whether it is known where light comes in (models/entries.glsl); the lobe of its answer at
 // the middles of intervals of the cosine (w of the first two: how much of the normal and of the direction to the viewer is in seen_place, of
-// what is not transparent); those entries.
+// what is not transparent); the same of what has entered it; those entries.
 // Of each seat of one grain: red, green and blue of what it answers, and of what is seen straight through it (xyz: the slope over the normal or
-// the look, w: the mean over all of them); how much of the world is seen through it (the same); their second order, if any: rgb of what it
-// answers, w of the world. Of each cell: what its middle answers, and how that grows along three axes.
+// the look, w: the mean over all of them); how much of the world is seen through it (the same); where any grain is turbid, what has entered it of
+// lights' light and the world's, as what it answers, and the second order of that; the second order of what it answers, if any, w of the world.
+// Of each cell: what its middle answers, and how that grows along three axes.
 layout(std430, binding = HEAP_LIGHT_BINDING) readonly buffer HeapLight { vec4 heap_light[]; };
 
 const int LOBE_NODES = 16;
 const int OPEN_NUMBER = 6;  // of a seat
+const int ENTERED_NUMBER = 7;
 #endif
 
 #include "heap/light_of_walls.glsl"
@@ -64,6 +67,12 @@ vec3 seen_place(int kind, vec3 normal, vec3 to_viewer, float mu) {
 // As heap::look_through.
 vec3 look_through(vec3 normal, vec3 to_viewer, float mu) { return normalize((2.0 * mu + 1.0) * to_viewer - normal); }
 
+vec3 lobe_at(int lobe, float mu) {
+  float node = clamp(mu * float(LOBE_NODES) - 0.5, 0.0, float(LOBE_NODES - 1));
+  int below = min(int(node), LOBE_NODES - 2);
+  return mix(heap_light[lobe + below].rgb, heap_light[lobe + 1 + below].rgb, node - float(below));
+}
+
 // Radiance towards a viewer; of a wall at `place` in the heap.
 vec3 light_from_grains(int object_number, vec3 place, vec3 normal, vec3 to_viewer) {
 #ifdef GATHERED
@@ -74,9 +83,7 @@ vec3 light_from_grains(int object_number, vec3 place, vec3 normal, vec3 to_viewe
   int kind = int(object.x);
   if (kind < 0) return vec3(0.0);
   float mu = max(dot(normal, to_viewer), 0.0);  // a bent normal may look away
-  float node = clamp(mu * float(LOBE_NODES) - 0.5, 0.0, float(LOBE_NODES - 1));
-  int below = min(int(node), LOBE_NODES - 2);
-  vec3 lobe = mix(heap_light[kind + 1 + below].rgb, heap_light[kind + 2 + below].rgb, node - float(below));
+  vec3 lobe = lobe_at(kind + 1, mu);
   if (object.w == 0.0) return lobe * light_of_wall(int(object.y), place, normal);
   vec3 seen = seen_place(kind, normal, to_viewer, mu);
   int first = int(abs(object.w));
@@ -88,6 +95,20 @@ vec3 light_from_grains(int object_number, vec3 place, vec3 normal, vec3 to_viewe
   if (second > 0) answer += second_order_at(second, seen);
   return lobe * max(answer, vec3(0.0)) + crossing * max(light_at_normal(first + 3, through), vec3(0.0));
 }
+
+#ifdef TOLD
+// Radiance towards a viewer of what lights and the world do in a grain, but for what its surface reflects of them.
+vec3 light_entered(int object_number, vec3 normal, vec3 to_viewer) {
+  vec4 object = heap_light[object_number];
+  int kind = int(object.x);
+  if (kind < 0 || object.w <= 0.0) return vec3(0.0);  // what shares a cell's light lies too deep
+  int lobe = kind + 1 + LOBE_NODES;
+  vec3 place = heap_light[lobe].w * normal + heap_light[lobe + 1].w * to_viewer;
+  int first = int(object.w) + ENTERED_NUMBER;
+  vec3 light = light_at_normal(first, place) + second_order_at(first + 3, place);
+  return lobe_at(lobe, max(dot(normal, to_viewer), 0.0)) * max(light, vec3(0.0));
+}
+#endif
 #endif
 
 // Whether what is behind the grain was looked at through its own facets, so that the model is asked how much of it crosses.

@@ -58,7 +58,7 @@ void look_where_light_came_in(SurfacePoint point, LightSample light) {
     int bin = entry_bin(angle, ENTRY_ANGLES, random.x) * ENTRY_COSINES + entry_bin(mu * mu, ENTRY_COSINES, random.z);
     bin = bin * ENTRY_AZIMUTHS + entry_bin(azimuth, ENTRY_AZIMUTHS, random.y);
     int entry = bin * ENTRIES_EACH + int(low_discrepancy(number, bits.xy).x * float(ENTRIES_EACH));
-    vec4 pair = heap_light[kind + 1 + LOBE_NODES + entry / 2];
+    vec4 pair = heap_light[kind + 1 + 2 * LOBE_NODES + entry / 2];
     vec2 offset = entry % 2 == 0 ? pair.xy : pair.zw;
     vec3 place = aside + offset.x * away + offset.y * across;
     float reach = length(place);

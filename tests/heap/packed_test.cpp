@@ -7,11 +7,14 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "heap/packed_coefficients.h"
 #include "transport/directions.h"
 #include "transport/random.h"
 
 namespace {
 
+using mesograin::heap::Coefficients;
+using mesograin::heap::PackedCoefficients;
 using mesograin::heap::PackedPlace;
 using mesograin::heap::PackedWeight;
 using mesograin::transport::Random;
@@ -67,5 +70,22 @@ TEST(Packed, NoWeightStaysNone) {
 }
 
 TEST(Packed, AFewBytes) { EXPECT_EQ(sizeof(PackedPlace) + sizeof(PackedWeight), 8U); }
+
+TEST(Packed, CoefficientsAreNearlyWhatTheyWere) {
+  Random random(4, 0);
+  Coefficients of;
+  for (int i = 0; i < 20; ++i) {
+    const float u = random.uniform();
+    const glm::vec3 place = mesograin::transport::isotropic(u, random.uniform());
+    of.add(glm::vec3(1e-20F, 1.0F, 1e20F) * random.uniform(), place, true);
+  }
+  const Coefficients packed = PackedCoefficients(of).whole();
+  const auto expect_near = [](float number, float right) { EXPECT_NEAR(number, right, 0.004F * std::abs(right)); };
+  for (std::size_t channel = 0; channel < 3; ++channel) {
+    for (int i = 0; i < 4; ++i) expect_near(packed.channels[channel][i], of.channels[channel][i]);
+    for (std::size_t i = 0; i < 5; ++i) expect_near((*packed.second.get())[channel][i], (*of.second.get())[channel][i]);
+  }
+  EXPECT_EQ(PackedCoefficients(Coefficients()).whole().at(glm::vec3(0.0F, 0.6F, 0.8F)), glm::vec3(0.0F));
+}
 
 }  // namespace
