@@ -251,6 +251,7 @@ py::dict of_exchange(const render::ExchangeStatistics& exchange) {
   py::dict levels;
   for (std::size_t i = 0; i < render::level_names.size(); ++i)
     levels[std::string(render::level_names[i]).c_str()] = exchange.levels.grains[i];
+  levels["surface"] = exchange.levels.surfaces;
   result["levels"] = levels;
   result["walks_saved"] = exchange.levels.walks_saved;
   const auto pair = [](const render::Range& range) { return py::make_tuple(range.least, range.most); };
@@ -536,7 +537,9 @@ void bind_view(py::module_& module) {
           "many grains are shown by which, where rays find what is seen: {'walked': light is followed into them, "
           "'looked_into': clear ones, through their facets, 'modelled': by their model, 'sharing': of all these, those "
           "so deep that they share numbers}, 'levels': how many of those walked the last sample showed by which: "
-          "{'own_shape': walks in their mesh, 'ball': in a ball, 'told': none}, 'walks_saved': by that, 'stuff': "
+          "{'own_shape': walks in their mesh, 'ball': in a ball, 'told': none}, and of those that refract 'surface': "
+          "how "
+          "many by no more than their surface, 'walks_saved': by that, 'stuff': "
           "[{'surface', 'thickness', 'albedo', 'g', 'eta'}] of what they are made of, all but the first from least to "
           "most; thickness in mean free paths to the radius, albedo of one scattering}}.")
       .def(

@@ -198,6 +198,14 @@ std::shared_ptr<DeviceMaterial> DeviceCache::material(const scene::Material& mat
   return materials_.back().device;
 }
 
+std::shared_ptr<DeviceMaterial> DeviceCache::surface_of(scene::Material material) {
+  material.model = scene::Model::model_1;
+  const double radius = table_radius(material, 1.0);
+  if (std::shared_ptr<DeviceMaterial> known = this->known(material, radius)) return known;
+  materials_.push_back({material, radius, send_later(material, radius)});
+  return materials_.back().device;
+}
+
 void DeviceCache::prepare(const std::vector<std::pair<scene::Material, double>>& materials) {
   std::vector<std::pair<scene::Material, double>> missing;
   for (const auto& [material, grain_radius] : materials) {
@@ -393,6 +401,7 @@ const gl::Program& DeviceCache::shading(const DeviceMaterial& material, const Sh
   if (shading.shadows == Shadows::cast) defines.emplace_back("CAST_SHADOWS");
   if (shading.exchange) defines.emplace_back("EXCHANGE");
   if (shading.gathered) defines.emplace_back("GATHERED");
+  if (shading.told) defines.emplace_back("TOLD");
   const bool straight = material.shows_behind() && !shading.unwrapped;
   const bool film = straight && shading.film_transparent;
   const bool backdrop = straight && shading.backdrop;

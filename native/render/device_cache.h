@@ -40,6 +40,7 @@ struct Shading {
   Shadows shadows = Shadows::none;
   bool exchange = false;          ///< light goes from grain to grain
   bool gathered = false;          ///< and was gathered for each pixel
+  bool told = false;              ///< what has entered the grain is told, too: its surface alone is shaded
   bool world = false;             ///< there is a world to be seen through it
   bool alone = false;             ///< and nothing that may stand before it, but the object itself
   bool backdrop = false;          ///< and the camera sees it otherwise, through what does not refract, too
@@ -87,6 +88,9 @@ class DeviceMaterial {
 
   /// Whether its model reads light maps.
   bool light_maps() const { return light_maps_; }
+
+  /// Whether its model asks which lights reach places beside and below the one that is shaded.
+  bool asks_below() const { return light_maps_ || scene::traits_of(model_).mesh; }
 
   /// Grows when it becomes another.
   int version() const { return version_; }
@@ -156,6 +160,9 @@ class DeviceCache {
 
   /// `grain_radius` as in models::material_inputs; materials are shared by grains within half a percent.
   std::shared_ptr<DeviceMaterial> material(const scene::Material& material, double grain_radius);
+
+  /// What shades the surface alone of a grain of which numbers tell the rest.
+  std::shared_ptr<DeviceMaterial> surface_of(scene::Material material);
 
   /// Computes on all cores what material() of each would have to, but for what may never be drawn: inputs of grains'
   /// models wait for complete(), since what is seen of many grains is found without them.

@@ -334,6 +334,7 @@ void Exchange::set(DeviceCache& cache, const Content& content, const scene::Scen
   const bool regrouped = !solving_ || switched || roles_ != gathered.roles;
   if (!regrouped && solving_->heap() == heap) {
     find_gather();
+    find_tells_entered();
     count_means();
     return;
   }
@@ -343,6 +344,7 @@ void Exchange::set(DeviceCache& cache, const Content& content, const scene::Scen
   if (regrouped) gather_.reset();
   if (regrouped || keep_up()) send();
   if (!regrouped) find_gather();
+  find_tells_entered();
   count_means();
 }
 
@@ -359,12 +361,13 @@ bool Exchange::take_news() {
   if (!solving_) return false;
   heap::News news = solving_->news();
   if (!news.light || (known_ && known_->number == news.number)) return false;
-  known_ = Known{std::move(news.heap), std::move(news.light), news.number};
+  known_ = Known{news.heap, std::move(news.light), news.number, news.heap};
   keep_up();
   gather_.reset();
   find_gather();
   count_means();
   send();
+  find_tells_entered();
   return true;
 }
 
@@ -407,7 +410,8 @@ bool Exchange::keep_up() {
   if (!light) return false;
   if (changed) heap::change(*light, before, now);
   if (!shines_alike) heap::scale(*light, grown);
-  known_ = Known{solving_->shared_heap(), std::make_shared<const heap::HeapLight>(std::move(*light)), known_->number};
+  known_ = Known{solving_->shared_heap(), std::make_shared<const heap::HeapLight>(std::move(*light)), known_->number,
+                 known_->lit_by};
   gather_.reset();
   return true;
 }
@@ -424,6 +428,25 @@ void Exchange::find_gather() {
   if (wanted && gather_->heap() != solving_->heap() && alike(gather_->heap().grains, solving_->heap().grains))
     gather_ = gather_->among(solving_->shared_heap());
   find_whole();
+}
+
+// Numbers tell nothing of what is seen through a clear grain. In a moment they tell what other lights do.
+void Exchange::find_tells_entered() {
+  tells_entered_.clear();
+  if (!any() || !follows_ || !known_ || !told_.tells_entered()) return;
+  const heap::Heap& now = solving_->heap();
+  const heap::Heap& known = *known_->heap;
+  if (now.lights != known_->lit_by->lights || !(now.world == known_->lit_by->world)) return;
+  if (now.grains.kinds.size() != known.grains.kinds.size() || now.grains.grains.size() != known.grains.grains.size())
+    return;
+  const auto is_turbid = [&](const RoleInHeap& role) {
+    if (!role.grain) return false;
+    const std::uint32_t kind = now.grains.grains[*role.grain].kind;
+    return now.grains.kinds[kind].turbid() && known.grains.kinds[kind].turbid();
+  };
+  for (const auto& [first, end] : alike_)
+    tells_entered_.push_back(std::all_of(roles_.begin() + static_cast<std::ptrdiff_t>(first),
+                                         roles_.begin() + static_cast<std::ptrdiff_t>(end), is_turbid));
 }
 
 // What a clear grain scatters is told by a few numbers: enough of one among many, and too little of one alone, whose

@@ -113,6 +113,9 @@ class Exchange {
   /// Whether nothing else is gathered of any.
   bool looks_straight_alone() const { return looks_straight_ && !gather_->sees_into_any(); }
 
+  /// Whether numbers tell what light of the lights and the world has entered the instances of such a unit of arrays.
+  bool tells_entered(std::size_t unit) const { return unit < tells_entered_.size() && tells_entered_[unit]; }
+
   /// Whether it is followed into any grain that is seen.
   bool follows() const { return gathers_ || follows_; }
 
@@ -134,7 +137,8 @@ class Exchange {
   struct Known {
     std::shared_ptr<const heap::Heap> heap;
     std::shared_ptr<const heap::HeapLight> light;
-    int number;  ///< of the news
+    int number;                                ///< of the news
+    std::shared_ptr<const heap::Heap> lit_by;  ///< whose lights and world they are, not weaker or stronger
 
     const heap::Grains& grains() const { return heap->grains; }
   };
@@ -143,6 +147,7 @@ class Exchange {
   bool keep_up();
   void find_gather();
   void find_whole();
+  void find_tells_entered();
   void count_means();
 
   Summing summing_ = Summing::automatic;
@@ -157,6 +162,7 @@ class Exchange {
   Means means_;
   std::shared_ptr<const heap::Gather> gather_;
   std::vector<std::pair<std::size_t, std::size_t>> alike_;  // objects of one unit: the first, and after the last
+  std::vector<bool> tells_entered_;                         // of these units
   std::vector<bool> whole_;  // of objects, where clear ones are looked into: no model is asked of their unit
   std::shared_ptr<const heap::Solving> solving_;
   std::optional<Known> known_;

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "render/passes/told_units.h"
 #include "render/passes/uv_count.h"
 #include "render/sequence.h"
 #include "render/stencil.h"
@@ -177,11 +178,12 @@ Sample Frame::begin_sample(const GoOn& go_on, bool hurried) {
                 .pixels_at_once = pixels_at_once_,
                 .go_on = go_on};
   if (unwrapping_) return sample;
+  if (levels_ && (cast || sample.device_rays)) sample.told = told_units(sample);
   // Of what light goes between it is known otherwise what is seen behind.
   const bool behind = !exchange_.tells_straight() && content_->any_shows_behind();
   sample.straight_through = (behind || exchange_.any_panes()) && traced;
   sample.mirrors = arrays_.mirrors(*content_, traced, lighting_.world().shines(), behind,
-                                   [&](std::size_t unit) { return sample.asks_model(unit); });
+                                   [&](std::size_t unit) { return sample.tells(unit) || sample.asks_model(unit); });
   if (sample.mirrors == Mirrors::hindered && !targets_->mirror)
     targets_->mirror.emplace(targets_->sample, targets_->depth);
   return sample;
@@ -223,6 +225,7 @@ bool Frame::draw_seen(const Sample& sample) {
         return false;
       // Rays are not the device's work.
       if (sample.cast) timers_.shade.start();
+      told_grains_ = told_grains(sample, surfaces_);
       shade_.clear(sample);
     }
     if (!shade_.shade_seen(sample, shadows_, gather_, first)) return false;
@@ -338,6 +341,7 @@ Statistics Frame::statistics() const {
     result.exchange = exchange_.statistics();
     result.exchange->gathered = samples_ > 0 && gather_.ran();
     if (result.exchange->gathered) result.exchange->levels = gather_.levels();
+    if (samples_ > 0) result.exchange->levels.surfaces = told_grains_;
   }
   if (content_->instances() == nullptr) return result;
   result.instances = content_->instances()->count();

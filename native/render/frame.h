@@ -176,6 +176,7 @@ class Frame {
   SubpixelPass subpixels_;
   AccumulatePass accumulate_;
   PassTimers timers_;
+  std::size_t told_grains_ = 0;  // that the last sample showed
   bool timed_ = false;
   double pixels_at_once_ = std::numeric_limits<double>::infinity();  // by how long the last sample's took
   int samples_ = 0;

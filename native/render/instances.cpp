@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "casting/flat_tree.h"
+#include "heap/optics.h"
 #include "render/device_layout.h"
 
 namespace mesograin::render {
@@ -53,6 +54,14 @@ Instances::Instances(DeviceCache& cache, const std::vector<scene::InstanceArray>
     for (std::size_t i = begin; i < members_.size() && ordered; ++i) ordered = members_[i] == i - begin;
   }
   if (ordered) members_ = {};
+  find_largest();
+}
+
+void Instances::find_largest() {
+  for (InstanceGroup& group : groups_) {
+    const auto first = radii_.begin() + group.first;
+    group.largest = group.count > 0 ? *std::max_element(first, first + group.count) : 0.0F;
+  }
 }
 
 std::size_t Instances::prototype(DeviceCache& cache, const scene::MeshPointer& mesh) {
@@ -77,6 +86,9 @@ void Instances::add(DeviceCache& cache, const scene::InstanceArray& array, const
       group.material = cache.material(array.material, radius_of(array, alike));
     }
     group.source = array.material;
+    // What a model shows at the surface alone costs no more than numbers.
+    if (heap::optics_of(array.material, 1.0).surface == heap::Surface::dielectric && group.material->asks_below())
+      group.surface = cache.surface_of(array.material);
     if (group.material->light_maps() && !prototypes_[of].light_maps)
       prototypes_[of].light_maps = std::make_unique<LightMapAtlas>(array.mesh);
     const glm::dvec3 reduced =
@@ -119,6 +131,7 @@ void Instances::place(const std::vector<scene::InstanceArray>& arrays, const glm
       place(instance, *array.mesh, array.object_to_world()[members_.empty() ? instance - begin : members_[instance]],
             anchor);
   }
+  find_largest();
 }
 
 void Instances::take_places(Instances& before) {

@@ -39,11 +39,13 @@ struct Prototype {
 struct InstanceGroup {
   std::size_t prototype;
   std::shared_ptr<DeviceMaterial> material;
-  scene::Material source;         // of the material
-  double typical_scale;           // of the instances that the material's tables were made for
-  double mean_free_paths_across;  // reduced, in the densest channel
-  glm::mat3 unstretch{1.0F};      // of a material that depends on the mesh: what makes an instance's transform a turn
-  std::uint32_t first;            // instance; they lie one after the other
+  std::shared_ptr<DeviceMaterial> surface;  // what shades its surface alone, where numbers may tell the rest; or null
+  scene::Material source;                   // of the material
+  double typical_scale;                     // of the instances that the material's tables were made for
+  double mean_free_paths_across;            // reduced, in the densest channel
+  float largest = 0.0F;                     // of the instances' balls
+  glm::mat3 unstretch{1.0F};  // of a material that depends on the mesh: what makes an instance's transform a turn
+  std::uint32_t first;        // instance; they lie one after the other
   std::uint32_t count;
 };
 
@@ -124,6 +126,7 @@ class Instances {
   void add(DeviceCache& cache, const scene::InstanceArray& array, const std::vector<InstanceClass>& classes,
            const glm::dvec3& anchor);
   std::size_t prototype(DeviceCache& cache, const scene::MeshPointer& mesh);
+  void find_largest();
   void place(std::size_t instance, const scene::Mesh& mesh, const glm::dmat4& object_to_world,
              const glm::dvec3& anchor);
 

@@ -13,6 +13,7 @@ namespace {
 // In pixels across.
 constexpr float shaped_from = 8.0F;
 constexpr float walked_from = 4.0F;
+constexpr float modelled_from = 5.0F;
 
 // Of one sample the noise of walks is no less than what numbers lack.
 constexpr float walked_from_where_awaited = 8.0F;
@@ -46,6 +47,20 @@ PixelsAcross::PixelsAcross(const glm::mat4& to_clip, const glm::ivec2& size) {
 float PixelsAcross::of(const glm::vec4& ball) const {
   const float depth = glm::dot(depth_, glm::vec4(glm::vec3(ball), 1.0F));
   return depth > 0.0F ? ball.w * pixels_ / depth : std::numeric_limits<float>::infinity();
+}
+
+float PixelsAcross::most(const Bounds& bounds, float radius) const {
+  float most = 0.0F;
+  for (unsigned corner = 0; corner < 8; ++corner) {
+    const glm::bvec3 upper((corner & 1U) != 0, (corner & 2U) != 0, (corner & 4U) != 0);
+    most = std::max(most, of(glm::vec4(glm::vec3(glm::mix(bounds.lower, bounds.upper, upper)), radius)));
+  }
+  return most;
+}
+
+float share_told(float pixels_across, bool awaited) {
+  if (awaited) return pixels_across < walked_from_where_awaited ? 1.0F : 0.0F;
+  return std::clamp(modelled_from + 0.5F - pixels_across, 0.0F, 1.0F);
 }
 
 Level level_of(bool is_ball, float pixels_across, bool awaited) {

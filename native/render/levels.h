@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "heap/gather.h"
+#include "render/bounds.h"
 
 namespace mesograin::render {
 
@@ -27,6 +28,7 @@ inline constexpr std::array<std::string_view, 3> level_names = {"own_shape", "ba
 struct SeenByLevel {
   std::array<std::size_t, level_names.size()> grains{};  ///< that pixels show, by each
   std::size_t walks_saved = 0;                           ///< that none was followed of, where it was told
+  std::size_t surfaces = 0;                              ///< of grains that refract, of which no more was shaded
 };
 
 /// How large balls are seen in a picture of this size.
@@ -37,12 +39,20 @@ class PixelsAcross {
   /// `ball`: its middle and radius. Infinite where the camera may be in it.
   float of(const glm::vec4& ball) const;
 
+  /// What none of this radius exceeds within these bounds.
+  float most(const Bounds& bounds, float radius) const;
+
  private:
   glm::vec4 depth_;
   float pixels_;  // of what is as long as it is far
 };
 
-/// Of a grain that is seen so many pixels across. `awaited`: of the one sample of a picture that a drag shows.
+/// In how many of the samples it is told what has entered a grain that refracts, where it is seen so many pixels
+/// across: from all to none over a pixel, so that it does not pop. `awaited`: of the one sample of a picture that a
+/// drag shows.
+float share_told(float pixels_across, bool awaited);
+
+/// Of a grain that is seen so many pixels across. `awaited`: as of share_told().
 Level level_of(bool is_ball, float pixels_across, bool awaited = false);
 
 /// How much more light the closest way finds than a coarser one, over the grains of each unit of the content: few are

@@ -10,6 +10,7 @@
 //   STORED_LAMPS         of some it is stored what they do in the grain (models/stored_lamps.glsl)
 //   CLEAR, WORLD         the model knows what crosses the grain unscattered, and there is a world to be seen through it
 //   GATHERED             what is behind some was gathered
+//   TOLD                 numbers tell what lights do in the grain, and no model is asked for more than its surface
 //   TOGETHER             what the model makes of all lights but for mirroring was summed, and nothing stands in their way
 //   WHOLE_GRAIN          the model knows what light does in all of the grain, but not where it enters
 //   EMITS                the surface sends out light of its own
@@ -212,6 +213,9 @@ vec3 lit_point(SurfacePoint point) {
 #if defined(EXCHANGE) && !(defined(FACETS_ALONE) && defined(MIRRORS_WORLD))
   vec3 place = settled_place() + grain_unit * point.on_triangle;
   vec3 sum = portion(EXCHANGE_PORTION, light_from_grains(grain_instance, place, point.normal, point.to_viewer));
+#ifdef TOLD
+  sum += portion(SUBSURFACE_PORTION, light_entered(grain_instance, point.normal, point.to_viewer));
+#endif
 #ifdef GATHERED
   if (!looked_through()) sum += portion(TRANSMISSION_PORTION, texelFetch(gathered_lights, ivec2(gl_FragCoord.xy), 0).rgb);
 #endif

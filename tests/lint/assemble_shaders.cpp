@@ -115,6 +115,7 @@ void write_shading(Writer& writer) {
   const std::vector<std::string> clear = {"CLEAR", "WORLD", "MANY_TERMS"};
   const std::vector<std::string> cast = {"SHADOWS", "CAST_SHADOWS"};
   const std::vector<std::string> near = {"NEAR_LIGHTS", "LIGHTS_ABOUT"};
+  const std::vector<std::string> told = {"INSTANCED", "SHADOWS", "CAST_SHADOWS", "EXCHANGE", "TOLD"};
   const std::vector<std::string> near_instances = {"INSTANCED", "SHADOWS", "LIGHTS_AT_PLACE", "NEAR_LIGHTS",
                                                    "LIGHTS_ABOUT"};
   const std::vector<std::vector<std::string>> shadings = {{"INSTANCED"},
@@ -130,6 +131,7 @@ void write_shading(Writer& writer) {
                                                           {"INSTANCED", "SHADOWS", "LIGHTS_AT_PLACE"},
                                                           near,
                                                           near_instances,
+                                                          told,
                                                           clear};
   const std::vector<std::vector<std::string>> mirrors = {{"MIRRORS_WORLD"}, {"MIRRORS_WORLD", "SHADOWS"}};
   std::set<std::string> written;
@@ -161,6 +163,7 @@ void write_shading(Writer& writer) {
     // What else a program is compiled for asks the same of a model, so one of its choices stands for all of them.
     if (!written.insert(model).second) continue;
     for (const std::vector<std::string>& shading : shadings) {
+      if (shading == told && material.model != scene::Model::model_1) continue;  // which shades surfaces alone
       if (shading == clear && !scene::traits_of(material.model).mesh) continue;  // who knows no mesh is never clear
       // Light is looked up where it enters, in maps.
       const bool maps = std::find(defines.begin(), defines.end(), "LIGHT_MAPS") != defines.end();

@@ -18,6 +18,12 @@ def medium(albedo, radius):
                            sigma_a=tuple((1.0 - albedo) * radius))
 
 
+def refracting(albedo, radius, eta=1.5, model="transport"):
+    albedo = numpy.asarray(albedo)
+    return native.Material(model=model, eta=eta, roughness=0.3, sigma_s=tuple(albedo * radius),
+                           sigma_a=tuple((1.0 - albedo) * radius))
+
+
 def heap(grains, *materials):
     """The stored heap's places four times over, as an array of each material that has its share of them."""
     offsets = numpy.array([(x, y, 0.0) for x in (0.0, 25.0) for y in (0.0, 25.0)])
@@ -29,24 +35,32 @@ def heap(grains, *materials):
             for number, material in enumerate(materials)]
 
 
+def seen_by(view, pixels):
+    """From aside, a grain of diameter 2 so many pixels across."""
+    middle = numpy.array([25.0, 25.0, 5.0])
+    high = 2.0 * SIZE / pixels
+    away = 400.0
+    view.set_camera(native.Camera.look_at(tuple(middle + away * numpy.array((0.0, -0.6, 0.8))), tuple(middle),
+                                          (0.0, 0.0, 1.0), 2.0 * numpy.degrees(numpy.arctan(0.5 * high / away)), 1.0))
+
+
+def until_known(view):
+    while view.preparing is not None:
+        time.sleep(0.002)
+    view.take_news()
+
+
 def looked_at(arrays, pixels, by_size, samples, exchange="heaps", sky=False, patient=True):
-    """(picture, counts by level): from aside, a grain of diameter 2 so many pixels across. patient: else as a viewport
-    shows it once the light is known."""
+    """(picture, counts by level). patient: else as a viewport shows it once the light is known."""
     shines = ({"world": native.World((0.3, 0.3, 0.4))} if sky else
               {"lights": [native.DirectionalLight((1.0, 0.4, 1.0), (3.0,) * 3, angle=0.01)],
                "world": native.World((0.1, 0.1, 0.1))})
     view = native.View(SIZE, SIZE, patient=patient)
     view.set_levels(by_size)
     view.set_scene(native.Scene(arrays=arrays, exchange=exchange, **shines))
-    middle = numpy.array([25.0, 25.0, 5.0])
-    high = 2.0 * SIZE / pixels
-    away = 400.0
-    view.set_camera(native.Camera.look_at(tuple(middle + away * numpy.array((0.0, -0.6, 0.8))), tuple(middle),
-                                          (0.0, 0.0, 1.0), 2.0 * numpy.degrees(numpy.arctan(0.5 * high / away)), 1.0))
+    seen_by(view, pixels)
     if not patient:
-        while view.preparing is not None:
-            time.sleep(0.002)
-        view.take_news()
+        until_known(view)
     view.render(samples)
     told = view.statistics()["exchange"]
     assert told["walks_saved"] >= 4 * told["levels"]["told"]
@@ -99,3 +113,100 @@ def test_large_ones_and_those_that_are_gathered_are_looked_at_as_closely_as_ever
     (close, _), (found, counts) = (looked_at(arrays, pixels, by_size, 2, exchange) for by_size in (False, True))
     assert not counts["ball"] and not counts["told"]
     assert numpy.array_equal(close, found)
+
+
+BROWN = (0.99, 0.97, 0.9)
+
+
+@pytest.mark.parametrize("grains, eta", [("sand", 1.5), ("balls", 1.3)])
+@pytest.mark.parametrize("sky", [False, True])
+def test_of_small_ones_that_refract_numbers_tell_what_has_entered(grains, eta, sky):
+    """24 samples of each way, whose own noise is in it; a material of each channel its own, and another."""
+    arrays = heap(grains, refracting(BROWN, 5.0, eta), refracting((0.999,) * 3, 9.0, 1.5, "model_2"))
+    close, none = looked_at(arrays, 3.0, False, 24, sky=sky)
+    found, counts = looked_at(arrays, 3.0, True, 24, sky=sky)
+    assert counts["surface"] > 500 and not none["surface"]
+    assert numpy.isfinite(found).all()
+    assert found[..., :3].sum((0, 1)) == pytest.approx(close[..., :3].sum((0, 1)), rel=0.04)
+    assert numpy.abs(blocks(found) - blocks(close)).sum() < 0.04 * blocks(close).sum()
+
+
+@pytest.mark.parametrize("pixels, least, most", [(4.0, 8, 8), (5.0, 2, 6), (6.0, 0, 0)])
+def test_they_do_not_pop_where_they_grow(pixels, least, most):
+    """About 5 pixels more and more samples look at them closely."""
+    view = native.View(SIZE, SIZE)
+    view.set_scene(native.Scene(arrays=heap("sand", refracting(BROWN, 5.0)), exchange="heaps",
+                                world=native.World((0.3,) * 3)))
+    seen_by(view, pixels)
+    told = 0
+    for _ in range(8):
+        view.render(1)
+        told += view.statistics()["exchange"]["levels"]["surface"] > 0
+    assert least <= told <= most
+
+
+@pytest.mark.parametrize("exchange, model, albedo, radius", [
+    ("order_1", "transport", BROWN, 5.0), ("gathered", "transport", BROWN, 5.0), ("heaps", "model_1", BROWN, 5.0),
+    ("heaps", "transport", (0.999,) * 3, 0.5)])
+def test_nothing_else_is_shaded_by_its_surface_alone(exchange, model, albedo, radius):
+    """Nor what is so clear that more is to be seen in it, nor what a model shows by its surface anyway."""
+    arrays = heap("sand", refracting(albedo, radius, model=model))
+    (close, _), (found, counts) = (looked_at(arrays, 3.0, by_size, 2, exchange) for by_size in (False, True))
+    assert not counts["surface"]
+    assert numpy.array_equal(close, found)
+
+
+@pytest.mark.parametrize("sky", [False, True])
+@pytest.mark.parametrize("pixels, told", [(3.0, True), (7.0, True), (12.0, False)])
+def test_what_a_drag_shows_of_larger_ones_is_told_too(pixels, told, sky):
+    """In a sky that is nearer than what one sample of directions shows, beneath a sun about as near."""
+    arrays = heap("sand", refracting(BROWN, 5.0))
+    right, _ = looked_at(arrays, pixels, False, 24, sky=sky)
+    found, counts = looked_at(arrays, pixels, True, 1, sky=sky, patient=False)
+    assert (counts["surface"] > 300) == told
+    if told:
+        assert numpy.abs(blocks(found) - blocks(right)).sum() < 0.06 * blocks(right).sum()
+    _, further = looked_at(arrays, pixels, True, 2, sky=sky, patient=False)
+    assert (further["surface"] > 0) == (pixels < 4.5)
+
+
+def test_lights_that_move_are_seen_at_once():
+    """Until it is known again what has entered grains their model is asked."""
+    arrays = heap("sand", refracting(BROWN, 5.0))
+
+    def lit(*towards):
+        return native.Scene(arrays=arrays, exchange="heaps", lights=[native.DirectionalLight(towards, (3.0,) * 3)])
+
+    view = native.View(SIZE, SIZE, patient=False)
+    view.set_scene(lit(1.0, 0.4, 1.0))
+    seen_by(view, 3.0)
+    until_known(view)
+    view.render(1)
+    assert view.statistics()["exchange"]["levels"]["surface"] > 500
+    view.set_scene(lit(-1.0, 0.4, 1.0))
+    view.render(1)
+    assert not view.statistics()["exchange"]["levels"]["surface"]
+    at_once = view.read()
+    until_known(view)
+    view.render(8)
+    assert view.statistics()["exchange"]["levels"]["surface"] > 500
+    assert numpy.abs(blocks(at_once) - blocks(view.read())).sum() < 0.25 * blocks(at_once).sum()
+
+
+def test_a_sliders_step_is_seen_in_what_has_entered():
+    view = native.View(SIZE, SIZE, patient=False)
+    shines = {"exchange": "heaps", "lights": [native.DirectionalLight((1.0, 0.4, 1.0), (3.0,) * 3)]}
+    view.set_scene(native.Scene(arrays=heap("sand", refracting((0.9,) * 3, 5.0)), **shines))
+    seen_by(view, 3.0)
+    until_known(view)
+    view.render(1)
+    before = view.read()
+    view.set_scene(native.Scene(arrays=heap("sand", refracting((0.97,) * 3, 5.0)), **shines))
+    view.render(1)
+    assert view.statistics()["exchange"]["levels"]["surface"] > 500
+    at_once = view.read()
+    until_known(view)
+    view.render(8)
+    settled = view.read()
+    assert blocks(settled).sum() > 1.3 * blocks(before).sum()
+    assert numpy.abs(blocks(at_once) - blocks(settled)).sum() < 0.12 * blocks(settled).sum()

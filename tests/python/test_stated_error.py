@@ -16,7 +16,7 @@ def module():
 
 
 def exchange(balls=True, gathered=True, **stuff):
-    return {"balls": balls, "gathered": gathered, "levels": {"own_shape": 9, "ball": 0, "told": 0},
+    return {"balls": balls, "gathered": gathered, "levels": {"own_shape": 9, "ball": 0, "told": 0, "surface": 0},
             "stuff": [{"surface": "index_matched", "thickness": (3.0, 3.0), "albedo": (0.9, 0.999), "g": (0.0, 0.0),
                        "eta": (1.0, 1.0), **stuff}]}
 
@@ -50,7 +50,7 @@ def test_of_heaps_by_chance_nine_in_ten_are_told(stated_error):
 
 
 def test_more_is_said_of_grains_that_are_seen_small(stated_error):
-    for level in ("ball", "told"):
+    for level in ("ball", "told", "surface"):
         seen = exchange()
         seen["levels"][level] = 1
         assert stated_error.sentence(seen) == (stated_error.sentence(exchange())

@@ -76,7 +76,7 @@ def sentence(exchange):
     if not found:
         return "how far off was not measured for grains like these"
     small = ""
-    if exchange["levels"]["ball"] or exchange["levels"]["told"]:
+    if any(exchange["levels"][name] for name in ("ball", "told", "surface")):
         small = f", and {SMALL:.0%} more in blocks of grains below 8 pixels across"
     total, blocks = (f"{max(getattr(known, name) for known in found):.1%}" for name in ("total", "blocks"))
     heaps = [known.by_chance for known in found if known.by_chance]

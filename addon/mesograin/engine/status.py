@@ -45,10 +45,11 @@ class Exchange:
         return ", ".join(shown) + (f"; {sharing} lie deep and share numbers" if sharing else "")
 
     def _seen_small(self):
-        ball, told = self.levels["ball"], self.levels["told"]
-        if not ball and not told:
-            return ()
-        return (f"seen small: {ball} as balls, {told} without walks ({self.walks_saved} saved)",)
+        told = f"{self.levels['told']} without walks ({self.walks_saved} saved)"
+        shown = [how for name, how in (("ball", f"{self.levels['ball']} as balls"), ("told", told),
+                                       ("surface", f"{self.levels['surface']} by their surface alone"))
+                 if self.levels[name]]
+        return (f"seen small: {', '.join(shown)}",) if shown else ()
 
 
 def exchange(statistics):

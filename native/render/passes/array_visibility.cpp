@@ -9,10 +9,11 @@
 namespace mesograin::render {
 namespace {
 
-bool reads_light_maps(const Instances& instances) {
-  const std::vector<Prototype>& prototypes = instances.prototypes();
-  return std::any_of(prototypes.begin(), prototypes.end(),
-                     [](const Prototype& prototype) { return prototype.light_maps != nullptr; });
+bool reads_light_maps(const Sample& sample) {
+  const std::vector<InstanceGroup>& groups = sample.content.instances()->groups();
+  for (std::size_t unit = 0; unit < groups.size(); ++unit)
+    if (groups[unit].material->light_maps() && sample.asks_model(unit)) return true;
+  return false;
 }
 
 }  // namespace
@@ -60,7 +61,7 @@ void ArrayVisibility::prepare(const Sample& sample) {
   }
   if (instances == nullptr || selection_) return;
   // Light maps are as fine as the largest grain in the picture.
-  if (!(sample.cast || sample.device_rays) || reads_light_maps(*instances))
+  if (!(sample.cast || sample.device_rays) || reads_light_maps(sample))
     selection_ = std::make_unique<DeviceSelection>(
         instances->select(anchor_to_clip(sample.content, sample.camera), sample.size.x, sample.size.y));
 }

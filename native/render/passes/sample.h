@@ -62,6 +62,7 @@ struct Sample {
   double pixels_at_once;          ///< that are shaded from one question whether to go on to the next
   const GoOn& go_on;
   std::optional<Portion> portion{};  ///< of its light, that is shaded alone
+  std::vector<bool> told{};          ///< of units: numbers tell what has entered its grains
 
   /// The camera from `origin` and 1; for a parallel projection the direction towards it and 0.
   glm::vec4 viewer(const glm::dvec3& origin) const;
@@ -86,9 +87,17 @@ struct Sample {
   /// Whether all light of an object that is seen is gathered; its unit's others are then, too.
   bool gathers_all_of(std::size_t number) const;
 
+  /// Whether of a unit's grains no more is shaded than their surface, for it is told what has entered them.
+  bool tells(std::size_t unit) const { return unit < told.size() && told[unit]; }
+
+  /// What shades a unit.
+  const DeviceMaterial& material(std::size_t unit) const {
+    return tells(unit) ? *content.instances()->groups()[unit].surface : content.material(unit);
+  }
+
   /// Whether any pixel asks a unit's model, and so for the light maps and the shadows that it knows.
   bool asks_model(std::size_t unit) const {
-    return mirrors == Mirrors::hindered || !gathers_all_of(content.first_number(unit));
+    return !tells(unit) && (mirrors == Mirrors::hindered || !gathers_all_of(content.first_number(unit)));
   }
 };
 

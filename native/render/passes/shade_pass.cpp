@@ -139,7 +139,7 @@ bool ShadePass::shade_seen_units(const Sample& sample, const ShadowPass& shadows
       show_gathered(sample, gathered, unit, stencil_mark(unit, first));
       continue;
     }
-    const DeviceMaterial& material = sample.content.material(unit);
+    const DeviceMaterial& material = sample.material(unit);
     const bool looks_on = sample.mirrors == Mirrors::hindered && sample.portion != Portion::normal;
     const bool sees_behind = looks_on && !sample.exchange.tells_straight() && sample.content.shows_behind(unit);
     const gl::Program& program =
@@ -186,7 +186,7 @@ bool ShadePass::shade_mirrored_units(const Sample& sample, const ShadowPass& sha
   for (std::size_t unit = first; unit < std::min(first + most_in_stencil, boxes.size()); ++unit) {
     const PixelBox& box = boxes[unit];
     if (box.first == box.end) continue;
-    const DeviceMaterial& material = sample.content.material(unit);
+    const DeviceMaterial& material = sample.material(unit);
     const bool goes_on = by.onwards != nullptr && sample.content.shows_behind(unit);
     const gl::Program& program = prepare(sample, unit,
                                          {.instanced = sample.content.draw(unit) == nullptr,
@@ -209,7 +209,7 @@ bool ShadePass::shade_unit(const Sample& sample, const gl::Program& program, std
   if (const Draw* draw = sample.content.draw(unit))
     set_draw(sample, program, *draw);
   else
-    set_group(sample, program, sample.content.instances()->groups()[unit]);
+    set_group(sample, program, unit);
   program.set("surface_position", sample.targets.position);
   program.set("surface_normal", sample.targets.normal);
   if (sample.targets.coordinates) program.offer("surface_coordinates", *sample.targets.coordinates);
@@ -256,9 +256,10 @@ void ShadePass::shade_unwrapped(const Sample& sample, const ShadowPass& shadows)
 }
 
 const gl::Program& ShadePass::prepare(const Sample& sample, std::size_t unit, Shading shading) {
-  const DeviceMaterial& material = sample.content.material(unit);
+  const DeviceMaterial& material = sample.material(unit);
   const bool world = sample.lighting.world().shines();
   shading.exchange = sample.exchange.any();
+  shading.told = sample.tells(unit);
   shading.world = world;
   shading.alone = sample.content.alone();
   shading.backdrop = shows_backdrop(sample.lighting);
@@ -311,13 +312,14 @@ void ShadePass::set_draw(const Sample& sample, const gl::Program& program, const
   program.set("viewer", sample.viewer(draw.centre));
 }
 
-void ShadePass::set_group(const Sample& sample, const gl::Program& program, const InstanceGroup& group) {
+void ShadePass::set_group(const Sample& sample, const gl::Program& program, std::size_t unit) {
+  const InstanceGroup& group = sample.content.instances()->groups()[unit];
   const glm::dvec3& anchor = sample.content.anchor();
   set_lights(sample, program, sample.lights.distant, anchor);
   const Instances& instances = *sample.content.instances();
   const Prototype& prototype = instances.prototypes()[group.prototype];
   instances.bind();
-  if (group.material->light_maps()) prototype.light_maps->bind(program);
+  if (sample.material(unit).light_maps()) prototype.light_maps->bind(program);
   program.offer("typical_scale", static_cast<float>(group.typical_scale));
   program.offer("unstretch", group.unstretch);
   program.offer("grain_reach", static_cast<float>(prototype.mesh->reach() * group.typical_scale));

@@ -63,7 +63,7 @@ class ShadePass {
   /// The program that is in use, on the box's pixels.
   bool draw_in_strips(const Sample& sample, const PixelBox& box);
   void set_draw(const Sample& sample, const gl::Program& program, const Draw& draw);
-  void set_group(const Sample& sample, const gl::Program& program, const InstanceGroup& group);
+  void set_group(const Sample& sample, const gl::Program& program, std::size_t unit);
 
   /// Sends the directions of light; places of lights are from `origin`.
   void set_lights(const Sample& sample, const gl::Program& program, const std::vector<LightDirection>& directions,

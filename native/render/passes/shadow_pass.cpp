@@ -14,15 +14,11 @@ namespace {
 constexpr int least_resolution = 256;
 constexpr int most_resolution = 2048;
 
-bool is_opaque(const DeviceMaterial& material) {
-  return !material.light_maps() && !scene::traits_of(material.model()).mesh;
-}
-
 // Whether it is enough to know for each pixel which lights of this sample reach it.
 bool known_by_pixel(const Sample& sample) {
   if (sample.unwrapping != nullptr || !(sample.cast || sample.device_rays)) return false;
   for (std::size_t unit = 0; unit < sample.content.units(); ++unit)
-    if (!is_opaque(sample.content.material(unit)) && sample.asks_model(unit)) return false;
+    if (sample.material(unit).asks_below() && sample.asks_model(unit)) return false;
   return true;
 }
 
@@ -31,7 +27,7 @@ bool crosses_into_others(const Sample& sample) {
   if (!sample.straight_through || sample.unwrapping != nullptr) return false;
   int below = 0;
   for (std::size_t unit = 0; unit < sample.content.units(); ++unit)
-    if (!is_opaque(sample.content.material(unit)) && sample.asks_model(unit)) ++below;
+    if (sample.material(unit).asks_below() && sample.asks_model(unit)) ++below;
   return below > 1;
 }
 
@@ -84,7 +80,7 @@ bool ShadowPass::cast(const Sample& sample, const ArrayVisibility& arrays, const
 }
 
 bool ShadowPass::cast_for(const DeviceMaterial& material) const {
-  return by_pixel_ || (opaque_by_pixel_ && is_opaque(material));
+  return by_pixel_ || (opaque_by_pixel_ && !material.asks_below());
 }
 
 Shadows ShadowPass::kind(const Content& content, const DeviceMaterial& material) const {
@@ -152,11 +148,11 @@ bool ShadowPass::run_mirrored(const Sample& sample, const ArrayVisibility& array
 }
 
 Shadows ShadowPass::kind_mirrored(const Content& content, const DeviceMaterial& material) const {
-  return content.shadows() && few_ && is_opaque(material) ? Shadows::cast : kind(content, material);
+  return content.shadows() && few_ && !material.asks_below() ? Shadows::cast : kind(content, material);
 }
 
 void ShadowPass::bind_mirrored(const gl::Program& program, const DeviceMaterial& material) const {
-  if (ran_ && few_ && is_opaque(material))
+  if (ran_ && few_ && !material.asks_below())
     mirrored_.bind(program);
   else
     bind(program, material);
