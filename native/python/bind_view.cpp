@@ -538,8 +538,8 @@ void bind_view(py::module_& module) {
           "'looked_into': clear ones, through their facets, 'modelled': by their model, 'sharing': of all these, those "
           "so deep that they share numbers}, 'levels': how many of those walked the last sample showed by which: "
           "{'own_shape': walks in their mesh, 'ball': in a ball, 'told': none}, and of those that refract 'surface': "
-          "how "
-          "many by no more than their surface, 'walks_saved': by that, 'stuff': "
+          "how many by no more than their surface, seen or not where the device follows rays, 'walks_saved': by that, "
+          "'stuff': "
           "[{'surface', 'thickness', 'albedo', 'g', 'eta'}] of what they are made of, all but the first from least to "
           "most; thickness in mean free paths to the radius, albedo of one scattering}}.")
       .def(

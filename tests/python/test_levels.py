@@ -210,3 +210,17 @@ def test_a_sliders_step_is_seen_in_what_has_entered():
     settled = view.read()
     assert blocks(settled).sum() > 1.3 * blocks(before).sum()
     assert numpy.abs(blocks(at_once) - blocks(settled)).sum() < 0.12 * blocks(settled).sum()
+
+
+def test_the_devices_rays_show_the_same():
+    pictures = []
+    for visibility in ("cast", "device_rays"):
+        view = native.View(SIZE, SIZE)
+        view.set_visibility(visibility)
+        view.set_scene(native.Scene(arrays=heap("sand", refracting(BROWN, 5.0)), exchange="heaps",
+                                    lights=[native.DirectionalLight((1.0, 0.4, 1.0), (3.0,) * 3)]))
+        seen_by(view, 3.0)
+        view.render(2)
+        assert view.statistics()["exchange"]["levels"]["surface"] > 500
+        pictures.append(view.read())
+    assert numpy.abs(pictures[0] - pictures[1]).sum() < 1e-4 * pictures[0].sum()

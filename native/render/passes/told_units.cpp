@@ -40,13 +40,14 @@ std::vector<bool> told_units(const Sample& sample) {
 }
 
 std::size_t told_grains(const Sample& sample, SurfacePass& surfaces) {
-  if (!sample.cast || std::find(sample.told.begin(), sample.told.end(), true) == sample.told.end()) return 0;
+  if (std::find(sample.told.begin(), sample.told.end(), true) == sample.told.end()) return 0;
   const Instances& instances = *sample.content.instances();
-  std::vector<bool> seen(instances.count(), false);
-  for (const glm::vec4& normal : surfaces.seen(sample).normals) {
-    const float number = std::abs(normal.w) - 1.0F;
-    if (number >= 0.0F && number < static_cast<float>(seen.size())) seen[static_cast<std::size_t>(number)] = true;
-  }
+  std::vector<bool> seen(instances.count(), !sample.cast);
+  if (sample.cast)
+    for (const glm::vec4& normal : surfaces.seen(sample).normals) {
+      const float number = std::abs(normal.w) - 1.0F;
+      if (number >= 0.0F && number < static_cast<float>(seen.size())) seen[static_cast<std::size_t>(number)] = true;
+    }
   std::size_t grains = 0;
   for (std::size_t unit = 0; unit < sample.told.size(); ++unit) {
     if (!sample.told[unit]) continue;

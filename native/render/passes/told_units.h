@@ -13,7 +13,7 @@ namespace mesograin::render {
 /// For Sample::told.
 std::vector<bool> told_units(const Sample& sample);
 
-/// How many grains of such units the pixels show; 0 where the device follows rays.
+/// How many grains of such units the pixels show; where the device follows rays, how many there are.
 std::size_t told_grains(const Sample& sample, SurfacePass& surfaces);
 
 }  // namespace mesograin::render
