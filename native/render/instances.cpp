@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "casting/flat_tree.h"
-#include "heap/optics.h"
 #include "render/device_layout.h"
 
 namespace mesograin::render {
@@ -64,6 +63,11 @@ void Instances::find_largest() {
   }
 }
 
+const std::shared_ptr<DeviceMaterial>& InstanceGroup::surface(DeviceCache& cache) const {
+  if (!surface_) surface_ = cache.surface_of(source);
+  return surface_;
+}
+
 std::size_t Instances::prototype(DeviceCache& cache, const scene::MeshPointer& mesh) {
   for (std::size_t i = 0; i < prototypes_.size(); ++i)
     if (prototypes_[i].mesh == mesh) return i;
@@ -86,9 +90,6 @@ void Instances::add(DeviceCache& cache, const scene::InstanceArray& array, const
       group.material = cache.material(array.material, radius_of(array, alike));
     }
     group.source = array.material;
-    // What a model shows at the surface alone costs no more than numbers.
-    if (heap::optics_of(array.material, 1.0).surface == heap::Surface::dielectric && group.material->asks_below())
-      group.surface = cache.surface_of(array.material);
     if (group.material->light_maps() && !prototypes_[of].light_maps)
       prototypes_[of].light_maps = std::make_unique<LightMapAtlas>(array.mesh);
     const glm::dvec3 reduced =

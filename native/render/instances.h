@@ -39,14 +39,19 @@ struct Prototype {
 struct InstanceGroup {
   std::size_t prototype;
   std::shared_ptr<DeviceMaterial> material;
-  std::shared_ptr<DeviceMaterial> surface;  // what shades its surface alone, where numbers may tell the rest; or null
-  scene::Material source;                   // of the material
-  double typical_scale;                     // of the instances that the material's tables were made for
-  double mean_free_paths_across;            // reduced, in the densest channel
-  float largest = 0.0F;                     // of the instances' balls
-  glm::mat3 unstretch{1.0F};  // of a material that depends on the mesh: what makes an instance's transform a turn
-  std::uint32_t first;        // instance; they lie one after the other
+  scene::Material source;         // of the material
+  double typical_scale;           // of the instances that the material's tables were made for
+  double mean_free_paths_across;  // reduced, in the densest channel
+  float largest = 0.0F;           // of the instances' balls
+  glm::mat3 unstretch{1.0F};      // of a material that depends on the mesh: what makes an instance's transform a turn
+  std::uint32_t first;            // instance; they lie one after the other
   std::uint32_t count;
+
+  /// What shades no more than its surface, made when it is first asked for.
+  const std::shared_ptr<DeviceMaterial>& surface(DeviceCache& cache) const;
+
+ private:
+  mutable std::shared_ptr<DeviceMaterial> surface_;
 };
 
 /// Which instances a picture draws, by group and level of detail.

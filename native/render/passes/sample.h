@@ -92,7 +92,7 @@ struct Sample {
 
   /// What shades a unit.
   const DeviceMaterial& material(std::size_t unit) const {
-    return tells(unit) ? *content.instances()->groups()[unit].surface : content.material(unit);
+    return tells(unit) ? *content.instances()->groups()[unit].surface(cache) : content.material(unit);
   }
 
   /// Whether any pixel asks a unit's model, and so for the light maps and the shadows that it knows.

@@ -32,7 +32,8 @@ std::vector<bool> told_units(const Sample& sample) {
   const PixelsAcross pixels_across(anchor_to_clip(sample.content, sample.camera), sample.size);
   for (std::size_t unit = 0; unit < told.size(); ++unit) {
     const InstanceGroup& group = instances->groups()[unit];
-    if (!sample.exchange.tells_entered(unit) || !group.surface) continue;
+    // What a model shows at the surface alone costs no more than numbers.
+    if (!sample.exchange.tells_entered(unit) || !group.material->asks_below()) continue;
     const float pixels = pixels_of(group, *instances, pixels_across);
     told[unit] = is_chosen(sample.index, share_told(pixels, sample.awaited));
   }
