@@ -25,7 +25,7 @@ if os.environ.get("STAND_IN_COMPLAINS"):
     tell(complaint="No camera.", exit=2)
     sys.exit(2)
 if os.environ.get("STAND_IN_CRASHES"):
-    print("Segmentation fault")
+    print("Segmentation fault", flush=True)
     os.kill(os.getpid(), 11)
 files = {{frame: pathlib.Path({folder!r}, f"{{frame}}.png") for frame in list(range(1, 7))[number::parts]}}
 if "--list" in words:
