@@ -156,6 +156,15 @@ def test_nothing_else_is_shaded_by_its_surface_alone(exchange, model, albedo, ra
     assert numpy.array_equal(close, found)
 
 
+def test_nor_what_an_image_of_a_sky_lights():
+    view = native.View(SIZE, SIZE)
+    sky = native.World(image=native.Surroundings(numpy.full((8, 16, 3), 0.3, numpy.float32)))
+    view.set_scene(native.Scene(arrays=heap("sand", refracting(BROWN, 5.0)), exchange="heaps", world=sky))
+    seen_by(view, 3.0)
+    view.render(1)
+    assert not view.statistics()["exchange"]["levels"]["surface"]
+
+
 @pytest.mark.parametrize("sky", [False, True])
 @pytest.mark.parametrize("pixels, told", [(3.0, True), (7.0, True), (12.0, False)])
 def test_what_a_drag_shows_of_larger_ones_is_told_too(pixels, told, sky):
