@@ -35,8 +35,7 @@ bool is_near(const lights::LightDraw& light, const Grain& grain) {
 
 /// From where a ray of such a lamp meets the grain: one of all that do, spread evenly as the lamp sees them.
 std::optional<Look> look_at_lamp(const Space& space, const Grain& grain, const glm::dvec3& anchor, const Draw& draw,
-                                 const lights::LightDraw& light, const std::array<float, 5>& point,
-                                 const std::array<float, 5>& light_point, float share) {
+                                 const lights::LightDraw& light, const SpreadOver<7>::Point& point, float share) {
   const double radius = grain.radius;
   const double way = light.reach;
   // The cone that the ball fills; written so that a small one keeps its digits.
@@ -54,7 +53,7 @@ std::optional<Look> look_at_lamp(const Space& space, const Grain& grain, const g
   const glm::vec3 normal =
       glm::normalize((static_cast<float>(way) * to_lamp + static_cast<float>(distance) * outwards) / grain.radius);
   const glm::vec3 place = space.place(grain, normal);
-  const lights::LightDraw there = draw(anchor + glm::dvec3(place), {light_point[0], light_point[1]});
+  const lights::LightDraw there = draw(anchor + glm::dvec3(place), {point[3], point[4]});
   const glm::vec3 to_light(there.to_light);
   const float mu = glm::dot(normal, to_light);
   if (!(mu > 0.0F)) return std::nullopt;
@@ -71,15 +70,14 @@ std::optional<Look> look_at_lamp(const Space& space, const Grain& grain, const g
 void look_from_grain(const Space& space, const Grain& grain, const glm::dvec3& anchor, const Draw& draw, int rays,
                      transport::Random& random, std::vector<Look>& looks) {
   const glm::dvec3 middle = anchor + glm::dvec3(grain.middle);
-  const Spread spread(random);
-  const Spread of_light(random);
+  const SpreadOver<7> spread(random);  // two axes for a place on the light: with a spread of their own they would
+                                       // follow where the ray comes in
   const float share = 1.0F / (4.0F * std::numbers::pi_v<float> * static_cast<float>(rays));
   for (int i = 0; i < rays; ++i) {
-    const std::array<float, 5> point = spread.point(i);
-    const std::array<float, 5> light_point = of_light.point(i);
-    const lights::LightDraw light = draw(middle, {light_point[0], light_point[1]});
+    const SpreadOver<7>::Point point = spread.point(i);
+    const lights::LightDraw light = draw(middle, {point[3], point[4]});
     if (is_near(light, grain)) {
-      if (const std::optional<Look> look = look_at_lamp(space, grain, anchor, draw, light, point, light_point, share))
+      if (const std::optional<Look> look = look_at_lamp(space, grain, anchor, draw, light, point, share))
         looks.push_back(*look);
       continue;
     }

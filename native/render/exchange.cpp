@@ -430,14 +430,13 @@ void Exchange::find_gather() {
   find_whole();
 }
 
-// Numbers tell nothing of what is seen through a clear grain, and too little of what an image of the world does there,
-// which few rays a grain look at: 6 to 7 % off in blocks. In a moment they tell what other lights do.
+// Numbers tell nothing of what is seen through a clear grain. In a moment they tell what other lights do.
 void Exchange::find_tells_entered() {
   tells_entered_.clear();
   if (!any() || !follows_ || !known_ || !told_.tells_entered()) return;
   const heap::Heap& now = solving_->heap();
   const heap::Heap& known = *known_->heap;
-  if (now.world.image || now.lights != known_->lit_by->lights || !(now.world == known_->lit_by->world)) return;
+  if (now.lights != known_->lit_by->lights || !(now.world == known_->lit_by->world)) return;
   if (now.grains.kinds.size() != known.grains.kinds.size() || now.grains.grains.size() != known.grains.grains.size())
     return;
   const auto is_turbid = [&](const RoleInHeap& role) {

@@ -50,14 +50,26 @@ def until_known(view):
     view.take_news()
 
 
-def looked_at(arrays, pixels, by_size, samples, exchange="heaps", sky=False, patient=True):
+def image_of_a_sky():
+    """With a low sun, of which grains see less than half of what shines."""
+    radiances = numpy.full((64, 128, 3), 0.2, numpy.float32)
+    radiances[:32] *= numpy.array((0.8, 1.0, 1.6), numpy.float32)
+    radiances[27:29, 90:92] = 200.0
+    return native.World(image=native.Surroundings(radiances))
+
+
+SHINES = {
+    "sun": {"lights": [native.DirectionalLight((1.0, 0.4, 1.0), (3.0,) * 3, angle=0.01)],
+            "world": native.World((0.1, 0.1, 0.1))},
+    "sky": {"world": native.World((0.3, 0.3, 0.4))},
+    "image": {"world": image_of_a_sky()}}
+
+
+def looked_at(arrays, pixels, by_size, samples, exchange="heaps", shines="sun", patient=True):
     """(picture, counts by level). patient: else as a viewport shows it once the light is known."""
-    shines = ({"world": native.World((0.3, 0.3, 0.4))} if sky else
-              {"lights": [native.DirectionalLight((1.0, 0.4, 1.0), (3.0,) * 3, angle=0.01)],
-               "world": native.World((0.1, 0.1, 0.1))})
     view = native.View(SIZE, SIZE, patient=patient)
     view.set_levels(by_size)
-    view.set_scene(native.Scene(arrays=arrays, exchange=exchange, **shines))
+    view.set_scene(native.Scene(arrays=arrays, exchange=exchange, **SHINES[shines]))
     seen_by(view, pixels)
     if not patient:
         until_known(view)
@@ -74,11 +86,11 @@ def blocks(picture):
 
 # Sand, 24 samples of each way, whose own noise of 1 % is in it.
 @pytest.mark.parametrize("pixels, level, error", [(3.0, "told", 0.05), (6.0, "ball", 0.04)])
-@pytest.mark.parametrize("sky", [False, True])
-def test_small_grains_send_as_much_light_as_looked_at_closely(pixels, level, error, sky):
+@pytest.mark.parametrize("shines", ["sun", "sky"])
+def test_small_grains_send_as_much_light_as_looked_at_closely(pixels, level, error, shines):
     arrays = heap("sand", medium((0.999, 0.97, 0.8), (1.0, 3.0, 5.0)), medium(0.9, 8.0))
-    close, _ = looked_at(arrays, pixels, False, 24, sky=sky)
-    found, counts = looked_at(arrays, pixels, True, 24, sky=sky)
+    close, _ = looked_at(arrays, pixels, False, 24, shines=shines)
+    found, counts = looked_at(arrays, pixels, True, 24, shines=shines)
     assert counts[level] > 500 and sum(counts.values()) == counts[level]
     assert numpy.isfinite(found).all()
     assert found[..., :3].sum((0, 1)) == pytest.approx(close[..., :3].sum((0, 1)), rel=0.02)
@@ -119,12 +131,12 @@ BROWN = (0.99, 0.97, 0.9)
 
 
 @pytest.mark.parametrize("grains, eta", [("sand", 1.5), ("balls", 1.3)])
-@pytest.mark.parametrize("sky", [False, True])
-def test_of_small_ones_that_refract_numbers_tell_what_has_entered(grains, eta, sky):
-    """24 samples of each way, whose own noise is in it; a material of each channel its own, and another."""
+@pytest.mark.parametrize("shines, samples", [("sun", 24), ("sky", 24), ("image", 48)])
+def test_of_small_ones_that_refract_numbers_tell_what_has_entered(grains, eta, shines, samples):
+    """The noise of so many samples of each way is in it; a material of each channel its own, and another."""
     arrays = heap(grains, refracting(BROWN, 5.0, eta), refracting((0.999,) * 3, 9.0, 1.5, "model_2"))
-    close, none = looked_at(arrays, 3.0, False, 24, sky=sky)
-    found, counts = looked_at(arrays, 3.0, True, 24, sky=sky)
+    close, none = looked_at(arrays, 3.0, False, samples, shines=shines)
+    found, counts = looked_at(arrays, 3.0, True, samples, shines=shines)
     assert counts["surface"] > 500 and not none["surface"]
     assert numpy.isfinite(found).all()
     assert found[..., :3].sum((0, 1)) == pytest.approx(close[..., :3].sum((0, 1)), rel=0.04)
@@ -156,26 +168,17 @@ def test_nothing_else_is_shaded_by_its_surface_alone(exchange, model, albedo, ra
     assert numpy.array_equal(close, found)
 
 
-def test_nor_what_an_image_of_a_sky_lights():
-    view = native.View(SIZE, SIZE)
-    sky = native.World(image=native.Surroundings(numpy.full((8, 16, 3), 0.3, numpy.float32)))
-    view.set_scene(native.Scene(arrays=heap("sand", refracting(BROWN, 5.0)), exchange="heaps", world=sky))
-    seen_by(view, 3.0)
-    view.render(1)
-    assert not view.statistics()["exchange"]["levels"]["surface"]
-
-
-@pytest.mark.parametrize("sky", [False, True])
+@pytest.mark.parametrize("shines", ["sun", "sky", "image"])
 @pytest.mark.parametrize("pixels, told", [(3.0, True), (7.0, True), (12.0, False)])
-def test_what_a_drag_shows_of_larger_ones_is_told_too(pixels, told, sky):
+def test_what_a_drag_shows_of_larger_ones_is_told_too(pixels, told, shines):
     """In a sky that is nearer than what one sample of directions shows, beneath a sun about as near."""
     arrays = heap("sand", refracting(BROWN, 5.0))
-    right, _ = looked_at(arrays, pixels, False, 24, sky=sky)
-    found, counts = looked_at(arrays, pixels, True, 1, sky=sky, patient=False)
+    right, _ = looked_at(arrays, pixels, False, 24, shines=shines)
+    found, counts = looked_at(arrays, pixels, True, 1, shines=shines, patient=False)
     assert (counts["surface"] > 300) == told
     if told:
         assert numpy.abs(blocks(found) - blocks(right)).sum() < 0.06 * blocks(right).sum()
-    _, further = looked_at(arrays, pixels, True, 2, sky=sky, patient=False)
+    _, further = looked_at(arrays, pixels, True, 2, shines=shines, patient=False)
     assert (further["surface"] > 0) == (pixels < 4.5)
 
 
