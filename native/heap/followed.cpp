@@ -21,6 +21,16 @@ namespace {
 // their noise at three mean free paths to the radius, three fifths at ten, and costs a quarter to a half of the time.
 constexpr std::size_t most_followed_out = 2;
 
+// Of light through a grain that is told.
+constexpr float much_crosses = 0.1F;
+
+/// Which way a place of a grain that is no ball faces as light has it that has been scattered in the grain: as its
+/// facet does and as it lies from the middle (docs/heaps.md, "Grains of a few pixels").
+glm::vec3 told_normal(const glm::vec3& place, const glm::vec3& normal) {
+  const float far = glm::length(place);
+  return far > 0.0F ? glm::normalize(normal + place / far) : normal;
+}
+
 float mean(const glm::vec3& colour) { return (colour.r + colour.g + colour.b) / 3.0F; }
 
 float largest(const glm::vec3& colour) { return std::max({colour.r, colour.g, colour.b}); }
@@ -141,15 +151,20 @@ Gather::All Gather::look_at_all(std::uint32_t grain, const glm::vec3& place, con
   return all;
 }
 
-Gather::All Gather::look_at_told(std::uint32_t grain, const glm::vec3& normal, const glm::vec3& towards,
-                                 transport::Random& random) const {
+Gather::All Gather::look_at_told(std::uint32_t grain, const glm::vec3& place, const glm::vec3& normal,
+                                 const glm::vec3& towards, transport::Random& random) const {
   All all;
   const GrainTable& table = *space_.answering(grain).from_light;
-  const float mu = std::clamp(glm::dot(normal, towards), 0.0F, 1.0F);
-  const glm::vec3 sent = light_->seats->light_at(light_->sent, grain, table.seen_place(normal, towards), true);
+  const glm::vec3 faces = told_normal(place, normal);
+  const float mu = std::clamp(glm::dot(faces, towards), 0.0F, 1.0F);
+  const glm::vec3 sent = light_->seats->light_at(light_->sent, grain, table.seen_place(faces, towards), true);
   all.scattered = table.lobe_at(mu) * glm::max(sent, 0.0F);
-  Ray through = ray_through(grain, normal, towards);
+  Ray through = ray_through(grain, faces, towards);
   all.met = 1.0F - through.weight;
+  // Where little crosses it, few looks see it for all.
+  const float share = std::min(largest(through.weight) / much_crosses, 1.0F);
+  if (share < 1.0F && random.uniform() >= share) return all;
+  through.weight /= share;
   all.straight = all.others = glm::max(space_.seen_along(through, light_->sent, random), 0.0F);
   show_what_is_behind(through, all);
   return all;

@@ -84,7 +84,7 @@ class Gather {
                                  transport::Random& random) const;
 
   /// The same by what its neighbours are told of it, lights' share and all, without a walk.
-  All look_at_told(std::uint32_t grain, const glm::vec3& normal, const glm::vec3& towards,
+  All look_at_told(std::uint32_t grain, const glm::vec3& place, const glm::vec3& normal, const glm::vec3& towards,
                    transport::Random& random) const;
 
   /// What others send, by a grain's numbers, but for what is seen straight through it, which a ray finds.

@@ -117,6 +117,8 @@ bool Denoiser::run(const glm::ivec2& size, std::uint32_t index, const std::vecto
                    const std::vector<std::vector<glm::vec4>*>& pictures, double deviation, const GoOn& go_on) {
   deviation *= std::pow(index + 1.0, -0.5 * shrinking);
   if (deviation < least_deviation) return true;
+  if (std::none_of(likenesses.begin(), likenesses.end(), [](const Likeness& its) { return its.object != 0.0F; }))
+    return true;  // no pixel has noise
   const std::vector<float> weights = gaussian(deviation);
   const auto width = static_cast<std::size_t>(size.x);
   const auto height = static_cast<std::size_t>(size.y);

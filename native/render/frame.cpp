@@ -117,6 +117,7 @@ bool Frame::take_news() {
   if (content_->version() == version_ && !lit) return false;
   version_ = content_->version();
   content_->take_news();
+  more_known_ = more_known_ || samples_ > 0;
   samples_ = 0;
   return true;
 }
@@ -128,6 +129,7 @@ void Frame::forget_what_is_seen() {
 
 void Frame::forget_view() {
   forget_what_is_seen();
+  more_known_ = false;
   samples_ = 0;
 }
 
@@ -137,6 +139,7 @@ void Frame::forget_content() {
     targets_ = std::make_unique<Targets>(size_.x, size_.y, content_->textured());
   arrays_.forget_content();
   shadows_.forget_content();
+  more_known_ = false;
   samples_ = 0;
 }
 
@@ -172,7 +175,9 @@ Sample Frame::begin_sample(const GoOn& go_on, bool hurried) {
                 .gathers = gathers,
                 .denoises = scene_.denoise,
                 .levels = levels_ && traced && gathers && exchange_.any() && !exchange_.gathers_all(),
-                .awaited = !patient_ && index == 0,
+                .awaited = patient_ || index != 0 ? Awaited::no
+                           : more_known_          ? Awaited::more_known
+                                                  : Awaited::changed,
                 .learns = !patient_ && cast && gathers && exchange_.follows() && !exchange_.follows_paths() &&
                           exchange_.gather()->tells_any_inner_light(),
                 .pixels_at_once = pixels_at_once_,

@@ -180,7 +180,8 @@ class Frame {
   bool timed_ = false;
   double pixels_at_once_ = std::numeric_limits<double>::infinity();  // by how long the last sample's took
   int samples_ = 0;
-  bool hurried_ = false;  // the only one of them lacks what others have
+  bool more_known_ = false;  // the scene was shown before less was known of it
+  bool hurried_ = false;     // the only one of them lacks what others have
 };
 
 }  // namespace mesograin::render

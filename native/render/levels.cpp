@@ -15,8 +15,11 @@ constexpr float shaped_from = 8.0F;
 constexpr float walked_from = 4.0F;
 constexpr float modelled_from = 5.0F;
 
-// Of one sample the noise of walks is no less than what numbers lack.
+// Of one sample the noise of walks is no less than what numbers lack; of grains that are no balls neither is it where
+// they are larger, since walks in a ball lack something, too, and take three times as long.
 constexpr float walked_from_where_awaited = 8.0F;
+constexpr float walked_from_where_changed = 24.0F;
+constexpr float modelled_from_where_awaited = 8.0F;
 
 // By how much coarser ways are off, of all light, where probes do not tell that it is more: what they find counts as
 // far as their noise is less.
@@ -58,13 +61,16 @@ float PixelsAcross::most(const Bounds& bounds, float radius) const {
   return most;
 }
 
-float share_told(float pixels_across, bool awaited) {
-  if (awaited) return pixels_across < walked_from_where_awaited ? 1.0F : 0.0F;
+float share_told(float pixels_across, Awaited awaited) {
+  if (awaited != Awaited::no) return pixels_across < modelled_from_where_awaited ? 1.0F : 0.0F;
   return std::clamp(modelled_from + 0.5F - pixels_across, 0.0F, 1.0F);
 }
 
-Level level_of(bool is_ball, float pixels_across, bool awaited) {
-  if (pixels_across < (awaited ? walked_from_where_awaited : walked_from)) return Level::told;
+Level level_of(bool is_ball, float pixels_across, Awaited awaited) {
+  const float from = awaited == Awaited::no                    ? walked_from
+                     : awaited == Awaited::changed && !is_ball ? walked_from_where_changed
+                                                               : walked_from_where_awaited;
+  if (pixels_across < from) return Level::told;
   return is_ball || pixels_across >= shaped_from ? Level::own_shape : Level::ball;
 }
 

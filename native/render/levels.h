@@ -47,13 +47,19 @@ class PixelsAcross {
   float pixels_;  // of what is as long as it is far
 };
 
-/// In how many of the samples it is told what has entered a grain that refracts, where it is seen so many pixels
-/// across: from all to none over a pixel, so that it does not pop. `awaited`: of the one sample of a picture that a
-/// drag shows.
-float share_told(float pixels_across, bool awaited);
+/// Whether one sample is a picture of its own, to someone who may change something before there is another.
+enum class Awaited : std::uint8_t {
+  no,
+  more_known,  ///< of what has become known of a scene that was shown before
+  changed,     ///< of what someone has changed
+};
 
-/// Of a grain that is seen so many pixels across. `awaited`: as of share_told().
-Level level_of(bool is_ball, float pixels_across, bool awaited = false);
+/// In how many of the samples it is told what has entered a grain that refracts, where it is seen so many pixels
+/// across: from all to none over a pixel, so that it does not pop.
+float share_told(float pixels_across, Awaited awaited);
+
+/// Of a grain that is seen so many pixels across.
+Level level_of(bool is_ball, float pixels_across, Awaited awaited = Awaited::no);
 
 /// How much more light the closest way finds than a coarser one, over the grains of each unit of the content: few are
 /// asked for both, in each sample, and their means make good for all. What is left is how that differs from place to

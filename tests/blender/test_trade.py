@@ -17,7 +17,7 @@ from mesograin import native_module
 from mesograin.cycles import shot
 from mesograin.cycles.cache import Cache
 from mesograin.studies.comparison import ours, progress
-from mesograin.studies.trade import measure
+from mesograin.studies.trade import curve, measure
 
 COMMAND = pathlib.Path(__file__).resolve().parents[2] / "addon/mesograin/studies/trade/command.py"
 SUNS = [((1.0, 1.0, 1.0), 20.0)]
@@ -102,7 +102,7 @@ def make_heap(side=4):
     return material
 
 
-def test_a_heap_has_pictures_from_nothing_and_in_known_light(tmp_path, monkeypatch):
+def test_a_heap_has_pictures_from_nothing_once_solved_and_in_known_light(tmp_path, monkeypatch):
     make_heap()
     # Grains that walks go into, as they are larger than eight pixels.
     asked = {
@@ -115,27 +115,29 @@ def test_a_heap_has_pictures_from_nothing_and_in_known_light(tmp_path, monkeypat
     found = trade(tmp_path, **asked)
     firsts = {first["name"]: first for first in found["from_nothing"]}
     assert list(firsts) == ["model_1", "model_2"]
+    solved = {shown["name"]: shown for shown in found["once_solved"]}
     for point in found["points"][:2]:
         first = firsts[point["model"]]
-        assert first["milliseconds"] > point["frame_ms"] and point["exchange_ms"] > 0.0
+        assert first["milliseconds"] > solved[point["model"]]["milliseconds"] > 0.0 and point["exchange_ms"] > 0.0
         assert first["error"] == pytest.approx(point["error"], rel=0.3), "light between grains is in it"
         assert (tmp_path / "out" / first["picture"]).is_file()
     for shown in found["in_known_light"]:
         assert 0.0 < shown["milliseconds"] < firsts[shown["name"]]["milliseconds"]
         assert shown["error"] < firsts[shown["name"]]["error"], "walks find less"
         assert (tmp_path / "out" / shown["picture"]).is_file()
-    sentences = [entry["sentence"] for entry in found["summary_in_known_light"]]
-    assert len(sentences) == 2 and all("in light that a viewport has shown before" in each for each in sentences)
-    sentences = [entry["sentence"] for entry in found["summary_from_nothing"]]
-    assert len(sentences) == 2 and all("nothing known of light between grains" in each for each in sentences)
+    for name, shown in solved.items():
+        assert shown["error"] < 1.3 * firsts[name]["error"], "light between grains is in it"
+        assert (tmp_path / "out" / shown["picture"]).is_file()
+    sentences = [entry["sentence"] for entry in found["summary_shown"]]
+    assert [told in each for told in curve.SHOWN.values() for each in sentences].count(True) == len(sentences) == 6
     without = trade(tmp_path / "without", **{**asked, "models": ("model_2",), "exchange": "off"})
-    assert without["from_nothing"] == without["in_known_light"] == []
+    assert all(without[of] == [] for of in curve.SHOWN)
     assert without["points"][0]["error"] > 1.3 * firsts["model_2"]["error"]
 
-    for name in ("from_nothing", "in_known_light"):
+    for name in curve.SHOWN:
         monkeypatch.setattr(ours.Ours, name, lambda *_: pytest.fail("it was measured"))
     again = trade(tmp_path, **asked)
-    assert all(again[of] == found[of] for of in ("from_nothing", "in_known_light"))
+    assert all(again[of] == found[of] for of in curve.SHOWN)
 
 
 def test_no_point_pays_for_the_start_of_cycles(tmp_path, monkeypatch):

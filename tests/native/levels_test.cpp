@@ -29,7 +29,13 @@ TEST(Levels, TheSmallerTheLessClosely) {
   EXPECT_EQ(level_of(true, 7.0F), Level::own_shape);
   EXPECT_EQ(level_of(false, 3.0F), Level::told);
   EXPECT_EQ(level_of(true, 3.0F), Level::told);
-  EXPECT_EQ(level_of(true, 7.0F, true), Level::told) << "of one sample";
+  for (const Awaited one_sample : {Awaited::more_known, Awaited::changed}) {
+    EXPECT_EQ(level_of(true, 7.0F, one_sample), Level::told);
+    EXPECT_EQ(level_of(true, 9.0F, one_sample), Level::own_shape);
+  }
+  EXPECT_EQ(level_of(false, 20.0F, Awaited::changed), Level::told);
+  EXPECT_EQ(level_of(false, 20.0F, Awaited::more_known), Level::own_shape);
+  EXPECT_EQ(level_of(false, 30.0F, Awaited::changed), Level::own_shape);
   EXPECT_EQ(level_of(false, NAN), Level::ball) << "of nothing that is known";
 }
 

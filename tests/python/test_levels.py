@@ -106,16 +106,34 @@ def test_what_is_seen_through_thin_ones_is_as_bright():
     assert numpy.abs(blocks(found) - blocks(close)).sum() < 0.05 * blocks(close).sum()
 
 
-@pytest.mark.parametrize("pixels, told", [(3.0, True), (6.0, True), (12.0, False)])
-def test_a_viewports_first_sample_looks_closely_at_large_ones_alone(pixels, told):
+@pytest.mark.parametrize("grains, pixels, told", [
+    ("sand", 3.0, True), ("sand", 6.0, True), ("sand", 12.0, True), ("sand", 30.0, False),
+    ("balls", 6.0, True), ("balls", 12.0, False)])
+def test_a_viewports_first_sample_looks_closely_at_large_ones_alone(grains, pixels, told):
     """Whose noise is no less than what numbers lack; its next sample looks as closely as others do."""
-    arrays = heap("sand", medium(0.9, 3.0))
+    arrays = heap(grains, medium(0.9, 3.0))
     right, _ = looked_at(arrays, pixels, False, 24)
     found, counts = looked_at(arrays, pixels, True, 1, patient=False)
     assert (counts["told"] > 0) == told and (counts["own_shape"] + counts["ball"] > 0) != told
     assert numpy.abs(blocks(found) - blocks(right)).sum() < 0.07 * blocks(right).sum()
     _, further = looked_at(arrays, pixels, True, 2, patient=False)
     assert (further["told"] > 0) == (pixels < 4.0)
+
+
+def test_what_has_become_known_is_looked_at_more_closely_than_what_is_dragged():
+    """For the next picture does not depend on how soon it is there."""
+    view = native.View(SIZE, SIZE, patient=False)
+    view.set_scene(native.Scene(arrays=heap("sand", medium(0.9, 3.0)), exchange="heaps", **SHINES["sun"]))
+    seen_by(view, 12.0)
+    view.render(1)
+    until_known(view)
+    view.render(1)
+    news = view.statistics()["exchange"]["levels"]
+    assert news["own_shape"] > 0 and not news["told"]
+    seen_by(view, 12.0)
+    view.render(1)
+    dragged = view.statistics()["exchange"]["levels"]
+    assert dragged["told"] > 0 and not dragged["own_shape"]
 
 
 @pytest.mark.parametrize("exchange, pixels", [("heaps", 12.0), ("order_1", 3.0), ("gathered", 3.0),

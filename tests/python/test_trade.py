@@ -170,10 +170,8 @@ def folder(tmp_path_factory):
         "points": points,
         "front": [points[index]["name"] for index in curve.front(points)],
         "summary": curve.summary(points),
-        "from_nothing": [points[0]],
-        "summary_from_nothing": [curve.from_nothing(points[0], points)],
-        "in_known_light": [points[0]],
-        "summary_in_known_light": [curve.in_known_light(points[0], points)],
+        **{of: [points[0]] for of in curve.SHOWN},
+        "summary_shown": [curve.shown(of, points[0], points) for of in curve.SHOWN],
     }
     (folder / "trade.json").write_text(json.dumps(results))
     environment = {"PATH": "/usr/bin:/bin", "MESOGRAIN_NATIVE_DIR": str(native.__file__).rsplit("/", 1)[0]}
@@ -186,9 +184,9 @@ def test_the_page_holds_sentences_points_and_definitions(folder):
     page = (folder / "report.html").read_text()
     text = " ".join(html.unescape(re.sub(r"<[^>]*>", " ", page)).split())
     results = json.loads((folder / "trade.json").read_text())
-    for entry in (*results["summary"], *results["summary_in_known_light"], *results["summary_from_nothing"]):
+    for entry in (*results["summary"], *results["summary_shown"]):
         assert entry["sentence"] in text
-    assert "nothing known of light between grains" in text and "that a viewport has shown before" in text
+    assert all(told in text for told in curve.SHOWN.values())
     assert "./mesograin trade disc.blend --set 'g=0.1'" in text and "≤ 2.00 %" in text
     table = page[page.index("<tbody>"):page.index("</tbody>")]
     assert table.count("<tr") == len(results["points"]) and table.count('class="front"') == len(results["front"])

@@ -47,7 +47,7 @@ class SweepRow:
 
 
 RESULTS, TRADE, ORIGIN, TIMINGS = "results.json", "trade.json", "origin.json", "timings.csv"
-RESULTS_FORMAT, SWEEP_FORMAT, TRADE_FORMAT = ("mesograin-results", 1), ("mesograin-sweep", 1), ("mesograin-trade", 5)
+RESULTS_FORMAT, SWEEP_FORMAT, TRADE_FORMAT = ("mesograin-results", 1), ("mesograin-sweep", 1), ("mesograin-trade", 6)
 """(`format`, `format_version`) of the files, for who writes them and who reads them."""
 
 

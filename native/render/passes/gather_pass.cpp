@@ -25,12 +25,12 @@ constexpr int rays_into_clear = 1;
 constexpr std::uint32_t first_learnt_from = 4;
 
 // One of so many pixels in a row is looked at as closely as can be where the others are not: with two thousand of them
-// one sample tells within a percent how much more that finds.
-std::size_t pixels_a_probe(std::size_t pixels) {
+// one sample tells within a percent how much more that finds. Where a picture is `awaited` a quarter tells enough.
+std::size_t pixels_a_probe(std::size_t pixels, Awaited awaited) {
   constexpr std::size_t wanted = 2048;
   constexpr std::size_t densest = 4;
   constexpr std::size_t sparsest = 32;
-  return std::clamp(pixels / wanted, densest, sparsest);
+  return std::clamp(pixels / wanted, densest, sparsest) * (awaited == Awaited::no ? 1 : 4);
 }
 
 // In pixels, of the first sample's filter.
@@ -179,7 +179,7 @@ bool GatherPass::follow_light(const Sample& sample, const ArrayVisibility& array
   behind_.assign(seen.normals.size(), glm::vec4(0.0F));
   likenesses_.assign(seen.normals.size(), Likeness());
   seen_by_.assign(seen.normals.size(), Level::own_shape);
-  const std::size_t in_a_row = pixels_a_probe(seen.normals.size());
+  const std::size_t in_a_row = pixels_a_probe(seen.normals.size(), sample.awaited);
   probes_.assign(seen.normals.size() / in_a_row + 1, std::nullopt);
   if (sample.index == 0) amends_.forget();
   const bool clear = facets && gather->sees_into_any();
@@ -195,7 +195,7 @@ bool GatherPass::follow_light(const Sample& sample, const ArrayVisibility& array
   const PixelsAcross pixels_across(anchor_to_clip(sample.content, sample.camera), sample.size);
   // A picture's first sample, which a drag shows, costs half as much by balls.
   const bool first_look = sample.index == 0;
-  const auto level_at = [&](std::size_t number, bool awaited) {
+  const auto level_at = [&](std::size_t number, Awaited awaited) {
     return sample.levels && number < instances
                ? level_of(roles[number].ball, pixels_across.of(sample.content.receiver(number).ball), awaited)
                : Level::own_shape;
@@ -243,13 +243,14 @@ bool GatherPass::follow_light(const Sample& sample, const ArrayVisibility& array
           const auto found = in_own_shape ? gather->look_at_all(at, *facets, walks, random) : std::nullopt;
           return found ? *found : in_ball();
         };
-        Level level = level_at(number, false);
+        Level level = level_at(number, Awaited::no);
         std::optional<heap::Gather::All> found;
         if (const heap::InnerLight* light = knows && level != Level::told ? inner_lights_.of(*grain) : nullptr)
           found = gather->look_at_all(at, *facets, *light, random);
-        if (!found && sample.awaited) level = level_at(number, true);
+        if (!found) level = level_at(number, sample.awaited);
         if (found || (level == Level::ball && !shaped)) level = Level::own_shape;
-        if (level == Level::told) found = gather->look_at_told(*grain, normal, towards, random);
+        if (level == Level::told)
+          found = gather->look_at_told(*grain, glm::vec3(seen.positions[i]), normal, towards, random);
         if (!found) found = by_walks(by_facets && level == Level::own_shape);
         seen_by_[i] = level;
         if (level != Level::own_shape && i % in_a_row == (i / in_a_row + seed) % in_a_row)

@@ -14,6 +14,7 @@
 #include "render/device_cache.h"
 #include "render/exchange.h"
 #include "render/go_on.h"
+#include "render/levels.h"
 #include "render/lighting.h"
 #include "render/passes/targets.h"
 #include "render/portion.h"
@@ -55,7 +56,7 @@ struct Sample {
   bool gathers;      ///< light between grains is gathered for pixels that show them
   bool denoises;     ///< and neighbours that show the same tell each other what was found
   bool levels;       ///< it is followed less closely into those that are seen small
-  bool awaited;      ///< it is a picture of its own, to someone who may change something before there is another
+  Awaited awaited;   ///< of the first sample
   bool learns;       ///< grains' inner light is found beside it, for another picture of the same light
   Mirrors mirrors = Mirrors::none;
   bool straight_through = false;  ///< light that goes straight through single draws is followed

@@ -122,10 +122,18 @@ class Ours:
                 return None  # it could not be found, which a patient view will say
         return exchange and (1000.0 * (time.perf_counter() - started), view.read())
 
+    def once_solved(self, frames, chosen, least_sun=0.0, taps=None):
+        """(median milliseconds of so many, (h, w, 4) float32 of the last) pictures of one sample that a viewport shows,
+        light between grains being solved. None where no light goes between grains. Other arguments as `begin` has
+        them."""
+        return self._shown_before(1, frames, chosen, least_sun, taps)
+
     def in_known_light(self, frames, chosen, least_sun=0.0, taps=None):
-        """(median milliseconds of so many, (h, w, 4) float32 of the last) pictures of one sample that a viewport shows
-        while its camera moves, in light that it has shown SHOWN_BEFORE samples of. None where no light goes between
-        grains. Other arguments as `begin` has them."""
+        """The same of a viewport that has shown SHOWN_BEFORE samples before, so that it knows the light in grains,
+        too."""
+        return self._shown_before(SHOWN_BEFORE, frames, chosen, least_sun, taps)
+
+    def _shown_before(self, samples, frames, chosen, least_sun, taps):
         view = native_module.get().View(*self._size, patient=False)
         if taps:
             view.set_taps(taps)
@@ -135,7 +143,7 @@ class Ours:
         while view.preparing is not None:
             time.sleep(LOOKS_EVERY)
         view.take_news()
-        view.render(SHOWN_BEFORE)
+        view.render(samples)
         if not view.statistics()["exchange"]:
             return None
         milliseconds, _ = self._time_frames(view, frames)

@@ -41,7 +41,7 @@ def _run(chosen, words):
             ),
             progress,
         )
-    for entry in (*results["summary"], *results["summary_in_known_light"], *results["summary_from_nothing"]):
+    for entry in (*results["summary"], *results["summary_shown"]):
         print(entry["sentence"])
     try:
         page = report_page.write(chosen.out)

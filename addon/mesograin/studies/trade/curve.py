@@ -13,6 +13,13 @@ leaves an uncertain rest."""
 NEAR_BEST = 1.1
 """A setting whose error is within this factor of a model's best is as good; the cheapest of them is the one to name."""
 
+SHOWN = {
+    "once_solved": "as a viewport shows it once light between grains is solved",
+    "in_known_light": "in light that a viewport has shown before",
+    "from_nothing": "nothing known of light between grains before it",
+}
+"""What a viewport's picture of one sample is told as; keys as results have them."""
+
 
 def place(metrics, noise_floor, judged_by="relative_l1"):
     """{'error', 'resolved'} of a point: the metric that judges with the reference's noise taken off, or, where that is
@@ -73,15 +80,9 @@ def summary(points):
     return sorted(entries, key=lambda entry: (entry["error"], entry["milliseconds"]))
 
 
-def from_nothing(first, points):
-    """The entry of a picture that began without anything known of light, as `summary` has one; first: as a point, with
-    one sample."""
-    return _beside_traced(first, points, "1 sample, nothing known of light between grains before it")
-
-
-def in_known_light(shown, points):
-    """The same of one that a viewport shows of light that it has shown before."""
-    return _beside_traced(shown, points, "1 sample, in light that a viewport has shown before")
+def shown(of, point, points):
+    """The entry of a picture of one sample that is no point of the curve, as `summary` has one; of: a key of SHOWN."""
+    return _beside_traced(point, points, f"1 sample, {SHOWN[of]}")
 
 
 def _beside_traced(point, points, setting):

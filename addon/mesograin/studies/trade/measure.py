@@ -45,9 +45,12 @@ DEFINITIONS = {
         " frames after a first one that prepared the device"
     ),
     "further_ms": "the same of a sample that refines such a frame; the median of as many",
+    "once_solved": (
+        "a picture of one sample that a viewport shows while its camera moves, light between grains being solved; its"
+        " milliseconds are those of all passes of such a frame"
+    ),
     "in_known_light": (
-        "a picture of one sample that a viewport shows while its camera moves, in light between and in grains of which"
-        f" it has shown {SHOWN_BEFORE} samples; its milliseconds are those of all passes of such a frame"
+        f"the same after {SHOWN_BEFORE} samples of the view, from which the light in its grains is known, too"
     ),
     "exchange_ms": "milliseconds that light between grains took to be solved, once before the first sample; 0 if none",
     "from_nothing": (
@@ -142,8 +145,7 @@ def _measure(request, depsgraph, progress):
             "notes": list(truth.notes),
         },
         "points": [],
-        "from_nothing": [],
-        "in_known_light": [],
+        **{of: [] for of in curve.SHOWN},
     }
     book = _Book(results, output, truth, mask, _fingerprint(request, results, truth))
 
@@ -182,25 +184,27 @@ def _measure_model(request, ours, chosen, taps, book, progress, provenance):
     setting = f"{model}.taps{taps}" if taps else model
     names = {f"{setting}.samples{count}": count for count in request.samples}
     missing = {name: count for name, count in names.items() if not book.has(name)}
-    alone = {kind: book.has_alone(kind, setting) for kind in ("from_nothing", "in_known_light")}
+    shown = {of: book.has_shown(of, setting) for of in curve.SHOWN}
     if not missing:
         progress.end(learn=False)
         return
     kind = kinds.KINDS[request.reference]
 
-    def measure_alone(kind_of_light, measured):
+    begins = (chosen, kind.least_sun, taps)
+    ways = {
+        "once_solved": lambda: ours.once_solved(request.frames, *begins),
+        "in_known_light": lambda: ours.in_known_light(request.frames, *begins),
+        "from_nothing": lambda: ours.from_nothing(*begins),
+    }
+    for of, way in ways.items():
+        measured = None if kind.direct or shown[of] else way()
         if measured is not None:
             milliseconds, image = measured
-            picture = f"{setting}.{kind_of_light}"
+            picture = f"{setting}.{of}"
             book.picture(picture, image, {**provenance, "model": model, "samples": 1, "taps": taps})
-            book.add_alone(kind_of_light, setting, image, picture, side="mesograin", model=model, taps=taps, samples=1,
+            book.add_shown(of, setting, image, picture, side="mesograin", model=model, taps=taps, samples=1,
                            milliseconds=milliseconds)
-
-    if not kind.direct and not alone["from_nothing"]:
-        measure_alone("from_nothing", ours.from_nothing(chosen, kind.least_sun, taps))
-    if not kind.direct and not alone["in_known_light"]:
-        measure_alone("in_known_light", ours.in_known_light(request.frames, chosen, kind.least_sun, taps))
-    ours.begin(chosen, kind.least_sun, taps, kind.direct)
+    ours.begin(*begins, kind.direct)
     images = {}
     for name, count in missing.items():
         (images[name],) = ours.refine(count)
@@ -227,7 +231,7 @@ class _Book:
         itself = native_module.get().compare(truth.mean, *truth.images, mask=mask)
         results["reference"]["noise_floor"] = itself["noise_floor"][results["reference"]["judged_by"]]
         results["reference"]["mask"] = itself["mask"]
-        self._known = {"points": {}, "from_nothing": {}, "in_known_light": {}}
+        self._known = {"points": {}, **{of: {} for of in curve.SHOWN}}
         try:
             earlier = json.loads((output.folder / RESULTS).read_text(encoding="utf-8"))
             if earlier.get("fingerprint") == fingerprint:
@@ -239,8 +243,8 @@ class _Book:
         """Whether a point was measured before and its picture is there; if so, it is taken over."""
         return self._has(name, "points")
 
-    def has_alone(self, of, setting):
-        """The same of a setting's picture that began "from_nothing", or was shown "in_known_light"."""
+    def has_shown(self, of, setting):
+        """The same of a setting's picture of one sample; of: a key of `curve.SHOWN`."""
         return self._has(setting, of)
 
     def _has(self, name, of):
@@ -259,7 +263,7 @@ class _Book:
         self._results["points"].append(self._judged(name, image, name, point))
         self._write()
 
-    def add_alone(self, of, setting, image, picture, **point):
+    def add_shown(self, of, setting, image, picture, **point):
         self._results[of].append(self._judged(setting, image, picture, point))
         self._write()
 
@@ -279,10 +283,8 @@ class _Book:
         order = curve.front(points)
         self._results["front"] = [points[at]["name"] for at in order]
         self._results["summary"] = curve.summary(points)
-        self._results["summary_from_nothing"] = [curve.from_nothing(first, points)
-                                                 for first in self._results["from_nothing"]]
-        self._results["summary_in_known_light"] = [curve.in_known_light(shown, points)
-                                                   for shown in self._results["in_known_light"]]
+        self._results["summary_shown"] = [curve.shown(of, point, points)
+                                          for of in curve.SHOWN for point in self._results[of]]
         self._output.write_text(RESULTS, json.dumps(self._results, indent=1, allow_nan=False) + "\n")
         self._output.write_text("trade.csv", _csv(points, set(self._results["front"])))
 
