@@ -2,6 +2,7 @@
 // is seen has more to it than four numbers.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <memory>
@@ -40,6 +41,12 @@ class Gather {
   Gather& operator=(const Gather&) = delete;
 
   const Heap& heap() const { return heap_; }
+
+  /// To a grain's radius, in the channel that has most of them.
+  double mean_free_paths(std::uint32_t grain) const {
+    const glm::dvec3& sigma_t = optics(grain).sigma_t;
+    return static_cast<double>(space_.grains()[grain].thickness) * std::max({sigma_t.r, sigma_t.g, sigma_t.b});
+  }
 
   const Optics& optics(std::uint32_t grain) const { return heap_.grains.kinds[space_.grains()[grain].kind]; }
 

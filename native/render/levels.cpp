@@ -15,10 +15,11 @@ constexpr float shaped_from = 8.0F;
 constexpr float walked_from = 4.0F;
 constexpr float modelled_from = 5.0F;
 
-// Of one sample the noise of walks is no less than what numbers lack; of grains that are no balls neither is it where
-// they are larger, since walks in a ball lack something, too, and take three times as long.
+// Of one sample the noise of walks is no less than what numbers lack; nor is it of larger grains that are no balls,
+// since walks in a ball lack something, too, and take three times as long. The light in thick ones is less even.
 constexpr float walked_from_where_awaited = 8.0F;
 constexpr float walked_from_where_changed = 24.0F;
+constexpr double thickest_where_changed = 6.5;
 constexpr float modelled_from_where_awaited = 8.0F;
 
 // By how much coarser ways are off, of all light, where probes do not tell that it is more: what they find counts as
@@ -66,10 +67,11 @@ float share_told(float pixels_across, Awaited awaited) {
   return std::clamp(modelled_from + 0.5F - pixels_across, 0.0F, 1.0F);
 }
 
-Level level_of(bool is_ball, float pixels_across, Awaited awaited) {
-  const float from = awaited == Awaited::no                    ? walked_from
-                     : awaited == Awaited::changed && !is_ball ? walked_from_where_changed
-                                                               : walked_from_where_awaited;
+Level level_of(bool is_ball, double mean_free_paths, float pixels_across, Awaited awaited) {
+  const float from = awaited == Awaited::no ? walked_from
+                     : awaited == Awaited::changed && mean_free_paths <= thickest_where_changed && !is_ball
+                         ? walked_from_where_changed
+                         : walked_from_where_awaited;
   if (pixels_across < from) return Level::told;
   return is_ball || pixels_across >= shaped_from ? Level::own_shape : Level::ball;
 }

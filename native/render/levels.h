@@ -58,8 +58,8 @@ enum class Awaited : std::uint8_t {
 /// across: from all to none over a pixel, so that it does not pop.
 float share_told(float pixels_across, Awaited awaited);
 
-/// Of a grain that is seen so many pixels across.
-Level level_of(bool is_ball, float pixels_across, Awaited awaited = Awaited::no);
+/// Of a grain that is seen so many pixels across. `mean_free_paths`: to its radius.
+Level level_of(bool is_ball, double mean_free_paths, float pixels_across, Awaited awaited = Awaited::no);
 
 /// How much more light the closest way finds than a coarser one, over the grains of each unit of the content: few are
 /// asked for both, in each sample, and their means make good for all. What is left is how that differs from place to

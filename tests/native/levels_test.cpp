@@ -24,19 +24,20 @@ TEST(Levels, PixelsAcrossAreThoseOfThePicture) {
 }
 
 TEST(Levels, TheSmallerTheLessClosely) {
-  EXPECT_EQ(level_of(false, 100.0F), Level::own_shape);
-  EXPECT_EQ(level_of(false, 7.0F), Level::ball);
-  EXPECT_EQ(level_of(true, 7.0F), Level::own_shape);
-  EXPECT_EQ(level_of(false, 3.0F), Level::told);
-  EXPECT_EQ(level_of(true, 3.0F), Level::told);
+  EXPECT_EQ(level_of(false, 3.0, 100.0F), Level::own_shape);
+  EXPECT_EQ(level_of(false, 3.0, 7.0F), Level::ball);
+  EXPECT_EQ(level_of(true, 3.0, 7.0F), Level::own_shape);
+  EXPECT_EQ(level_of(false, 3.0, 3.0F), Level::told);
+  EXPECT_EQ(level_of(true, 3.0, 3.0F), Level::told);
   for (const Awaited one_sample : {Awaited::more_known, Awaited::changed}) {
-    EXPECT_EQ(level_of(true, 7.0F, one_sample), Level::told);
-    EXPECT_EQ(level_of(true, 9.0F, one_sample), Level::own_shape);
+    EXPECT_EQ(level_of(true, 3.0, 7.0F, one_sample), Level::told);
+    EXPECT_EQ(level_of(true, 3.0, 9.0F, one_sample), Level::own_shape);
   }
-  EXPECT_EQ(level_of(false, 20.0F, Awaited::changed), Level::told);
-  EXPECT_EQ(level_of(false, 20.0F, Awaited::more_known), Level::own_shape);
-  EXPECT_EQ(level_of(false, 30.0F, Awaited::changed), Level::own_shape);
-  EXPECT_EQ(level_of(false, NAN), Level::ball) << "of nothing that is known";
+  EXPECT_EQ(level_of(false, 3.0, 20.0F, Awaited::changed), Level::told);
+  EXPECT_EQ(level_of(false, 10.0, 20.0F, Awaited::changed), Level::own_shape) << "a thick one";
+  EXPECT_EQ(level_of(false, 3.0, 20.0F, Awaited::more_known), Level::own_shape);
+  EXPECT_EQ(level_of(false, 3.0, 30.0F, Awaited::changed), Level::own_shape);
+  EXPECT_EQ(level_of(false, 3.0, NAN), Level::ball) << "of nothing that is known";
 }
 
 Amends::Probe probe(std::size_t unit, Level level, const glm::vec3& closest, const glm::vec3& coarse) {

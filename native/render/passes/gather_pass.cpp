@@ -197,7 +197,8 @@ bool GatherPass::follow_light(const Sample& sample, const ArrayVisibility& array
   const bool first_look = sample.index == 0;
   const auto level_at = [&](std::size_t number, Awaited awaited) {
     return sample.levels && number < instances
-               ? level_of(roles[number].ball, pixels_across.of(sample.content.receiver(number).ball), awaited)
+               ? level_of(roles[number].ball, gather->mean_free_paths(*roles[number].grain),
+                          pixels_across.of(sample.content.receiver(number).ball), awaited)
                : Level::own_shape;
   };
   // By what is known of grains' inner light it costs less still, and is nearer.
