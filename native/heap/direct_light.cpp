@@ -35,7 +35,7 @@ bool is_near(const lights::LightDraw& light, const Grain& grain) {
 
 /// From where a ray of such a lamp meets the grain: one of all that do, spread evenly as the lamp sees them.
 std::optional<Look> look_at_lamp(const Space& space, const Grain& grain, const glm::dvec3& anchor, const Draw& draw,
-                                 const lights::LightDraw& light, const SpreadOver<7>::Point& point, float share) {
+                                 const lights::LightDraw& light, const std::array<float, 5>& point, float share) {
   const double radius = grain.radius;
   const double way = light.reach;
   // The cone that the ball fills; written so that a small one keeps its digits.
@@ -70,11 +70,11 @@ std::optional<Look> look_at_lamp(const Space& space, const Grain& grain, const g
 void look_from_grain(const Space& space, const Grain& grain, const glm::dvec3& anchor, const Draw& draw, int rays,
                      transport::Random& random, std::vector<Look>& looks) {
   const glm::dvec3 middle = anchor + glm::dvec3(grain.middle);
-  const SpreadOver<7> spread(random);  // two axes for a place on the light: with a spread of their own they would
-                                       // follow where the ray comes in
+  const Spread spread(random);  // of its axes two are of places on the light: in a spread of their own they would
+                                // follow where the ray comes in
   const float share = 1.0F / (4.0F * std::numbers::pi_v<float> * static_cast<float>(rays));
   for (int i = 0; i < rays; ++i) {
-    const SpreadOver<7>::Point point = spread.point(i);
+    const std::array<float, 5> point = spread.point(i);
     const lights::LightDraw light = draw(middle, {point[3], point[4]});
     if (is_near(light, grain)) {
       if (const std::optional<Look> look = look_at_lamp(space, grain, anchor, draw, light, point, share))

@@ -11,35 +11,29 @@
 
 namespace mesograin::heap {
 
-/// Points of the additive recurrence R5 or R7 (Roberts 2018, "The unreasonable effectiveness of quasirandom sequences";
-/// the generator of R_d is the root of x^(d + 1) = x + 1), shifted at random.
-template <std::size_t Axes>
-class SpreadOver {
+/// Points of the additive recurrence R5 (Roberts 2018, "The unreasonable effectiveness of quasirandom sequences"; its
+/// generator is the root of x^6 = x + 1), shifted at random.
+class Spread {
  public:
-  using Point = std::array<float, Axes>;
-
-  explicit SpreadOver(transport::Random& random) {
+  explicit Spread(transport::Random& random) {
     for (float& shift : shifts_) shift = random.uniform();
   }
 
-  Point point(int index) const {
-    static_assert(Axes == 5 || Axes == 7);
-    constexpr double generator = Axes == 5 ? 1.1347241384015194 : 1.0969815577985598;
-    Point point{};
+  std::array<float, 5> point(int index) const {
+    constexpr double generator = 1.1347241384015194;
+    std::array<float, 5> point{};
     double step = 1.0;
-    for (std::size_t axis = 0; axis < Axes; ++axis) {
+    for (std::size_t axis = 0; axis < point.size(); ++axis) {
       step /= generator;
-      const double at = static_cast<double>(shifts_[axis]) + step * (index + 1);
+      const double at = shifts_[axis] + step * (index + 1);
       point[axis] = std::min(static_cast<float>(at - std::floor(at)), 0.99999994F);
     }
     return point;
   }
 
  private:
-  Point shifts_{};
+  std::array<float, 5> shifts_{};
 };
-
-using Spread = SpreadOver<5>;
 
 /// A frame around a normal, turned about it by a share of a full turn, or so that its x axis lies along a direction.
 class TurnedFrame {
