@@ -197,6 +197,7 @@ void GrainTable::find_responses() {
   for (std::size_t i = 0; i < outcomes_.size(); ++i)
     if (const Outcome& of = outcomes_[i]; of.entered())
       responses_[i / outcomes].add(of.weight / static_cast<float>(outcomes), entered_.place(of.normal, of.direction));
+  for (const Response& response : responses_) entered_share_ += response.mean / static_cast<float>(entries);
 }
 
 void GrainTable::take_albedo(const GrainTable& grey, int channel) {

@@ -65,6 +65,9 @@ class GrainTable {
     return responses_[static_cast<std::size_t>(std::min(static_cast<int>(mu * mu * entries), entries - 1))];
   }
 
+  /// Of light from everywhere, the share that leaves a turbid grain and has entered it.
+  const glm::vec3& entered_share() const { return entered_share_; }
+
   /// As of leaving(); in a transparent grain the mean place of what is seen there if it is sent out evenly, some way
   /// below the surface; scaled so that its mean square is that of normals.
   glm::vec3 seen_place(const glm::vec3& normal, const glm::vec3& towards) const;
@@ -110,6 +113,7 @@ class GrainTable {
   Leaving leaving_;
   Leaving entered_;
   std::vector<Response> responses_;
+  glm::vec3 entered_share_{0.0F};
   Entries came_in_;
   float seen_place_scale_ = 1.0F;
 };

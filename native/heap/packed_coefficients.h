@@ -53,8 +53,4 @@ using PackedField = std::vector<PackedCoefficients>;
 
 inline void scale(PackedCoefficients& one, const glm::vec3& by) { one = PackedCoefficients(one.whole() * by); }
 
-inline void add(PackedField& sum, const PackedField& of, const glm::vec3& by) {
-  for (std::size_t i = 0; i < sum.size(); ++i) sum[i] = PackedCoefficients(sum[i].whole() + of[i].whole() * by);
-}
-
 }  // namespace mesograin::heap

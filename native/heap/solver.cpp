@@ -140,6 +140,14 @@ bool Solver::serves(const std::shared_ptr<const Matter>& other, int rays, int wa
          change_from(*other);
 }
 
+// The mean of light from everywhere tells it well enough until it is found anew.
+glm::vec3 Solver::more_entered(const Matter& other, std::size_t seat) const {
+  if (&other == matter_.get()) return glm::vec3(1.0F);
+  const std::size_t number = other.space->seats()->number(seat);
+  return ratio(matter_->kinds[matter_->grains.grains[number].kind].from_light->entered_share(),
+               other.kinds[other.grains.grains[number].kind].from_light->entered_share());
+}
+
 std::optional<Change> Solver::change_from(const Matter& other) const {
   Change change;
   const std::size_t count = matter_->grains.grains.size();
@@ -148,6 +156,7 @@ std::optional<Change> Solver::change_from(const Matter& other) const {
   for (std::size_t i = 0; i < count; ++i) {
     const Kind& now = matter_->kinds[matter_->grains.grains[i].kind];
     const Kind& then = other.kinds[other.grains.grains[i].kind];
+    if (now.from_light->is_turbid() != then.from_light->is_turbid()) return std::nullopt;
     change.answered.push_back(ratio(now.from_viewer->albedo(), then.from_viewer->albedo()));
     change.received.push_back(ratio(then.from_light->met(), now.from_light->met()));
     if (!is_small(change.answered.back()) || !is_small(change.received.back())) return std::nullopt;
@@ -317,6 +326,10 @@ Solver::Direct Solver::find_direct(const Heap& heap, const Quality& quality, con
     if (with.grains != matter_->grains) change = change_from(with);
     add(sum.direct, lit.direct, *with.space->seats(), change ? &*change : nullptr, by);
     add(sum.crossed, lit.crossed, *with.space->seats(), change ? &*change : nullptr, by);
+    const std::size_t entered = std::min(sum.entered.size(), lit.entered.size());
+    for (std::size_t i = 0; i < entered; ++i)
+      sum.entered[i] =
+          PackedCoefficients(sum.entered[i].whole() + lit.entered[i].whole() * (by * more_entered(with, i)));
   };
   for (std::size_t i = 0; i < lights.size(); ++i) {
     const auto all = static_cast<double>(lights.size());
@@ -325,7 +338,6 @@ Solver::Direct Solver::find_direct(const Heap& heap, const Quality& quality, con
     const Source& source = find_source(lights[i], quality, part);
     const Matter& matter = *source.matter;
     add_lit(source.lit, matter, glm::vec3(1.0F));
-    if (source.lit.entered.size() == sum.entered.size()) heap::add(sum.entered, source.lit.entered, glm::vec3(1.0F));
     if (source.lit.scattered.empty()) continue;
     Field scattered = source.lit.scattered;
     scale_scattered(scattered, *matter.space->seats(), matter.grains, matter.kinds);
@@ -339,7 +351,6 @@ Solver::Direct Solver::find_direct(const Heap& heap, const Quality& quality, con
     if (!scattered.empty())
       scale_scattered(scattered, traced_->ways.links, traced_->matter->grains, traced_->matter->kinds);
     add(sum.scattered, scattered, glm::vec3(heap.world.radiance));
-    heap::add(sum.entered, traced_->ways.world.entered, glm::vec3(heap.world.radiance));
   }
   const auto told = [&](Field& field) { return field.empty() ? Field() : seats.told(std::move(field)); };
   return {{told(sum.direct), told(sum.crossed), told(sum.scattered), std::move(sum.entered)},

@@ -95,6 +95,8 @@ class Solver {
 
   /// From `other` to what there is now; nothing where its rays tell nothing of that.
   std::optional<Change> change_from(const Matter& other) const;
+  /// Of what enters the grain in a seat, how much more it sends out than one of that matter.
+  glm::vec3 more_entered(const Matter& other, std::size_t seat) const;
   std::optional<Moves> moves_from(const Matter& other);
 
   std::shared_ptr<Matter> matter_;

@@ -11,6 +11,7 @@
 #include "heap/grain_table.h"
 #include "heap/response.h"
 #include "heap/scaled_light.h"
+#include "heap/solver.h"
 #include "heaps.h"
 #include "physics/physics.h"
 #include "transport/directions.h"
@@ -107,6 +108,28 @@ TEST(Entered, OfAThickBallIsBrightWhereLightCameIn) {
   // Of a Lambert ball order 2 has 4.25 and .25 of the mean there.
   EXPECT_GT(at_pole(light, table, to_light), 3.2F * mean);
   EXPECT_LT(std::abs(at_pole(light, table, -to_light)), 0.6F * mean);
+}
+
+float mean_green(const HeapLight& light) {
+  float sum = 0.0F;
+  for (const PackedCoefficients& one : light.entered) sum += mean_of(one.whole()).g;
+  return sum / static_cast<float>(light.entered.size());
+}
+
+// Before it is found anew what entered grains of another colour is told by how much more they send out of it.
+TEST(Entered, OfAnotherColourIsQuicklyTold) {
+  Heap heap = lattice(4, turbid(5.0, 0.9));
+  heap.world.radiance = glm::dvec3(0.5);
+  heap.lights.emplace_back(scene::DirectionalLight{{0.0, 0.6, 0.8}, glm::dvec3(3.0)});
+  Heap whiter = heap;
+  whiter.grains.kinds.front() = turbid(5.0, 0.97);
+  Solver solver;
+  const HeapLight before = solver.solve(heap, {}, {});
+  const HeapLight quick = solver.solve(whiter, coarse, {});
+  const HeapLight right = solve_exchange(whiter, {}, {}, {});
+  EXPECT_EQ(quick.parts.links, before.parts.links) << "by the ways that there are";
+  EXPECT_GT(mean_green(right), 1.3F * mean_green(before));
+  EXPECT_NEAR(mean_green(quick), mean_green(right), 0.08F * mean_green(right));
 }
 
 TEST(Entered, IsOfTurbidGrainsAlone) {
