@@ -15,10 +15,12 @@ float distance_at_node(vec3 node) { return texture(distances, (node + 0.5) / (st
 
 float distance_at(vec3 place) { return distance_at_node(to_surface_nodes(place)); }
 
+const float BESIDE = 0.2;  // a node, on either side: how the surface lies there, not in the mean of the nodes around
+
 vec3 outwards_at(vec3 place) {
   vec3 node = to_surface_nodes(place);
-  vec3 before = max(node - 0.5, vec3(0.0));
-  vec3 after = min(node + 0.5, stored.last_surface_node);
+  vec3 before = max(node - BESIDE, vec3(0.0));
+  vec3 after = min(node + BESIDE, stored.last_surface_node);
   vec3 gradient = vec3(distance_at_node(vec3(after.x, node.yz)) - distance_at_node(vec3(before.x, node.yz)),
                        distance_at_node(vec3(node.x, after.y, node.z)) - distance_at_node(vec3(node.x, before.y, node.z)),
                        distance_at_node(vec3(node.xy, after.z)) - distance_at_node(vec3(node.xy, before.z))) *
