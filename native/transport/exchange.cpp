@@ -16,6 +16,8 @@ namespace {
 
 // What is reflected more often is trapped, and scattered somewhere on the way that is known by then.
 constexpr int most_reflections = 12;
+// Outside, from one part of the body to another.
+constexpr int most_reflections_outside = 4;
 // Beyond so many mean free paths nothing counts.
 constexpr float deepest = 10.0F;
 constexpr int samples_a_way = 2;
@@ -43,6 +45,22 @@ struct Way {
   }
 };
 
+/// Whether a ray that has left the body at `place` comes in again; it goes on from there, inside.
+bool comes_in_again(const Body& body, const Interface& interface, glm::vec3& place, glm::vec3& direction,
+                    Random& random) {
+  if (body.convex()) return false;
+  for (int reflections = 0; reflections <= most_reflections_outside; ++reflections) {
+    const std::optional<Hit> hit = body.first_hit(place, direction);
+    if (!hit || glm::dot(hit->normal, direction) >= 0.0F) return false;
+    const Interface::Entry entry = interface.enter(direction, hit->normal, random);
+    place += hit->distance * direction;
+    direction = entry.inwards;
+    if (random.uniform() < entry.passed) return true;
+    direction = entry.mirrored;
+  }
+  return false;
+}
+
 void find_way(const Body& body, const Interface& interface, glm::vec3 place, glm::vec3 direction, float longest,
               Random& random, Way& way) {
   way.segments.clear();
@@ -60,10 +78,13 @@ void find_way(const Body& body, const Interface& interface, glm::vec3 place, glm
       continue;
     }
     const Interface::Reflection reflection = interface.reflect(direction, hit->normal, random);
-    if (random.uniform() >= reflection.reflected) return;
-    if (length > longest) break;
     place += hit->distance * direction;
     direction = reflection.inwards;
+    if (random.uniform() >= reflection.reflected) {
+      direction = reflection.beyond;
+      if (!comes_in_again(body, interface, place, direction, random)) return;
+    }
+    if (length > longest) break;
   }
   // What is reflected for ever stays until it is scattered.
   way.ends_outside = false;

@@ -73,12 +73,12 @@ Unscattered unscattered_at(vec3 place, vec3 to_light) {
 #ifdef CONVEX
 float way_of_light(vec3 place, vec3 to_light) { return way_out(place, to_light, FAR); }
 #else
-const int MOST_STEPS_ASIDE = 32;
+const int MOST_STEPS_ASIDE = 128;
 
 // How much of the straight line to a light is inside the grain, which it may leave and enter again.
 float way_of_light(vec3 place, vec3 to_light) {
   float furthest = way_to_box(place, to_light);
-  float shortest = SHORTEST_STEP * shortest_spacing();
+  float shortest = 2.0 * SHORTEST_STEP * shortest_spacing();
   float before = distance_at(place);
   float way = 0.0;
   float inside = 0.0;
