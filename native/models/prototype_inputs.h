@@ -21,8 +21,8 @@ TurnAndStretch turn_and_stretch(const glm::dmat3& linear);
 /// What is to be computed of a prototype's transport.
 transport::Order transport_order(const scene::Material& material, scene::MeshPointer mesh, const glm::dmat3& stretch);
 
-/// Whether the model reads what is stored of single lamps: not where light is walked.
-bool stores_lamps(const scene::Material& material);
+/// Whether the model reads what is stored of single lights: not where light is walked.
+bool stores_lights(const scene::Material& material);
 
 /// The inputs of the material's own model, once the transport is known. Throws Error as material_inputs does.
 MaterialInputs prototype_inputs(const scene::Material& material, const transport::StoredTransport& stored);

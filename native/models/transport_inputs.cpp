@@ -306,7 +306,7 @@ transport::Order transport_order(const scene::Material& material, scene::MeshPoi
   return {std::move(mesh), stretch, stored_medium(material)};
 }
 
-bool stores_lamps(const scene::Material& material) { return !is_walked(material); }
+bool stores_lights(const scene::Material& material) { return !is_walked(material); }
 
 MaterialInputs prototype_inputs(const scene::Material& material, const StoredTransport& stored) {
   MaterialInputs inputs = material_inputs(material);

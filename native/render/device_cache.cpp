@@ -359,11 +359,12 @@ const gl::Program& DeviceCache::light_map_program(bool tessellated) {
   return programs_.find(tessellated ? "light_map tessellated" : "light_map", stages);
 }
 
-const gl::Program& DeviceCache::sum_program(const DeviceMaterial& material, bool together) {
+const gl::Program& DeviceCache::sum_program(const DeviceMaterial& material, bool together, bool stored_lights) {
   std::vector<std::string> defines;
   for (const std::string define : {"GREY", "MANY_TERMS", "MORE_TERMS", "MOST_TERMS", "REFRACTION"})
     if (material.has(define)) defines.push_back(define);
   if (together) defines.emplace_back("TOGETHER");
+  if (stored_lights) defines.emplace_back("STORED_LIGHTS");
   return programs_.find(fmt::format("sum_products {}", fmt::join(defines, " ")),
                         {{GL_COMPUTE_SHADER, gl::ShaderSource({"passes/sum_products.comp"}, defines)}});
 }
@@ -415,6 +416,7 @@ const gl::Program& DeviceCache::shading(const DeviceMaterial& material, const Sh
   if (shading.lights_at_place) defines.emplace_back("LIGHTS_AT_PLACE");
   if (shading.near_lights) defines.emplace_back("NEAR_LIGHTS");
   if (shading.lights_about) defines.emplace_back("LIGHTS_ABOUT");
+  if (shading.stored_lights) defines.emplace_back("STORED_LIGHTS");
   if (shading.stored_lamps) defines.emplace_back("STORED_LAMPS");
   if (shading.summed) defines.emplace_back("SUMMED");
   if (shading.together) defines.emplace_back("TOGETHER");

@@ -50,7 +50,8 @@ struct Shading {
   bool lights_at_place = false;   ///< the place that is shaded draws its own directions of lights that have a place
   bool near_lights = false;       ///< such lights send each point of a grain that has light maps what they send there
   bool lights_about = false;      ///< and are so near that it matters where light comes in
-  bool stored_lamps = false;      ///< of some it is stored what they do in it, or will be
+  bool stored_lights = false;     ///< of some lights it is stored what they do in it, or will be
+  bool stored_lamps = false;      ///< and of some that have a place
   bool summed = false;            ///< what is stored of a prototype was summed for each light
   bool together = false;          ///< and for all of them together
   std::optional<Portion> portion{};  ///< told alone
@@ -200,7 +201,7 @@ class DeviceCache {
   const gl::Program& light_map_program(bool tessellated);
 
   /// The program that sums what is stored of a material's prototype for each light, or for all together.
-  const gl::Program& sum_program(const DeviceMaterial& material, bool together);
+  const gl::Program& sum_program(const DeviceMaterial& material, bool together, bool stored_lights);
 
   /// The program that follows each light into it until it is scattered.
   const gl::Program& tracing_program(const DeviceMaterial& material, bool together);

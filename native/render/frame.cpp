@@ -43,7 +43,7 @@ void Frame::resize(int width, int height) {
 void Frame::set_scene(scene::Scene scene) {
   content_ = std::make_unique<Content>(cache_, scene, std::move(*content_));
   lighting_.set(scene);
-  stored_lamps_.set(*content_, lighting_);
+  stored_lights_.set(*content_, lighting_);
   exchange_.set(cache_, *content_, scene);
   scene_ = std::move(scene);
   unwrapping_.reset();
@@ -77,7 +77,7 @@ void Frame::set_bake(const Bake& bake) {
       throw Error("Baking needs UVs, and the mesh of instance {} has none: unwrap it first.", instance);
   }
   content_ = std::make_unique<Content>(cache_, scene_, std::move(*content_), bake.instances);
-  stored_lamps_.set(*content_, lighting_);
+  stored_lights_.set(*content_, lighting_);
   exchange_.set(cache_, *content_, scene_);
   unwrapping_ = Unwrapping{{}, bake.view_from};
   for (const std::size_t instance : bake.instances) unwrapping_->draws.push_back(content_->draw_of(instance));
@@ -106,14 +106,14 @@ void Frame::set_levels(bool by_size) {
 
 std::vector<std::shared_ptr<const transport::Computation>> Frame::computations() const {
   std::vector<std::shared_ptr<const transport::Computation>> all = content_->computations(cache_);
-  for (auto& computation : stored_lamps_.computations()) all.push_back(std::move(computation));
+  for (auto& computation : stored_lights_.computations()) all.push_back(std::move(computation));
   return all;
 }
 
 bool Frame::take_news() {
   cache_.take_news();
-  const bool lamps = stored_lamps_.take_news();
-  const bool lit = exchange_.take_news() || lamps;
+  const bool by_lights = stored_lights_.take_news();
+  const bool lit = exchange_.take_news() || by_lights;
   if (content_->version() == version_ && !lit) return false;
   version_ = content_->version();
   content_->take_news();
@@ -158,7 +158,7 @@ Sample Frame::begin_sample(const GoOn& go_on, bool hurried) {
   Sample sample{.cache = cache_,
                 .content = *content_,
                 .lighting = lighting_,
-                .stored_lamps = stored_lamps_,
+                .stored_lights = stored_lights_,
                 .exchange = exchange_,
                 .targets = *targets_,
                 .camera = unwrapping_ ? pinhole() : seen_through(index),

@@ -25,7 +25,7 @@
 #include "render/passes/targets.h"
 #include "render/passes/timings.h"
 #include "render/portion.h"
-#include "render/stored_lamps.h"
+#include "render/stored_lights.h"
 #include "scene/camera.h"
 #include "scene/scene.h"
 
@@ -161,7 +161,7 @@ class Frame {
   std::unique_ptr<Content> content_ = std::make_unique<Content>();
   int version_ = 0;  // of the content, as it was last drawn
   std::optional<Unwrapping> unwrapping_;
-  StoredLamps stored_lamps_;
+  StoredLights stored_lights_;
   Exchange exchange_;
   ArrayVisibility arrays_;
   std::unique_ptr<Targets> targets_;

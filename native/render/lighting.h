@@ -40,6 +40,9 @@ class Lighting {
 
   const scene::World& world() const { return world_; }
 
+  /// The first of what at() and sample() tell, in that order.
+  const std::vector<scene::DirectionalLight>& suns() const { return suns_; }
+
   /// Null unless the world is an image.
   const gl::Texture* world_image() const { return world_image_ ? &*world_image_ : nullptr; }
 

@@ -1,4 +1,4 @@
-// A lamp beside a body, so near that each place of it has the lamp elsewhere.
+// One light, told by itself: a lamp beside a body, so near that each place of it has the lamp elsewhere, or a sun.
 #pragma once
 
 #include <functional>

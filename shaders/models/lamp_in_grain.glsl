@@ -8,7 +8,7 @@
 #include "models/interface.glsl"
 #include "models/pixel_random.glsl"
 #include "models/stored_grid.glsl"
-#include "models/stored_lamps.glsl"
+#include "models/stored_lights.glsl"
 #include "models/unscattered.glsl"
 #include "physics/prelude.glsl"
 #include "scene/grain.glsl"
@@ -132,7 +132,7 @@ Spectrum worth_of_lamp(vec3 start, vec3 inwards, vec3 to_light, int collisions, 
 void look_about(DeviceLight lamp, vec3 middle, vec2 lamp_random, SurfacePoint point, vec3 to_middle, inout LightSample light) {
   light_about = -1;
 #ifdef STORED_LAMPS
-  bool known = lamp_block >= 0;
+  bool known = light_block >= 0;
 #else
   const bool known = false;
 #endif

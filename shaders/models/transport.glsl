@@ -1,7 +1,6 @@
 // The model `transport`: what light does inside this very mesh, found beforehand by rays in it and stored as the source function at nodes of a
 // grid, for light from anywhere. The view ray is followed through the grain, and once more from where it is reflected inside.
-// Not physical: where light is walked a rough surface is smooth from inside; scattered light that has left is seen through what it enters, but
-// lights nothing there; scattering is isotropic, by similarity, but where it is walked.
+// Not physical: where light is walked a rough surface is smooth from inside; scattering is isotropic, by similarity, but where it is walked.
 //
 // What is chosen at compile time (models::transport_inputs), besides what dielectric.glsl names:
 //   CLEAR                so much crosses the grain unscattered that it is seen
@@ -15,7 +14,7 @@
 //   GREY                 red, green and blue are the same medium, of which one is stored
 //   SUMMED               the products were summed for each light beforehand (passes/sum_products.comp), and where light is refracted and walked,
 //                        light was followed into the grain (passes/trace_light.comp)
-//   STORED_LAMPS         of some lamps it is stored what they do in the grain (models/stored_lamps.glsl)
+//   STORED_LIGHTS        of some lights it is stored what each does in the grain (models/stored_lights.glsl)
 //   TOGETHER             and for all lights together, nothing standing in their way
 //   WALKS_END_IN_WORLD   light is walked, there is a world, and nothing but the grain may stand before it: walks that leave it find it
 #include "heap/open_beyond.glsl"
@@ -26,7 +25,7 @@
 #include "models/pixel_random.glsl"
 #include "models/portions.glsl"
 #include "models/stored_grid.glsl"
-#include "models/stored_lamps.glsl"
+#include "models/stored_lights.glsl"
 #include "models/stored_products.glsl"
 #include "models/unscattered.glsl"
 #include "physics/prelude.glsl"
@@ -59,8 +58,8 @@ vec4 lobe[LOBE_TEXELS];
 void look_up(vec3 to_light, int light) {
   looked_up = to_light;
   looked_up_light = light;
-#ifdef STORED_LAMPS
-  if (lamp_block >= 0) return;
+#ifdef STORED_LIGHTS
+  if (light_block >= 0) return;
 #endif
 #ifndef SUMMED
   for (int i = 0; i < LOBE_TEXELS; ++i) lobe[i] = lobe_texel(to_light, i);
@@ -80,9 +79,9 @@ float channel_at(vec3 node, vec3 size, int channel) {
 }
 
 Spectrum products_at(vec3 node, vec3 size) {
-#ifdef STORED_LAMPS
-  if (lamp_block >= 0)
-    return SPECTRUM(texture(lamp_sources, vec3(node.xy, node.z + float(lamp_block) * size.z) / vec3(textureSize(lamp_sources, 0))));
+#ifdef STORED_LIGHTS
+  if (light_block >= 0)
+    return SPECTRUM(texture(light_sources, vec3(node.xy, node.z + float(light_block) * size.z) / vec3(textureSize(light_sources, 0))));
 #endif
 #ifdef GREY
   return channel_at(node, size, 0);

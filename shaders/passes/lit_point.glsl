@@ -7,7 +7,8 @@
 //   NEAR_LIGHTS          lights have a place: the light map of each shows the grain from one direction, but each point has its light from where it is
 //   LIGHTS_ABOUT         one of them is so near that it matters where its light comes in; the model looks about itself if it knows the grain inside
 //                        and light goes straight there (LAMP_IN_GRAIN)
-//   STORED_LAMPS         of some it is stored what they do in the grain (models/stored_lamps.glsl)
+//   STORED_LIGHTS        of some lights it is stored what they do in the grain (models/stored_lights.glsl)
+//   STORED_LAMPS         and of some that have a place
 //   CLEAR, WORLD         the model knows what crosses the grain unscattered, and there is a world to be seen through it
 //   GATHERED             what is behind some was gathered
 //   TOLD                 numbers tell what lights do in the grain, and no model is asked for more than its surface
@@ -33,7 +34,7 @@
 #include "scene/grain.glsl"
 #include "scene/shadows.glsl"
 #include "models/entries.glsl"
-#include "models/stored_lamps.glsl"
+#include "models/stored_lights.glsl"
 #if (defined(LIGHTS_ABOUT) || defined(STORED_LAMPS)) && defined(WHOLE_GRAIN) && !defined(REFRACTION) && !defined(WALKED)
 #define LAMP_IN_GRAIN
 void look_about(DeviceLight lamp, vec3 middle, vec2 lamp_random, SurfacePoint point, vec3 to_middle, inout LightSample light);
@@ -178,19 +179,19 @@ vec3 locally_lit(SurfacePoint point, Outwards outwards) {
     LightSample light = parallel_light(drawn.to_light, drawn.irradiance, distant_light_count + i, light_angle(local_lights[i], drawn.reach), i, 0.0);
 #ifdef STORED_LAMPS
     look_for_lamp(i);
-    if (lamp_block >= 0) light.entering = local_lights[i].emission.rgb;
+    if (light_block >= 0) light.entering = local_lights[i].emission.rgb;
 #endif
 #ifdef LAMP_IN_GRAIN
     look_about(local_lights[i], middle_of_grain(), random, point, light.to_light, light);
 #elif defined(LIGHTS_ABOUT) && defined(STORED_LAMPS)
-    if (lamp_block < 0) look_about(local_lights[i], middle_of_grain(), random, point, light.to_light, light);
+    if (light_block < 0) look_about(local_lights[i], middle_of_grain(), random, point, light.to_light, light);
 #elif defined(LIGHTS_ABOUT)
     look_about(local_lights[i], middle_of_grain(), random, point, light.to_light, light);
 #endif
     sum += lit_by(point, outwards, light);
   }
 #ifdef STORED_LAMPS
-  lamp_block = -1;
+  light_block = -1;
 #endif
   return sum;
 }
@@ -252,6 +253,9 @@ vec3 lit_point(SurfacePoint point) {
   // Software renderers run a loop's body once more, masked, to find that a condition at its head has failed: it is at the foot.
   int i = 0;
   do {
+#ifdef STORED_LIGHTS
+    look_for_sun(i);
+#endif
     sum +=
         lit_by(point, outwards, parallel_light(lights[i].to_light.xyz, lights[i].irradiance.rgb, i, lights[i].to_light.w, i, lights[i].irradiance.w));
   } while (++i < light_count);

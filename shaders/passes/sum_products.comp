@@ -3,8 +3,10 @@
 //
 // What is chosen at compile time, besides what models/stored_products.glsl names:
 //   TOGETHER             of all lights together, times their irradiances
+//   STORED_LIGHTS        of some suns it is stored what they do in the grain
 #include "render/bindings.glsl"
 #include "render/distant_light.glsl"
+#include "models/stored_lights.glsl"
 #include "models/stored_products.glsl"
 
 const int GROUP = 64;  // nodes under one light, or under all
@@ -21,6 +23,9 @@ layout(rgba32f, binding = 0) writeonly uniform image3D sums;
 shared vec4 lobe[LOBE_TEXELS];
 
 void take_lobe(int light) {
+#ifdef STORED_LIGHTS
+  look_for_sun(light);
+#endif
   int self = int(gl_LocalInvocationIndex);
   barrier();
   if (self < LOBE_TEXELS) lobe[self] = lobe_texel(grain_to_body() * lights[light].to_light.xyz, self);
@@ -38,6 +43,16 @@ float channel_of(ivec3 place, int planes, int channel) {
 
 // Under the light whose lobe was taken. Channels of a grey medium are the same.
 vec3 source_of(ivec3 place, int planes) {
+#ifdef STORED_LIGHTS
+  if (light_block >= 0) {
+    vec3 stored_source = texelFetch(light_sources, ivec3(place.xy, place.z + light_block * planes), 0).rgb;
+#ifdef GREY
+    return stored_source.rrr;
+#else
+    return stored_source;
+#endif
+  }
+#endif
 #ifdef GREY
   return vec3(channel_of(place, planes, 0));
 #else

@@ -84,7 +84,7 @@ std::vector<scene::Material> every_choice() {
   return materials;
 }
 
-/// The programs of `transport` that read what was summed for each light, and of the passes that sum it.
+/// The programs of `transport` that read what was summed or is stored for each light, and of the passes that sum it.
 void write_sums(Writer& writer, const std::string& name, const std::vector<std::string>& defines, std::size_t number) {
   const auto has = [&](const char* word) { return std::find(defines.begin(), defines.end(), word) != defines.end(); };
   const auto with = [&](std::vector<std::string> more) {
@@ -103,7 +103,17 @@ void write_sums(Writer& writer, const std::string& name, const std::vector<std::
                  ShaderSource({"passes/shade.frag", "models/transport.glsl"}, with(more)));
     writer.write_stage(fmt::format("sum_products_{}_{}.comp", number, more.back()),
                        ShaderSource({"passes/sum_products.comp"}, with(more)));
+    if (has("WALKED")) continue;
+    std::vector<std::string> stored = with(more);
+    stored.emplace_back("STORED_LIGHTS");
+    writer.write_stage(fmt::format("sum_products_{}_{}_stored.comp", number, more.back()),
+                       ShaderSource({"passes/sum_products.comp"}, stored));
   }
+  if (!has("WALKED"))
+    for (const std::vector<std::string>& more :
+         std::vector<std::vector<std::string>>{{"STORED_LIGHTS"}, {"STORED_LIGHTS", "STORED_LAMPS", "LIGHTS_AT_PLACE"}})
+      writer.write(fmt::format("{}+{}", name, fmt::join(more, "+")), ShaderSource({"passes/full_screen.vert"}, {}),
+                   ShaderSource({"passes/shade.frag", "models/transport.glsl"}, with(more)));
   if (!has("REFRACTION") || !has("WALKED")) return;
   for (const std::vector<std::string>& more : summed)
     writer.write_stage(fmt::format("trace_light_{}_{}.comp", number, more.back()),

@@ -193,11 +193,12 @@ def test_an_impatient_view_draws_at_once_and_better_later(cube):
         if done:
             break
         time.sleep(0.02)
-    assert len(seen) == 2, "first a coarse answer, then the final one"
+    assert 2 <= len(seen) <= 3, "first a coarse answer, then the final one, then what the sun does by itself"
     assert view.take_news() is False and view.samples == 2 and view.awaited == []
-    assert seen[0] == pytest.approx(seen[1], rel=0.06)
-    assert first == pytest.approx(seen[1], rel=0.3)
-    assert brightness(show(native.View(32, 32), cube, unknown)) == pytest.approx(seen[1], rel=1e-5)
+    assert seen[0] == pytest.approx(seen[-1], rel=0.06)
+    assert seen[1] == pytest.approx(seen[-1], rel=0.02), "no jump"
+    assert first == pytest.approx(seen[-1], rel=0.3)
+    assert brightness(show(native.View(32, 32), cube, unknown)) == pytest.approx(seen[-1], rel=1e-5)
 
 
 def test_a_render_that_waits_can_be_cancelled(cube):
@@ -281,12 +282,14 @@ def test_an_array_costs_one_set_of_coefficients(cube, spread):
     assert view.warnings == []
     if spread:  # a size that others share is drawn as if it were the middle one
         return
-    alone = [native.Instance(cube, grain, transform) for transform in transforms[:6]]
-    array = native.InstanceArray(cube, grain, transforms[:6])
-    _, one_by_one = picture_of(native.Scene(instances=alone, lights=[light], exchange="off"))
-    _, of_array = picture_of(native.Scene(arrays=[array], lights=[light], exchange="off"))
+    # Under two suns no sun in so many single ones is found by itself.
+    other = native.DirectionalLight(LIGHTS["back"], (0.5,) * 3)
+    alone = [native.Instance(cube, grain, transform) for transform in transforms]
+    array = native.InstanceArray(cube, grain, transforms)
+    _, one_by_one = picture_of(native.Scene(instances=alone, lights=[light, other], exchange="off"))
+    _, of_array = picture_of(native.Scene(arrays=[array], lights=[light, other], exchange="off"))
     assert numpy.abs(of_array - one_by_one).sum() / one_by_one.sum() < 0.02
-    assert together.sum() > of_array.sum()
+    assert of_array.sum() > together.sum()
 
 
 # Nothing absorbed, nothing scattered: what is all around goes round every corner, and the grain is not to be seen.

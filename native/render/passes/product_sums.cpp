@@ -51,14 +51,19 @@ bool ProductSums::can_be_together(const DeviceMaterial& material, std::size_t li
 
 bool ProductSums::hold(const Of& of) const {
   return sums_ && of_.material.lock() == of.material.lock() && of_.version == of.version &&
-         of_.grain_to_prototype == of.grain_to_prototype && of_.to_lights == of.to_lights &&
-         of_.irradiances == of.irradiances;
+         of_.stored_lights == of.stored_lights && of_.grain_to_prototype == of.grain_to_prototype &&
+         of_.to_lights == of.to_lights && of_.irradiances == of.irradiances;
 }
 
-void ProductSums::sum(DeviceCache& cache, const Draw& draw, const std::vector<LightDirection>& lights, bool together,
-                      int sample) {
+void ProductSums::sum(const Sample& sample, const Draw& draw, std::optional<std::size_t> stored, bool together) {
   const DeviceMaterial& material = *draw.material;
-  Of of{draw.material, material.version(), glm::mat3(draw.grain_to_prototype), {}, {}};
+  const std::vector<LightDirection>& lights = sample.lights.distant;
+  Of of{draw.material,
+        material.version(),
+        stored ? sample.stored_lights.version(*stored) : 0,
+        glm::mat3(draw.grain_to_prototype),
+        {},
+        {}};
   std::vector<layout::DistantLight> device;
   for (const LightDirection& light : lights) {
     of.to_lights.emplace_back(light.to_light);
@@ -71,15 +76,18 @@ void ProductSums::sum(DeviceCache& cache, const Draw& draw, const std::vector<Li
   directions_.emplace(device);
   directions_->bind_storage(layout::DISTANT_LIGHTS_BINDING);
   const glm::ivec3 nodes = light_nodes(material);
-  if (tracked_) tracks_.trace(cache, material, nodes, of.grain_to_prototype, lights.size(), together, sample);
+  if (tracked_)
+    tracks_.trace(sample.cache, material, nodes, of.grain_to_prototype, lights.size(), together,
+                  static_cast<int>(sample.index));
   if (held) return;
 
   const std::size_t sums = together ? 1 : lights.size();
   const GLenum format = material.has("GREY") && !together ? GL_R32F : GL_RGBA32F;
   sums_.emplace(format, nodes.x, nodes.y, nodes.z * static_cast<int>(sums));
-  const gl::Program& program = cache.sum_program(material, together);
+  const gl::Program& program = sample.cache.sum_program(material, together, stored.has_value());
   material.bind(program);
   program.set("grain_to_prototype", of.grain_to_prototype);
+  if (stored) sample.stored_lights.bind(program, *stored, material, draw.grain_to_prototype);
   sums_->bind_image(0, format);
   glDispatchCompute(static_cast<GLuint>((product(nodes) + nodes_a_group - 1) / nodes_a_group),
                     static_cast<GLuint>(sums), 1);

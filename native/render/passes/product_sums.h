@@ -2,6 +2,7 @@
 // where walks ask for light that nothing has scattered, it is followed into the grain once.
 #pragma once
 
+#include <cstddef>
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
@@ -15,6 +16,7 @@
 #include "render/draw.h"
 #include "render/lighting.h"
 #include "render/passes/light_tracks.h"
+#include "render/passes/sample.h"
 
 namespace mesograin::render {
 
@@ -28,8 +30,9 @@ class ProductSums {
   static bool can_be_together(const DeviceMaterial& material, std::size_t lights);
 
   /// For a draw that they pay for, if it, its turn or a light is another than the last time; what is followed, anew in
-  /// every sample. Binds textures of its own: a program's come after.
-  void sum(DeviceCache& cache, const Draw& draw, const std::vector<LightDirection>& lights, bool together, int sample);
+  /// every sample. `stored`: the draw's number if what single lights do in it is stored or will be. Binds textures of
+  /// its own: a program's come after.
+  void sum(const Sample& sample, const Draw& draw, std::optional<std::size_t> stored, bool together);
 
   /// To a program that is compiled for them.
   void bind(const gl::Program& program) const;
@@ -39,6 +42,7 @@ class ProductSums {
   struct Of {
     std::weak_ptr<const DeviceMaterial> material;
     int version = 0;
+    int stored_lights = 0;  // StoredLights::version
     glm::mat3 grain_to_prototype{0.0F};
     std::vector<glm::vec3> to_lights;
     std::vector<glm::vec3> irradiances;  // if they are summed together

@@ -18,7 +18,7 @@
 #include "render/lighting.h"
 #include "render/passes/targets.h"
 #include "render/portion.h"
-#include "render/stored_lamps.h"
+#include "render/stored_lights.h"
 #include "scene/camera.h"
 
 namespace mesograin::render {
@@ -40,7 +40,7 @@ struct Sample {
   DeviceCache& cache;
   Content& content;
   const Lighting& lighting;
-  const StoredLamps& stored_lamps;
+  const StoredLights& stored_lights;
   const Exchange& exchange;
   Targets& targets;
   scene::Camera camera;          ///< a pinhole

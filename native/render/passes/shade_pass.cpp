@@ -269,17 +269,18 @@ const gl::Program& ShadePass::prepare(const Sample& sample, std::size_t unit, Sh
   shading.lights_about = sample.lights_about(unit);
   const Draw* draw = sample.content.draw(unit);
   const std::size_t number = draw == nullptr ? 0 : static_cast<std::size_t>(draw - sample.content.draws().data());
-  shading.stored_lamps = draw != nullptr && scene::traits_of(material.model()).mesh && sample.stored_lamps.any(number);
   shading.summed = draw != nullptr && !shading.mirrored && !sample.lighting.any_local() &&
                    ProductSums::pay(material, sample.lights.distant, pixels_of(sample, *draw));
   shading.together = shading.summed && shading.shadows == Shadows::none &&
                      ProductSums::can_be_together(material, sample.lights.distant.size());
-  if (shading.summed)
-    sums_.sum(sample.cache, *draw, sample.lights.distant, shading.together, static_cast<int>(sample.index));
+  const bool stored = draw != nullptr && scene::traits_of(material.model()).mesh && sample.stored_lights.any(number);
+  if (shading.summed) sums_.sum(sample, *draw, stored ? std::optional(number) : std::nullopt, shading.together);
+  shading.stored_lights = stored && !shading.summed;
+  shading.stored_lamps = shading.stored_lights && sample.stored_lights.any_lamps(number);
   const gl::Program& program = sample.cache.shading(material, shading);
   material.bind(program);
   if (shading.summed) sums_.bind(program);
-  if (shading.stored_lamps) sample.stored_lamps.bind(program, number, material);
+  if (shading.stored_lights) sample.stored_lights.bind(program, number, material, draw->grain_to_prototype);
   if (world || shading.mirrors_world) {
     set_world(program, sample.lighting);
     program.set("world_density", static_cast<float>(sample.lights.world_density));
