@@ -94,9 +94,9 @@ def test_the_dark_side_of_a_thick_grain_is_as_dark(image):
 
 
 # Grains that are not convex. Two balls grown together, from behind, each gather the sun in a spot: 0.16 off while a few
-# functions of the light's direction told of it. A ring of radius 10 was 0.054 off while light that left it and entered it
-# again was scattered there as if it came from outside; where nothing refracts, ring and balls 0.046 and 0.086, while sun-
-# light was not followed through all of them.
+# functions of the light's direction told of it. A ring of radius 10 was 0.054 off while light that left it and entered
+# it again was scattered there as if it came from outside; where nothing refracts, ring and balls 0.046 and 0.086, while
+# sunlight was not followed through all of them.
 HOLLOWED = shapes.Shapes(native, TESTS / "data/hollowed_shapes")
 HOLLOWED_BARS = {"peanut_e1.3_R1_back.exr": 0.05, "torus_e1.3_R10_front.exr": 0.03, "torus_e1_R3_side.exr": 0.02,
                  "peanut_e1_R3_back.exr": 0.03}
