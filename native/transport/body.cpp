@@ -16,6 +16,7 @@
 #include "embree/first_hit.h"
 #include "scene/convexity.h"
 #include "transport/axes.h"
+#include "transport/convexity.h"
 #include "transport/directions.h"
 #include "transport/random.h"
 
@@ -167,6 +168,7 @@ Body::Body(const scene::Mesh& mesh, const glm::dmat3& linear) : convex_(scene::i
     lower_ = glm::min(lower_, positions_.back());
     upper_ = glm::max(upper_, positions_.back());
   }
+  convex_ = convex_ || nearly_convex(positions_, triangles_, normals_);
 
   auto device = std::make_shared<Device>();
   device->build(positions_, triangles_);

@@ -59,7 +59,7 @@ class Body {
   double volume() const { return volume_; }
   double area() const { return area_; }
 
-  /// Whether nothing that has left it meets it again.
+  /// Whether nothing that has left it meets it again, or next to nothing.
   bool convex() const { return convex_; }
 
  private:

@@ -4,10 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <glm/geometric.hpp>
+#include <numbers>
 #include <string>
 
 #include "base/error.h"
+#include "scene/convexity.h"
 #include "scene/sphere.h"
 #include "shapes.h"
 
@@ -59,6 +62,43 @@ TEST(Body, MayBeWoundEitherWay) {
 }
 
 TEST(Body, WeldsVerticesThatDifferInNormalsAlone) { EXPECT_NO_THROW(Body(scene::unit_sphere(32, 16))); }
+
+/// A ball of quads, each of which bends outwards along its other diagonal where it is cut the wrong way.
+scene::Mesh ball_of_quads(int rows, float dent) {
+  std::vector<glm::vec3> positions = {{0.0F, 0.0F, 1.0F}};
+  std::vector<glm::uvec3> triangles;
+  const int columns = 2 * rows;
+  for (int row = 1; row < rows; ++row)
+    for (int column = 0; column < columns; ++column) {
+      const double polar = std::numbers::pi * row / rows;
+      const double azimuth = std::numbers::pi * (column + 0.5 * row) / rows;
+      positions.emplace_back(std::sin(polar) * std::cos(azimuth), std::sin(polar) * std::sin(azimuth), std::cos(polar));
+    }
+  positions.emplace_back(0.0F, 0.0F, -1.0F);
+  positions[positions.size() / 2] *= 1.0F - dent;
+  const auto number = [&](int row, int column) {
+    return row == 0      ? 0U
+           : row == rows ? static_cast<unsigned>(positions.size() - 1)
+                         : static_cast<unsigned>(1 + (row - 1) * columns + column % columns);
+  };
+  for (int row = 0; row < rows; ++row)
+    for (int column = 0; column < columns; ++column) {
+      if (row + 1 < rows)
+        triangles.emplace_back(number(row, column), number(row + 1, column), number(row + 1, column + 1));
+      if (row > 0) triangles.emplace_back(number(row, column), number(row + 1, column + 1), number(row, column + 1));
+    }
+  return {positions, {}, triangles};
+}
+
+TEST(Body, IsConvexWhereItsFacesStandHardlyAboveEachOther) {
+  EXPECT_TRUE(Body(cube()).convex());
+  const scene::Mesh ball = ball_of_quads(80, 0.0F);
+  EXPECT_FALSE(scene::is_convex(ball)) << "else this tests nothing";
+  EXPECT_TRUE(Body(ball).convex());
+  EXPECT_TRUE(Body(ball, glm::dmat3(1.0, 0.0, 0.0, 0.0, 0.5, 0.0, 0.0, 0.0, 0.7)).convex());
+  EXPECT_FALSE(Body(ball_of_quads(80, 0.02F)).convex()) << "it has a dent";
+  EXPECT_FALSE(Body(plates(0.8F, 0.01F)).convex()) << "two beside each other";
+}
 
 TEST(Body, IsStretchedAsItsInstance) {
   const Body body(cube(), glm::dmat3(3.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0, 2.0));
