@@ -1,6 +1,6 @@
-// Lights over single grains of stored transport: what each of them does in the grain, found for where it stands. What
-// is stored for parallel light from anywhere has few functions of its direction, a sun is one of them; and it has a
-// lamp the same for all of the grain, which beside it it is not.
+// Suns over single grains of stored transport, and lamps beside them: what each does in the grain, found by itself.
+// What is stored for parallel light from anywhere tells of a direction by few functions of it, and of a lamp as if it
+// were the same for all of the grain.
 #pragma once
 
 #include <cstddef>
@@ -32,7 +32,7 @@ class StoredLights {
   bool any(std::size_t draw) const { return draw < draws_.size() && !draws_[draw].lights.empty(); }
   bool any_lamps(std::size_t draw) const;
 
-  /// Of what is known of a draw's: another once that is more, or of others.
+  /// Another one whenever what is known of a draw's lights is.
   int version(std::size_t draw) const { return any(draw) ? draws_[draw].version : 0; }
 
   /// To a program that looks for them: those that are known, at the nodes of what is stored of the draw's material.
