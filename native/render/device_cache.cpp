@@ -377,6 +377,11 @@ const gl::Program& DeviceCache::tracing_program(const DeviceMaterial& material, 
                         {{GL_COMPUTE_SHADER, gl::ShaderSource({"passes/trace_light.comp"}, defines)}});
 }
 
+const gl::Program& DeviceCache::line_program() {
+  return programs_.find("cut_light_lines",
+                        {{GL_COMPUTE_SHADER, gl::ShaderSource({"passes/cut_light_lines.comp"}, {})}});
+}
+
 const gl::Program& DeviceCache::gathered_program(std::optional<Portion> portion) {
   std::vector<std::string> defines;
   if (portion) defines.push_back(portion_define(*portion));
@@ -419,6 +424,7 @@ const gl::Program& DeviceCache::shading(const DeviceMaterial& material, const Sh
   if (shading.stored_lights) defines.emplace_back("STORED_LIGHTS");
   if (shading.stored_lamps) defines.emplace_back("STORED_LAMPS");
   if (shading.summed) defines.emplace_back("SUMMED");
+  if (shading.summed && !material.has("REFRACTION")) defines.emplace_back("LIGHT_LINES");
   if (shading.together) defines.emplace_back("TOGETHER");
   if (shading.portion) defines.push_back(portion_define(*shading.portion));
   return program(fmt::format("{} {} {}", pass, model, fmt::join(defines, " ")), gl::ShaderSource({vertex}, {}),

@@ -206,6 +206,9 @@ class DeviceCache {
   /// The program that follows each light into it until it is scattered.
   const gl::Program& tracing_program(const DeviceMaterial& material, bool together);
 
+  /// The program that finds where straight lines from lights are inside it.
+  const gl::Program& line_program();
+
   /// The program that counts how many triangles cover each texel of an unwrapped mesh.
   const gl::Program& count_program();
 

@@ -155,6 +155,8 @@ Radiance walked_radiance(vec3 place, vec3 direction, vec3 to_light, int light, f
       mirrored = false;
 #ifdef TRACED
       Unscattered unscattered = unscattered_found(place, light);
+#elif defined(LIGHT_LINES)
+      Unscattered unscattered = Unscattered(to_light, way_of_light(place, to_light, light), 1.0);
 #else
       Unscattered unscattered = unscattered_at(place, to_light);
 #endif

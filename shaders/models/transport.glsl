@@ -14,6 +14,7 @@
 //   GREY                 red, green and blue are the same medium, of which one is stored
 //   SUMMED               the products were summed for each light beforehand (passes/sum_products.comp), and where light is refracted and walked,
 //                        light was followed into the grain (passes/trace_light.comp)
+//   LIGHT_LINES          so it was where light goes straight (passes/cut_light_lines.comp)
 //   STORED_LIGHTS        of some lights it is stored what each does in the grain (models/stored_lights.glsl)
 //   TOGETHER             and for all lights together, nothing standing in their way
 //   WALKS_END_IN_WORLD   light is walked, there is a world, and nothing but the grain may stand before it: walks that leave it find it
@@ -21,6 +22,7 @@
 #include "models/dielectric.glsl"
 #include "models/interface.glsl"
 #include "models/lamp_in_grain.glsl"
+#include "models/light_lines.glsl"
 #include "models/light_tracks.glsl"
 #include "models/pixel_random.glsl"
 #include "models/portions.glsl"
@@ -91,6 +93,18 @@ Spectrum products_at(vec3 node, vec3 size) {
 }
 #endif
 
+#ifndef REFRACTION
+// What a light of irradiance 1 does that goes straight to a place.
+Spectrum scattered_first(vec3 place, vec3 to_light, int light) {
+#ifdef LIGHT_LINES
+  float way = way_of_light(place, to_light, light);
+#else
+  float way = way_of_light(place, to_light);
+#endif
+  return SPECTRUM(stored.albedo) / (4.0 * PI) * exp(-SPECTRUM(stored.sigma_t) * way);
+}
+#endif
+
 // Radiance that a mean free path of the medium adds, per irradiance of the light that was looked up; TOGETHER: of all.
 Radiance source_at(vec3 place) {
   vec3 size = stored.last_node + 1.0;
@@ -114,8 +128,15 @@ Radiance source_at(vec3 place) {
 #ifdef LAMP_IN_GRAIN
   if (light_about == looked_up_light) return about.parallel * sum + lamp_scattered_once(place);
 #endif
-  // Light that nothing has scattered comes straight. Its shadows are too sharp for few products: they would be blotches.
-  sum += SPECTRUM(stored.albedo) / (4.0 * PI) * exp(-SPECTRUM(stored.sigma_t) * way_of_light(place, looked_up));
+    // Light that nothing has scattered comes straight. Its shadows are too sharp for few products: they would be blotches.
+#ifdef TOGETHER
+  int i = 0;
+  do {
+    sum += lights[i].irradiance.rgb * scattered_first(place, grain_to_body() * lights[i].to_light.xyz, i);
+  } while (++i < light_count);
+#else
+  sum += scattered_first(place, looked_up, looked_up_light);
+#endif
 #endif
   return sum;
 }
@@ -190,6 +211,7 @@ vec3 march(vec3 place, vec3 direction, float way, int taps) {
 
 // What leaves the grain is followed until so little of it is left.
 const float LEAST_PASSED = 0.004;
+const float LEAST_FOLLOWED_ON = 0.02;
 #ifdef CLEAR
 const int MOST_WAYS = 6;
 #else
@@ -264,75 +286,52 @@ float comes_in_again(inout vec3 place, inout vec3 direction) {
 #endif
 
 #ifndef WALKED
-// A straight piece of the view ray's way through the grain.
-struct Piece {
-  vec3 place;
-  vec3 direction;
-  float way;
-  Spectrum left;  // of what it sends, where the ray comes out
-};
-#ifdef CONVEX
-const int MOST_PIECES = MOST_WAYS;
-const int MOST_LASTS = 1;
-#else
+#ifndef CONVEX
 const int WAYS_IN_NEXT = 2;  // after the view ray has left the grain and entered it again
-const int MOST_PIECES = MOST_WAYS + WAYS_IN_NEXT;
-const int MOST_LASTS = 2;
 #endif
-Piece pieces[MOST_PIECES];
-int piece_count;
-// From there on as if every piece were like the one before and the source as it is there.
-struct Last {
-  vec3 place;
-  Spectrum left;  // how much the source there counts for all pieces that follow
-};
-Last lasts[MOST_LASTS];
-int last_count;
 
 #ifdef REFRACTION
-// A piece of the view ray's way, and what comes after reflections inside.
-void follow_reflected(vec3 place, vec3 direction, float way, Spectrum left, int ways) {
+// What a ray meets on a way through the grain that is so long, and after reflections inside.
+Radiance radiance_reflected(vec3 place, vec3 direction, float way, Spectrum left, int ways, int taps) {
+  Radiance sum = Radiance(0.0);
   for (int i = 0; i < ways; ++i) {
     if (i > 0) way = way_through(place, direction, FAR);
-    pieces[piece_count] = Piece(place, direction, way, left);
-    ++piece_count;
+    sum += left * march(place, direction, way, i == 0 ? taps : FURTHER_TAPS);
     Spectrum passed = exp(-SPECTRUM(stored.sigma_t) * way);
     place += way * direction;
     vec3 facet = facet_outwards(place, direction, i);
     float again = dot(facet, direction) > 0.0 ? kept_inside(place, direction, facet) : 0.0;
     left *= passed * again;
-    if (largest(left) < LEAST_PASSED) return;
-    if (i + 1 == ways) {
-      lasts[last_count] = Last(place, left * (1.0 - passed) / (1.0 - later_again(again) * passed));
-      ++last_count;
+    if (largest(left) < LEAST_FOLLOWED_ON || i + 1 == ways) {
+      // From there on as if every way were like that one and the source as it is there.
+      sum += left * (1.0 - passed) / (1.0 - later_again(again) * passed) * source_at(place);
+      break;
     }
     direction = reflected_inwards(place, direction, facet);
   }
+  return sum;
 }
 
-// Follows the view ray.
-void follow(vec3 place, vec3 direction) {
-  piece_count = 0;
-  last_count = 0;
+// Along the view ray.
+Radiance radiance_inside(vec3 place, vec3 direction) {
   float way = way_through(place, direction, FAR);
-  follow_reflected(place, direction, way, Spectrum(1.0), MOST_WAYS);
+  Radiance sum = radiance_reflected(place, direction, way, Spectrum(1.0), MOST_WAYS, FIRST_TAPS);
 #ifndef CONVEX
   Spectrum left = exp(-SPECTRUM(stored.sigma_t) * way);
   place += way * direction;
-  left *= comes_in_again(place, direction);
-  if (largest(left) > LEAST_PASSED) follow_reflected(place, direction, way_through(place, direction, FAR), left, WAYS_IN_NEXT);
+  if (largest(left) > LEAST_PASSED) left *= comes_in_again(place, direction);
+  if (largest(left) > LEAST_PASSED) sum += radiance_reflected(place, direction, way_through(place, direction, FAR), left, WAYS_IN_NEXT, FURTHER_TAPS);
 #endif
+  return sum;
 }
 #else
-// Follows the view ray, which goes straight on beyond what it leaves.
-void follow(vec3 place, vec3 direction) {
-  piece_count = 0;
-  last_count = 0;
+// Along the view ray, which goes straight on beyond what it leaves.
+Radiance radiance_inside(vec3 place, vec3 direction) {
+  Radiance sum = Radiance(0.0);
   Spectrum left = Spectrum(1.0);
   for (int i = 0; i < MOST_WAYS; ++i) {
     float way = way_through(place, direction, FAR);
-    pieces[i] = Piece(place, direction, way, left);
-    piece_count = i + 1;
+    sum += left * march(place, direction, way, i == 0 ? FIRST_TAPS : FURTHER_TAPS);
 #ifdef CONVEX
     break;
 #else
@@ -341,16 +340,9 @@ void follow(vec3 place, vec3 direction) {
     if (largest(left) < LEAST_PASSED || comes_in_again(place, direction) == 0.0) break;
 #endif
   }
-}
-#endif
-
-Radiance radiance_inside() {
-  Radiance sum = Radiance(0.0);
-  for (int i = 0; i < piece_count; ++i)
-    sum += pieces[i].left * march(pieces[i].place, pieces[i].direction, pieces[i].way, i == 0 ? FIRST_TAPS : FURTHER_TAPS);
-  for (int i = 0; i < last_count; ++i) sum += lasts[i].left * source_at(lasts[i].place);
   return sum;
 }
+#endif
 #endif
 
 #ifdef WALKED
@@ -396,9 +388,6 @@ Outwards look_outwards(SurfacePoint point) {
   vec3 inwards = (outwards.mu * point.normal - point.to_viewer) / stored.eta - outwards.mu_refracted * point.normal;
 #endif
   direction_below = normalize(to_body * inwards);
-#ifndef WALKED
-  follow(place_below, direction_below);
-#endif
   return outwards;
 }
 
@@ -414,7 +403,7 @@ vec3 together_lit(SurfacePoint point, Outwards outwards) {
 #endif
   return comes_out(outwards, inside);
 #else
-  return comes_out(outwards, radiance_inside());
+  return comes_out(outwards, radiance_inside(place_below, direction_below));
 #endif
 }
 #endif
@@ -427,7 +416,7 @@ vec3 evaluate_model(SurfacePoint point, Outwards outwards, LightSample light) {
 #ifdef WALKED
   Spectrum inside = walked_radiance(place_below, direction_below, to_light, light.index, light.density);
 #else
-  Spectrum inside = radiance_inside();
+  Spectrum inside = radiance_inside(place_below, direction_below);
 #endif
   radiance = comes_out(outwards, light.entering * inside);
 #ifdef WALKS_END_IN_WORLD

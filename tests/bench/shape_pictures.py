@@ -81,26 +81,42 @@ def sand(segments=28):
 MESHES = {"flake": lambda: cubed_sphere(lambda places: places * (2.0, 2.0, 0.4)),
           "rice": lambda: cubed_sphere(lambda places: places * (0.733, 0.733, 2.2)),
           "torus": torus, "peanut": peanut, "sand": sand}
+SHAPES = ["sphere", "cube", *MESHES]
+CUBE = SOURCE / "tests/data/shapes/cube.obj"
+
+
+def mesh(shape):
+    """Vertices (n, 3) and triangles (m, 3) of any of them but the sphere."""
+    if shape != "cube":
+        vertices, faces = MESHES[shape]()
+        return turned(vertices), faces
+    return read_obj(CUBE)
+
+
+def read_obj(path):
+    """Vertices (n, 3) and triangles (m, 3) of an OBJ file of nothing else."""
+    lines = [line.split() for line in path.read_text().splitlines()]
+    vertices = numpy.array([line[1:4] for line in lines if line and line[0] == "v"], dtype=float)
+    faces = numpy.array([[word.split("/")[0] for word in line[1:4]] for line in lines if line and line[0] == "f"],
+                        dtype=int) - 1
+    return vertices, faces
 
 
 def write_mesh(name, folder):
     """Writes NAME.obj; returns its file's name."""
     path = folder / f"{name}.obj"
     if name == "cube":
-        path.write_text((SOURCE / "tests/data/shapes/cube.obj").read_text())
+        path.write_text(CUBE.read_text())
     else:
-        vertices, faces = MESHES[name]()
-        path.write_text("".join([f"v {x:.5f} {y:.5f} {z:.5f}\n" for x, y, z in turned(vertices)]
+        vertices, faces = mesh(name)
+        path.write_text("".join([f"v {x:.5f} {y:.5f} {z:.5f}\n" for x, y, z in vertices]
                                 + [f"f {a} {b} {c}\n" for a, b, c in faces + 1]))
     return path.name
 
 
 def volume(path):
     """That an OBJ file's triangles enclose."""
-    lines = [line.split() for line in path.read_text().splitlines()]
-    vertices = numpy.array([line[1:4] for line in lines if line and line[0] == "v"], dtype=float)
-    faces = numpy.array([[word.split("/")[0] for word in line[1:4]] for line in lines if line and line[0] == "f"],
-                        dtype=int) - 1
+    vertices, faces = read_obj(path)
     a, b, c = (vertices[faces[:, corner]] for corner in range(3))
     return abs(float(numpy.einsum("ij,ij->i", a, numpy.cross(b, c)).sum()) / 6)
 
@@ -155,8 +171,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("referee", type=pathlib.Path)
     parser.add_argument("folder", type=pathlib.Path)
-    shapes = ["sphere", "cube", *MESHES]
-    parser.add_argument("--shapes", nargs="+", default=shapes, choices=shapes)
+    parser.add_argument("--shapes", nargs="+", default=SHAPES, choices=SHAPES)
     parser.add_argument("--radii", nargs="+", type=float, default=[1, 3, 10])
     parser.add_argument("--indices", nargs="+", type=float, default=[1.3, 1.5], metavar="ETA")
     parser.add_argument("--g", type=float, default=0.0)

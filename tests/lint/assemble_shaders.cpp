@@ -91,12 +91,16 @@ void write_sums(Writer& writer, const std::string& name, const std::vector<std::
     more.insert(more.begin(), defines.begin(), defines.end());
     return more;
   };
-  std::vector<std::vector<std::string>> summed = {{"SUMMED", "CONVEX"}};
-  if (has("REFRACTION")) summed.push_back({"SUMMED", "TOGETHER"});
+  const bool straight = !has("REFRACTION");
+  std::vector<std::vector<std::string>> summed = {{"SUMMED", straight ? "LIGHT_LINES" : "CONVEX"}};
+  if (!straight)
+    summed.push_back({"SUMMED", "TOGETHER"});
+  else if (!has("WALKED"))
+    summed.push_back({"SUMMED", "LIGHT_LINES", "TOGETHER"});
   if (has("WALKED")) {
     writer.write(fmt::format("{}+WALKS_END_IN_WORLD", name), ShaderSource({"passes/full_screen.vert"}, {}),
                  ShaderSource({"passes/shade.frag", "models/transport.glsl"}, with({"WALKS_END_IN_WORLD"})));
-    summed.push_back({"SUMMED", has("REFRACTION") ? "TOGETHER" : "CONVEX", "WALKS_END_IN_WORLD"});
+    summed.push_back({"SUMMED", straight ? "LIGHT_LINES" : "TOGETHER", "WALKS_END_IN_WORLD"});
   }
   for (const std::vector<std::string>& more : summed) {
     writer.write(fmt::format("{}+{}", name, fmt::join(more, "+")), ShaderSource({"passes/full_screen.vert"}, {}),
@@ -114,7 +118,8 @@ void write_sums(Writer& writer, const std::string& name, const std::vector<std::
          std::vector<std::vector<std::string>>{{"STORED_LIGHTS"}, {"STORED_LIGHTS", "STORED_LAMPS", "LIGHTS_AT_PLACE"}})
       writer.write(fmt::format("{}+{}", name, fmt::join(more, "+")), ShaderSource({"passes/full_screen.vert"}, {}),
                    ShaderSource({"passes/shade.frag", "models/transport.glsl"}, with(more)));
-  if (!has("REFRACTION") || !has("WALKED")) return;
+  if (straight) writer.write_stage("cut_light_lines.comp", ShaderSource({"passes/cut_light_lines.comp"}, {}));
+  if (straight || !has("WALKED")) return;
   for (const std::vector<std::string>& more : summed)
     writer.write_stage(fmt::format("trace_light_{}_{}.comp", number, more.back()),
                        ShaderSource({"passes/trace_light.comp"}, with(more)));

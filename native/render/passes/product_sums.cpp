@@ -46,7 +46,7 @@ bool ProductSums::pay(const DeviceMaterial& material, const std::vector<LightDir
 }
 
 bool ProductSums::can_be_together(const DeviceMaterial& material, std::size_t lights) {
-  return material.has("REFRACTION") && (!material.has("WALKED") || lights <= LightTracks::most_together);
+  return !material.has("WALKED") || (material.has("REFRACTION") && lights <= LightTracks::most_together);
 }
 
 bool ProductSums::hold(const Of& of) const {
@@ -55,7 +55,8 @@ bool ProductSums::hold(const Of& of) const {
          of_.to_lights == of.to_lights && of_.irradiances == of.irradiances;
 }
 
-void ProductSums::sum(const Sample& sample, const Draw& draw, std::optional<std::size_t> stored, bool together) {
+void ProductSums::sum(const Sample& sample, const Draw& draw, std::optional<std::size_t> stored, double pixels,
+                      bool together) {
   const DeviceMaterial& material = *draw.material;
   const std::vector<LightDirection>& lights = sample.lights.distant;
   Of of{draw.material,
@@ -80,6 +81,8 @@ void ProductSums::sum(const Sample& sample, const Draw& draw, std::optional<std:
     tracks_.trace(sample.cache, material, nodes, of.grain_to_prototype, lights.size(), together,
                   static_cast<int>(sample.index));
   if (held) return;
+  straight_ = !material.has("REFRACTION");
+  if (straight_) lines_.cut(sample.cache, material, of.grain_to_prototype, lights.size(), pixels);
 
   const std::size_t sums = together ? 1 : lights.size();
   const GLenum format = material.has("GREY") && !together ? GL_R32F : GL_RGBA32F;
@@ -98,6 +101,7 @@ void ProductSums::sum(const Sample& sample, const Draw& draw, std::optional<std:
 void ProductSums::bind(const gl::Program& program) const {
   program.set("summed", *sums_);
   if (tracked_) tracks_.bind(program);
+  if (straight_) lines_.bind(program);
 }
 
 }  // namespace mesograin::render

@@ -1,5 +1,5 @@
 // Stored transport under the very lights of a sample: what pixels would each sum anew is summed once at its nodes, and
-// where walks ask for light that nothing has scattered, it is followed into the grain once.
+// light that nothing has scattered is followed into the grain once, where it goes straight or walks ask for it.
 #pragma once
 
 #include <cstddef>
@@ -15,6 +15,7 @@
 #include "render/device_cache.h"
 #include "render/draw.h"
 #include "render/lighting.h"
+#include "render/passes/light_lines.h"
 #include "render/passes/light_tracks.h"
 #include "render/passes/sample.h"
 
@@ -30,9 +31,9 @@ class ProductSums {
   static bool can_be_together(const DeviceMaterial& material, std::size_t lights);
 
   /// For a draw that they pay for, if it, its turn or a light is another than the last time; what is followed, anew in
-  /// every sample. `stored`: the draw's number if what single lights do in it is stored or will be. Binds textures of
-  /// its own: a program's come after.
-  void sum(const Sample& sample, const Draw& draw, std::optional<std::size_t> stored, bool together);
+  /// every sample. `stored`: the draw's number if what single lights do in it is stored or will be; so many `pixels`
+  /// show it. Binds textures of its own: a program's come after.
+  void sum(const Sample& sample, const Draw& draw, std::optional<std::size_t> stored, double pixels, bool together);
 
   /// To a program that is compiled for them.
   void bind(const gl::Program& program) const;
@@ -53,8 +54,10 @@ class ProductSums {
   Of of_;
   std::optional<gl::Buffer> directions_;
   std::optional<gl::Volume> sums_;
-  bool tracked_ = false;
+  bool tracked_ = false;  // light that nothing has scattered; else lines tell of it, if it goes straight
+  bool straight_ = false;
   LightTracks tracks_;
+  LightLines lines_;
 };
 
 }  // namespace mesograin::render

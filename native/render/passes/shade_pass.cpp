@@ -269,12 +269,16 @@ const gl::Program& ShadePass::prepare(const Sample& sample, std::size_t unit, Sh
   shading.lights_about = sample.lights_about(unit);
   const Draw* draw = sample.content.draw(unit);
   const std::size_t number = draw == nullptr ? 0 : static_cast<std::size_t>(draw - sample.content.draws().data());
+  const double pixels = draw == nullptr ? 0.0 : pixels_of(sample, *draw);
   shading.summed = draw != nullptr && !shading.mirrored && !sample.lighting.any_local() &&
-                   ProductSums::pay(material, sample.lights.distant, pixels_of(sample, *draw));
-  shading.together = shading.summed && shading.shadows == Shadows::none &&
-                     ProductSums::can_be_together(material, sample.lights.distant.size());
+                   ProductSums::pay(material, sample.lights.distant, pixels);
+  // What a grain with hollows does to its own light its stored transport tells.
+  const bool nothing_stands_in_light = shading.shadows == Shadows::none ||
+                                       (shading.alone && !shading.exchange && scene::traits_of(material.model()).mesh);
+  shading.together =
+      shading.summed && nothing_stands_in_light && ProductSums::can_be_together(material, sample.lights.distant.size());
   const bool stored = draw != nullptr && scene::traits_of(material.model()).mesh && sample.stored_lights.any(number);
-  if (shading.summed) sums_.sum(sample, *draw, stored ? std::optional(number) : std::nullopt, shading.together);
+  if (shading.summed) sums_.sum(sample, *draw, stored ? std::optional(number) : std::nullopt, pixels, shading.together);
   shading.stored_lights = stored && !shading.summed;
   shading.stored_lamps = shading.stored_lights && sample.stored_lights.any_lamps(number);
   const gl::Program& program = sample.cache.shading(material, shading);
