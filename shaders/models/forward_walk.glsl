@@ -26,8 +26,10 @@ struct Forward {
 };
 uniform Forward forward;
 
-const int EXACT_SCATTERINGS = 4;  // wide ones; from then on two of them with one medium, then two with one that scatters less often
-const float LEAST_KEPT = 0.1;     // of the first direction's axis, by the mean cosine: then the stored source function tells the rest
+// Wide ones; from then on two of them with one medium, then two with one that scatters less often. Light falls off more slowly in these: after four a
+// ball 20 mean free paths across was 6 % too bright from behind, and 25 in its middle.
+const int EXACT_SCATTERINGS = 6;
+const float LEAST_KEPT = 0.1;  // of the first direction's axis, by the mean cosine: then the stored source function tells the rest
 const int MOST_STEPS = 40;
 const float LEAST_FLIGHT = 1e-7;       // in mean free paths
 const float LEAST_EXTINCTION = 1e-12;  // a channel of less flies through
