@@ -12,7 +12,7 @@
 namespace mesograin::transport {
 
 /// Spaces between the surface's nodes in one between the light's.
-inline constexpr int surface_finer = 2;
+inline constexpr int surface_finer = 4;
 
 /// Nodes along x, y and z of those that go with so many of the light's.
 inline glm::ivec3 surface_size(const glm::ivec3& size) { return surface_finer * (size - 1) + 1; }
