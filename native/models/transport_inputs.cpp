@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <glm/common.hpp>
 #include <glm/matrix.hpp>
 #include <utility>
@@ -11,6 +12,7 @@
 #include "models/fewer_nodes.h"
 #include "models/inputs_of_models.h"
 #include "models/light_about_inputs.h"
+#include "models/lobe_maps.h"
 #include "models/prototype_inputs.h"
 #include "physics/half_space/dielectric_surface.h"
 #include "physics/physics.h"
@@ -24,11 +26,19 @@ namespace {
 using transport::StoredTransport;
 
 constexpr int terms_a_texel = 4;
-// As shaders/models/stored_products.glsl has it.
-constexpr int fewest_terms = 16;
-constexpr int many_terms = 24;
-constexpr int more_terms = 36;
-constexpr int leading_blocks = 2;  // of a channel: the last, for terms are kept by how much is seen of them
+// As shaders/models/stored_products.glsl has it, of a grey medium and of another, whose channels share terms.
+struct Counts {
+  int fewest;
+  int many;
+  int more;
+  int leading_blocks;  // the last, for terms are kept by how much is seen of them
+  int lobe_side;       // texels along a side of a map of lobes
+};
+constexpr Counts grey_counts{16, 24, 36, 2, transport::octahedron_side};
+// Each term has maps for all channels: a little fewer texels leave room for four terms more, of which more is seen.
+constexpr Counts shared_counts{20, 32, 32, 1, 24};
+
+const Counts& counts_of(const StoredTransport& stored) { return stored.channels == 1 ? grey_counts : shared_counts; }
 
 // What is divided by is not 0.
 constexpr double least_albedo = 1e-9;
@@ -106,36 +116,34 @@ void add_forward(const scene::Material& material, const StoredTransport& stored,
   add_peak(g, inputs);
 }
 
-// Each block is four terms of a channel, a component each.
+using FourNumbers = std::array<float, terms_a_texel>;
+
+// Each block is four terms, a component each.
 struct Blocks {
   Blocks(const StoredTransport& stored, int terms)
-      : channels(stored.channels),
-        a_channel(terms / terms_a_texel),
-        count(channels * a_channel),
-        left_out(stored.terms - terms) {}
+      : count(terms / terms_a_texel),
+        leading(counts_of(stored).leading_blocks),
+        left_out(static_cast<std::size_t>(stored.terms - terms)) {}
 
-  bool leads(int block) const { return block % a_channel >= a_channel - leading_blocks; }
+  bool leads(int block) const { return block >= count - leading; }
 
-  // What `stored` holds of some place, of so many that each term has, or of some direction.
-  std::size_t index(int block, int component, std::size_t places, std::size_t place) const {
-    const int term = left_out + block % a_channel * terms_a_texel + component;
-    return (static_cast<std::size_t>(term) * places + place) * static_cast<std::size_t>(channels) +
-           static_cast<std::size_t>(block / a_channel);
+  std::size_t term(int block, std::size_t component) const {
+    return left_out + static_cast<std::size_t>(block) * terms_a_texel + component;
   }
 
-  int channels;
-  int a_channel;
   int count;
-  int left_out;  // of each channel's terms, the least
+  int leading;
+  std::size_t left_out;  // the least
 };
 
 // The largest value of each of a block's terms, over which a byte is enough for them: the lobes are multiplied by it.
-std::array<float, terms_a_texel> scales(const StoredTransport& stored, const Blocks& blocks, int block) {
-  std::array<float, terms_a_texel> largest{};
-  for (int component = 0; component < terms_a_texel; ++component) {
-    float& scale = largest[static_cast<std::size_t>(component)];
+FourNumbers scales(const StoredTransport& stored, const Blocks& blocks, int block) {
+  FourNumbers largest{};
+  for (std::size_t component = 0; component < terms_a_texel; ++component) {
+    float& scale = largest[component];
+    const std::size_t first = blocks.term(block, component) * stored.nodes();
     for (std::size_t node = 0; node < stored.nodes(); ++node)
-      scale = std::max(scale, std::abs(stored.sources[blocks.index(block, component, stored.nodes(), node)]));
+      scale = std::max(scale, std::abs(stored.sources[first + node]));
     if (scale == 0.0F) scale = 1.0F;
   }
   return largest;
@@ -144,13 +152,14 @@ std::array<float, terms_a_texel> scales(const StoredTransport& stored, const Blo
 // Blocks of nodes, one behind the other along z.
 Volume sources_volume(const StoredTransport& stored, const Blocks& blocks) {
   Volume volume{stored.size.x, stored.size.y, stored.size.z * blocks.count, terms_a_texel, {}, true};
-  volume.texels.reserve(stored.nodes() * static_cast<std::size_t>(blocks.count * terms_a_texel));
+  volume.texels.reserve(stored.nodes() * static_cast<std::size_t>(volume.channels) *
+                        static_cast<std::size_t>(blocks.count));
   for (int block = 0; block < blocks.count; ++block) {
-    const std::array<float, terms_a_texel> scale = scales(stored, blocks, block);
+    const FourNumbers scale = scales(stored, blocks, block);
     for (std::size_t node = 0; node < stored.nodes(); ++node)
-      for (int component = 0; component < terms_a_texel; ++component)
-        volume.texels.push_back(stored.sources[blocks.index(block, component, stored.nodes(), node)] /
-                                scale[static_cast<std::size_t>(component)]);
+      for (std::size_t component = 0; component < terms_a_texel; ++component)
+        volume.texels.push_back(stored.sources[blocks.term(block, component) * stored.nodes() + node] /
+                                scale[component]);
   }
   return volume;
 }
@@ -190,10 +199,32 @@ Volume smooth_slopes_volume(const StoredTransport& stored) {
   return volume;
 }
 
-// Spaces between the surface's nodes in one between the light's, as many as half a megabyte has room for beside the
-// terms: many, and where light is walked, which shows the surface the most; and most of them.
+// What a prototype takes of the device's memory at most.
+constexpr std::size_t most_bytes = 500'000;
+
+// Spaces between the surface's nodes in one between the light's, if what is told beside the surface leaves room for as
+// many: where light is walked, which shows the surface the most, where it is not, and beside the most terms.
 constexpr double finer_where_walked = 2.5;
-constexpr double finer_beside_most_terms = 1.4;
+constexpr double finer = 2.0;
+constexpr double least_finer = 1.4;
+
+std::size_t bytes(const Volume& volume) { return volume.texels.size() * (volume.bytes ? 1 : sizeof(std::uint16_t)); }
+
+glm::ivec3 surface_nodes(const StoredTransport& stored, double times) {
+  return glm::ivec3(times * glm::dvec3(stored.size - 1)) + 1;
+}
+
+std::size_t product(const glm::ivec3& size) {
+  return static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) * static_cast<std::size_t>(size.z);
+}
+
+// Beside all that `inputs` hold already.
+bool has_room_for_surface(const MaterialInputs& inputs, const glm::ivec3& nodes) {
+  std::size_t sum = product(nodes) * sizeof(std::uint16_t);
+  for (const auto& [name, volume] : inputs.volumes) sum += bytes(volume);
+  for (const auto& [name, table] : inputs.tables) sum += table.texels.size() * sizeof(glm::vec4);
+  return sum <= most_bytes;
+}
 
 // Of values at nodes of a box, x fastest, those at every second.
 std::vector<float> at_every_second_node(const std::vector<float>& values, const glm::ivec3& size) {
@@ -210,73 +241,74 @@ std::vector<float> at_every_second_node(const std::vector<float>& values, const 
 // Taken at fewer nodes, rather than fitted to all, distances from a bevel that is narrower than a cell lift the whole
 // cell out of the grain, a cube of radius 10 was 0.8 % too dark, and walks meet facets' directions less well. A cube's
 // sharp edges lie best where the nodes of twice the light's fineness have them.
-void add_surface(const StoredTransport& stored, bool walked, int terms, MaterialInputs& inputs) {
-  const auto finer = [&](double times) { return glm::ivec3(times * glm::dvec3(stored.size - 1)) + 1; };
-  glm::ivec3 size = transport::surface_size(stored.size);
-  std::vector<float> distances;
-  if (walked && terms == many_terms) {
-    distances = at_fewer_nodes(stored.distances, size, finer(finer_where_walked));
-    size = finer(finer_where_walked);
-  } else {
-    distances = at_every_second_node(stored.distances, size);
-    size = (size + 1) / 2;
-    if (terms > more_terms) {
-      distances = at_fewer_nodes(distances, size, finer(finer_beside_most_terms));
-      size = finer(finer_beside_most_terms);
-    }
+void add_surface(const StoredTransport& stored, double finest, MaterialInputs& inputs) {
+  double times = finest;
+  for (const double fewer : {finer, least_finer})
+    if (!has_room_for_surface(inputs, surface_nodes(stored, times))) times = std::min(times, fewer);
+  glm::ivec3 known = transport::surface_size(stored.size);
+  std::vector<float> distances = stored.distances;
+  if (times <= finer) {
+    distances = at_every_second_node(distances, known);
+    known = (known + 1) / 2;
   }
+  const glm::ivec3 size = surface_nodes(stored, times);
+  if (size != known) distances = at_fewer_nodes(distances, known, size);
   inputs.uniforms["stored.surface_nodes_a_unit"] = glm::vec3(size - 1) / (stored.spacing * glm::vec3(stored.size - 1));
   inputs.uniforms["stored.last_surface_node"] = glm::vec3(size - 1);
   inputs.volumes["distances"] = {size.x, size.y, size.z, 1, std::move(distances)};
 }
 
-// Octahedral maps of some of the blocks, one below the other, each with a frame of the texels across its edges.
-// `factor` is what a block's terms are multiplied by.
-template <typename Factor>
-void add_maps(const StoredTransport& stored, const Blocks& blocks, bool leading, const Factor& factor, Volume& maps) {
-  constexpr int side = transport::octahedron_side;
-  constexpr int framed = side + 2;
-  maps.width = framed;
-  maps.depth = 1;
-  for (int block = 0; block < blocks.count; ++block) {
-    if (blocks.leads(block) != leading) continue;
-    maps.height += framed;
-    const std::array<float, terms_a_texel> times = factor(block);
-    for (int y = -1; y <= side; ++y)
-      for (int x = -1; x <= side; ++x) {
-        // Beyond an edge the map goes on mirrored about that edge's middle.
-        int u = x, v = y;
-        if (u < 0 || u >= side) {
-          u = u < 0 ? 0 : side - 1;
-          v = side - 1 - v;
-        }
-        if (v < 0 || v >= side) {
-          v = v < 0 ? 0 : side - 1;
-          u = side - 1 - u;
-        }
-        const int texel = v * side + u;
-        for (int component = 0; component < terms_a_texel; ++component)
-          maps.texels.push_back(times[static_cast<std::size_t>(component)] *
-                                stored.lobes[blocks.index(block, component, transport::octahedron_texels,
-                                                          static_cast<std::size_t>(texel))]);
-      }
+using FourMaps = std::array<std::vector<float>, terms_a_texel>;
+
+// Of a channel's lobes.
+FourMaps lobe_maps(const StoredTransport& stored, const Blocks& blocks, int block, std::size_t channel) {
+  FourMaps maps;
+  for (std::size_t component = 0; component < terms_a_texel; ++component) {
+    std::vector<float> lobe(transport::octahedron_texels);
+    for (std::size_t texel = 0; texel < lobe.size(); ++texel)
+      lobe[texel] = stored.lobes[stored.lobe(blocks.term(block, component), texel, channel)];
+    maps[component] = framed_map(lobe, counts_of(stored).lobe_side);
   }
+  return maps;
+}
+
+// Below those that are there, each times a factor.
+void put_below(const FourMaps& maps, const FourNumbers& factor, int side, Volume& volume) {
+  volume.width = framed(side);
+  volume.height += framed(side);
+  volume.depth = 1;
+  for (std::size_t texel = 0; texel < maps.front().size(); ++texel)
+    for (std::size_t component = 0; component < terms_a_texel; ++component)
+      volume.texels.push_back(factor[component] * maps[component][texel]);
 }
 
 // Of what is seen the leading terms are nearly all: their maps are in half precision. Of the others a byte tells
 // enough, over what they are multiplied by.
 void add_lobes(const StoredTransport& stored, const Blocks& blocks, MaterialInputs& inputs) {
-  add_maps(
-      stored, blocks, true, [&](int block) { return scales(stored, blocks, block); }, inputs.volumes["lobes"]);
-  Table factors{0, 1, {}};
-  const auto set_apart = [&](int block) {
-    const std::array<float, terms_a_texel> scale = scales(stored, blocks, block);
-    factors.texels.emplace_back(scale[0], scale[1], scale[2], scale[3]);
-    return std::array<float, terms_a_texel>{1.0F, 1.0F, 1.0F, 1.0F};
-  };
+  const int side = counts_of(stored).lobe_side;
+  Volume& leading = inputs.volumes["lobes"];
   Volume& lesser = inputs.volumes["lesser_lobes"];
   lesser.bytes = true;
-  add_maps(stored, blocks, false, set_apart, lesser);
+  Table factors{0, 1, {}};
+  for (std::size_t channel = 0; channel < static_cast<std::size_t>(stored.channels); ++channel)
+    for (int block = 0; block < blocks.count; ++block) {
+      const FourMaps maps = lobe_maps(stored, blocks, block, channel);
+      FourNumbers factor = scales(stored, blocks, block);
+      if (blocks.leads(block)) {
+        put_below(maps, factor, side, leading);
+        continue;
+      }
+      FourNumbers over{};
+      for (std::size_t component = 0; component < terms_a_texel; ++component) {
+        float largest = 0.0F;
+        for (const float value : maps[component]) largest = std::max(largest, std::abs(value));
+        if (largest == 0.0F) largest = 1.0F;
+        factor[component] *= largest;
+        over[component] = 1.0F / largest;
+      }
+      factors.texels.emplace_back(factor[0], factor[1], factor[2], factor[3]);
+      put_below(maps, over, side, lesser);
+    }
   factors.width = static_cast<int>(factors.texels.size());
   inputs.tables["lesser_scales"] = std::move(factors);
 }
@@ -339,9 +371,10 @@ MaterialInputs prototype_inputs(const scene::Material& material, const StoredTra
     inputs.defines.emplace_back("CLEAR");
   // Where light is walked what is stored but ends walks, and shows little of its least terms; how the surface lies
   // shows the more: it takes their room.
-  const int terms = is_walked(material) ? std::min(stored.terms, more_terms) : stored.terms;
-  if (terms > fewest_terms)
-    inputs.defines.emplace_back(terms > more_terms ? "MOST_TERMS" : terms > many_terms ? "MORE_TERMS" : "MANY_TERMS");
+  const Counts& counts = counts_of(stored);
+  const int terms = is_walked(material) ? std::min(stored.terms, counts.more) : stored.terms;
+  if (terms > counts.fewest)
+    inputs.defines.emplace_back(terms > counts.more ? "MOST_TERMS" : terms > counts.many ? "MORE_TERMS" : "MANY_TERMS");
   inputs.uniforms["stored.x_axis"] = stored.axes[0];
   inputs.uniforms["stored.y_axis"] = stored.axes[1];
   inputs.uniforms["stored.z_axis"] = stored.axes[2];
@@ -362,7 +395,11 @@ MaterialInputs prototype_inputs(const scene::Material& material, const StoredTra
   const Blocks blocks(stored, terms);
   add_lobes(stored, blocks, inputs);
   inputs.volumes["sources"] = sources_volume(stored, blocks);
-  add_surface(stored, is_walked(material), terms, inputs);
+  add_surface(stored,
+              terms > counts.more                           ? least_finer
+              : is_walked(material) && terms == counts.many ? finer_where_walked
+                                                            : finer,
+              inputs);
   return inputs;
 }
 

@@ -92,8 +92,10 @@ std::vector<float> texels(const std::vector<std::shared_ptr<const transport::Sto
   for (const auto& stored : known) {
     if (!stored) continue;
     const auto channels = static_cast<std::size_t>(stored->channels);
-    for (std::size_t i = 0; i < stored->sources.size(); ++i)
-      all.push_back(stored->sources[i] * stored->lobes[i % channels]);
+    for (std::size_t node = 0; node < stored->nodes(); ++node)
+      for (std::size_t channel = 0; channel < channels; ++channel)  // each has a term
+        all.push_back(stored->sources[channel * stored->nodes() + node] *
+                      stored->lobes[stored->lobe(channel, 0, channel)]);
   }
   return all;
 }

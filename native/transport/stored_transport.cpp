@@ -7,6 +7,7 @@
 #include <glm/gtc/packing.hpp>
 #include <glm/matrix.hpp>
 #include <memory>
+#include <vector>
 
 #include "physics/physics.h"
 #include "transport/octahedron.h"
@@ -19,8 +20,8 @@ namespace {
 float in_half(float number) { return glm::unpackHalf1x16(glm::packHalf1x16(number)); }
 
 /// Half precision takes lobes of at most 1.
-void make_lobes_at_most_one(Terms& terms) {
-  Lights& lobes = terms.told_by.lobes;
+void make_lobes_at_most_one(SharedTerms& terms) {
+  Lights& lobes = terms.lobes;
   for (Eigen::Index term = 0; term < lobes.rows(); ++term) {
     const float most = lobes.row(term).cwiseAbs().maxCoeff();
     if (most <= 0.0F) continue;
@@ -31,10 +32,20 @@ void make_lobes_at_most_one(Terms& terms) {
 
 // Light that was scattered before falls off towards the surface within less than a thick grain's cell, more steeply the
 // nearer; what is left of it beside that of light that is even everywhere hardly does, and is linear between nodes.
+float share_below(const Grid& grid, Eigen::Index node, double sigma_t) {
+  return static_cast<float>(
+      physics::scattered_share_below(sigma_t * static_cast<double>(grid.depths()[static_cast<std::size_t>(node)])));
+}
+
 void divide_by_share_below(Lights& sources, const Grid& grid, double sigma_t) {
+  for (Eigen::Index row = 0; row < sources.rows(); ++row) sources.row(row) /= share_below(grid, row, sigma_t);
+}
+
+// Beside its own share, of which each channel is told, light has what another channel's fall leaves of it.
+void let_fall_as(double other_sigma_t, Lights& sources, const Grid& grid, double sigma_t) {
+  if (sigma_t == other_sigma_t) return;
   for (Eigen::Index row = 0; row < sources.rows(); ++row)
-    sources.row(row) /= static_cast<float>(
-        physics::scattered_share_below(sigma_t * static_cast<double>(grid.depths()[static_cast<std::size_t>(row)])));
+    sources.row(row) *= share_below(grid, row, other_sigma_t) / share_below(grid, row, sigma_t);
 }
 
 /// No denser than the nodes tell.
@@ -68,22 +79,35 @@ StoredTransport without_light(const Walks& walks, const StoredMedium& medium, in
                          .distances = walks.surface(),
                          .sources = {},
                          .lobes = {}};
-  const std::size_t products = static_cast<std::size_t>(terms) * static_cast<std::size_t>(stored.channels);
+  const auto products = static_cast<std::size_t>(terms);
   stored.sources.resize(products * stored.nodes(), 0.0F);
-  stored.lobes.resize(products * octahedron_texels, 0.0F);
+  stored.lobes.resize(products * octahedron_texels * static_cast<std::size_t>(stored.channels), 0.0F);
   return stored;
 }
+
+/// Of a used node a row.
+void put_sources(std::size_t term, const Eigen::VectorXf& sources, const Grid& grid, StoredTransport& stored) {
+  for (std::size_t node = 0; node < stored.nodes(); ++node)
+    if (grid.used()[node] >= 0) stored.sources[term * stored.nodes() + node] = in_half(sources(grid.used()[node]));
+}
+
+/// Of the three numbers the one between the others.
+double middle(const glm::dvec3& of) { return std::max(std::min(of.r, of.g), std::min(std::max(of.r, of.g), of.b)); }
 
 // As walks tell it.
 StoredTransport transport_by(const Walks& walks, const StoredMedium& medium, const Effort& effort) {
   const Grid& grid = walks.grid();
-  StoredTransport stored = without_light(walks, medium, walks.quality().terms);
-  const int kept = stored.terms;
+  const Quality& quality = walks.quality();
+  StoredTransport stored = without_light(walks, medium, medium.grey() ? quality.terms : quality.shared_terms);
   const int channels = stored.channels;
   if (medium.albedo == glm::dvec3(0.0)) return stored;  // clear: nothing is scattered
   const BetweenNodes between = between_nodes(grid);
   const BetweenNodes beyond = beyond_surface(grid);
+  // What is seen of the others is nearly what is seen of this one.
+  const double shared_sigma_t = middle(medium.sigma_t);
+  const double most_albedo = std::max({medium.albedo.r, medium.albedo.g, medium.albedo.b});
   // Channels have lobes of their own: light in a thick one is sharper in its direction than in a thin one.
+  std::vector<Terms> of_channels;
   for (int channel = 0; channel < channels; ++channel) {
     const double sigma_t = medium.sigma_t[channel];
     Lights light = walks.unscattered(sigma_t, effort);
@@ -99,30 +123,30 @@ StoredTransport transport_by(const Walks& walks, const StoredMedium& medium, con
     if (!stored.has_unscattered) light.setZero();
     add_product(light, scattered, lobes.lobes, effort);
     if (stored.has_unscattered) light = Lights(beyond * light);
-    Terms terms = principal_terms(walks.sights(sigma_t), light, lobes, kept, effort);
-    make_lobes_at_most_one(terms);
-    terms.amounts *= static_cast<float>(medium.albedo[channel]);
-    if (!stored.has_unscattered) divide_by_share_below(terms.amounts, grid, sigma_t);
-    const auto index = [&](std::size_t count, int term, std::size_t of) {
-      return (static_cast<std::size_t>(term) * count + of) * static_cast<std::size_t>(channels) +
-             static_cast<std::size_t>(channel);
-    };
-    for (int term = 0; term < kept; ++term) {
-      for (std::size_t node = 0; node < stored.nodes(); ++node)
-        if (grid.used()[node] >= 0)
-          stored.sources[index(stored.nodes(), term, node)] = in_half(terms.amounts(grid.used()[node], term));
-      for (std::size_t texel = 0; texel < octahedron_texels; ++texel)
-        stored.lobes[index(octahedron_texels, term, texel)] =
-            terms.told_by.lobes(term, static_cast<Eigen::Index>(texel));
-    }
+    of_channels.push_back(principal_terms(walks.sights(sigma_t), light, lobes, stored.terms, effort));
+    Lights& amounts = of_channels.back().amounts;
+    amounts *= static_cast<float>(medium.albedo[channel] / most_albedo);
+    if (!stored.has_unscattered) let_fall_as(shared_sigma_t, amounts, grid, sigma_t);
+  }
+  SharedTerms terms = shared_terms(walks.sights(shared_sigma_t), of_channels);
+  make_lobes_at_most_one(terms);
+  terms.amounts *= static_cast<float>(most_albedo);
+  if (!stored.has_unscattered) divide_by_share_below(terms.amounts, grid, shared_sigma_t);
+  for (std::size_t term = 0; term < static_cast<std::size_t>(stored.terms); ++term) {
+    const auto column = static_cast<Eigen::Index>(term);
+    put_sources(term, terms.amounts.col(column), grid, stored);
+    for (std::size_t texel = 0; texel < octahedron_texels; ++texel)
+      for (std::size_t channel = 0; channel < of_channels.size(); ++channel)
+        stored.lobes[stored.lobe(term, texel, channel)] =
+            terms.lobes(column, static_cast<Eigen::Index>(channel * octahedron_texels + texel));
   }
   return stored;
 }
 
-// As transport_by has it, of one column.
+// As transport_by has it, of one column for each channel.
 StoredTransport lamp_transport(const Walks& walks, const StoredMedium& medium, const Lamp& lamp, const Effort& effort) {
   const Grid& grid = walks.grid();
-  StoredTransport stored = without_light(walks, medium, 1);
+  StoredTransport stored = without_light(walks, medium, medium.grey() ? 1 : 3);
   const std::vector<double> extinctions = extinctions_of(medium);
   if (extinctions.empty()) return stored;
   const BetweenNodes between = between_nodes(grid);
@@ -141,10 +165,9 @@ StoredTransport lamp_transport(const Walks& walks, const StoredMedium& medium, c
     if (!stored.has_unscattered) divide_by_share_below(light, grid, sigma_t);
     const float most = light.cwiseAbs().maxCoeff();
     if (!(most > 0.0F)) continue;
-    for (std::size_t node = 0; node < stored.nodes(); ++node)
-      if (grid.used()[node] >= 0)
-        stored.sources[node * channels + channel] = in_half(light(grid.used()[node], 0) / most);
-    for (std::size_t texel = 0; texel < octahedron_texels; ++texel) stored.lobes[texel * channels + channel] = most;
+    put_sources(channel, light / most, grid, stored);
+    for (std::size_t texel = 0; texel < octahedron_texels; ++texel)
+      stored.lobes[stored.lobe(channel, texel, channel)] = most;
   }
   return stored;
 }

@@ -10,6 +10,7 @@
 #include "transport/body.h"
 #include "transport/effort.h"
 #include "transport/lamp.h"
+#include "transport/octahedron.h"
 #include "transport/walks.h"
 
 namespace mesograin::transport {
@@ -35,18 +36,23 @@ struct StoredTransport {
   double unit = 1.0;             ///< scene units a unit of the body
   glm::mat3 axes{1.0F};          ///< the body's axes in the stretched mesh's
   double mean_chord = 1.0;       ///< through the body, in its units
-  int terms = 0;                 ///< products that are summed
+  int terms = 0;                 ///< products that are summed; channels share what these have of the place
   int channels = 3;              ///< 1 for a grey medium
   bool convex = false;           ///< no line leaves the body and enters it again
   bool has_unscattered = true;   ///< sources are also fed by light that nothing has scattered before
   std::vector<float> distances;  ///< from the surface at its own nodes (surface_size), negative inside; x runs fastest
-  /// [term][node][channel]: radiance that a mean free path would send out, per irradiance; without what light that
+  /// [term][node]: radiance that a mean free path would send out, per irradiance; without what light that
   /// nothing has scattered feeds, if that is apart, over physics::scattered_share_below. In half precision.
   std::vector<float> sources;
   std::vector<float> lobes;  ///< [term][texel of the octahedral map that the light comes from][channel]
 
   std::size_t nodes() const {
     return static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) * static_cast<std::size_t>(size.z);
+  }
+
+  /// Where it is among `lobes`.
+  std::size_t lobe(std::size_t term, std::size_t texel, std::size_t channel) const {
+    return (term * octahedron_texels + texel) * static_cast<std::size_t>(channels) + channel;
   }
 };
 
@@ -62,8 +68,8 @@ double densest_told(const glm::vec3& spacing);
 /// know.
 StoredTransport compute_transport(Walks& walks, const StoredMedium& medium, const Effort& effort = {});
 
-/// The same of one lamp, which all of the light is: one product, whose lobe is the same number everywhere. It has the
-/// nodes of what compute_transport() tells of parallel light.
+/// The same of one lamp, which all of the light is: a product for each channel, whose lobe is the same number
+/// everywhere, and 0 in the others. It has the nodes of what compute_transport() tells of parallel light.
 StoredTransport compute_transport(Walks& walks, const StoredMedium& medium, const Lamp& lamp,
                                   const Effort& effort = {});
 

@@ -5,6 +5,7 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <array>
+#include <limits>
 
 #include "transport/octahedron.h"
 #include "transport/random.h"
@@ -44,11 +45,12 @@ Eigen::MatrixXf orthonormal(const Eigen::MatrixXf& columns) {
 }
 
 /// The root of what each direction counts: by its solid angle, and, so that light which hardly enters, for it grazes a
-/// flat grain, is told well too, by the root of what it lets in.
+/// flat grain, is told well too, by the root of what it lets in. Where there is none at all they are numbers, too.
 Eigen::ArrayXf direction_weights(const Lights& light) {
   const std::array<float, octahedron_texels> angles = octahedron_solid_angles();
   const Eigen::ArrayXf entered = light.colwise().norm().transpose().array();
-  return (Eigen::Map<const Eigen::ArrayXf>(angles.data(), octahedron_texels) / entered.max(1e-3F * entered.mean()))
+  return (Eigen::Map<const Eigen::ArrayXf>(angles.data(), octahedron_texels) /
+          entered.max(std::max(1e-3F * entered.mean(), std::numeric_limits<float>::min())))
       .sqrt();
 }
 
@@ -77,6 +79,33 @@ Terms principal_terms(const Sights& sights, const Lights& light, const Lobes& gu
   const Eigen::MatrixXf leading = solver.eigenvectors().rightCols(count);
   const Eigen::MatrixXf directions = basis * leading;
   return {amounts * leading, {weighed(directions), (directions.array().colwise() / weights).matrix().transpose()}};
+}
+
+// Amounts of principal terms are coordinates along directions that are orthonormal as weighed there: what is left out
+// of them is what is left out of the light. No more of them than are shared need be known.
+SharedTerms shared_terms(const Sights& sights, const std::vector<Terms>& channels) {
+  if (channels.size() == 1) return {channels.front().amounts, channels.front().told_by.lobes};
+  const Eigen::Index count = channels.front().told_by.count();
+  const auto all = static_cast<Eigen::Index>(channels.size()) * count;
+  Lights amounts(channels.front().amounts.rows(), all);
+  std::vector<float> seen_of;
+  for (std::size_t channel = 0; channel < channels.size(); ++channel) {
+    const Lights& own = channels[channel].amounts;
+    seen_of.push_back(Lights(sights * own).norm());
+    // What is not seen at all counts nothing.
+    const float weight = seen_of.back() > 0.0F ? 1.0F / seen_of.back() : 0.0F;
+    amounts.middleCols(static_cast<Eigen::Index>(channel) * count, count) = weight * own;
+  }
+  const Lights seen = sights * amounts;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXf> solver(seen.transpose() * seen);
+  const Eigen::MatrixXf leading = solver.eigenvectors().rightCols(count);
+  Lights lobes(count, static_cast<Eigen::Index>(channels.size()) * octahedron_texels);
+  for (std::size_t channel = 0; channel < channels.size(); ++channel) {
+    const auto number = static_cast<Eigen::Index>(channel);
+    lobes.middleCols(number * octahedron_texels, octahedron_texels).noalias() =
+        seen_of[channel] * leading.middleRows(number * count, count).transpose() * channels[channel].told_by.lobes;
+  }
+  return {amounts * leading, lobes};
 }
 
 Lights product(const Lights& left, const Eigen::MatrixXf& right, const Effort& effort) {

@@ -13,7 +13,7 @@
 namespace mesograin::transport {
 namespace {
 
-constexpr std::string_view title = "mesograin transport 5\n";
+constexpr std::string_view title = "mesograin transport 6\n";
 constexpr std::size_t name_length = 32;
 
 template <typename Value>
@@ -113,7 +113,7 @@ std::optional<StoredTransport> from_bytes(std::string_view bytes, std::string_vi
   const auto terms = static_cast<std::size_t>(stored.terms);
   stored.distances = reader.take<float>(static_cast<std::size_t>(surface.x) * static_cast<std::size_t>(surface.y) *
                                         static_cast<std::size_t>(surface.z));
-  for (const std::uint16_t half : reader.take<std::uint16_t>(nodes * terms * static_cast<std::size_t>(stored.channels)))
+  for (const std::uint16_t half : reader.take<std::uint16_t>(nodes * terms))
     stored.sources.push_back(glm::unpackHalf1x16(half));
   stored.lobes = reader.take<float>(terms * static_cast<std::size_t>(stored.channels) * octahedron_texels);
   if (reader.failed() || !reader.done()) return std::nullopt;

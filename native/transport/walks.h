@@ -24,7 +24,8 @@ struct Quality {
   int nodes = 6600;       ///< of the grid in the body's box
   int light_across = 32;  ///< rays for each direction of light, squared
   int way_across = 16;    ///< rays from each node, squared
-  int terms = 24;         ///< that are stored: 16, 24 or 48 (shaders/models/stored_products.glsl)
+  int terms = 24;         ///< that are stored of a grey medium: 16, 24 or 48 (shaders/models/stored_products.glsl)
+  int shared_terms = 32;  ///< that all channels of another share: 20, 32 or 44
   Spacing spacing = Spacing::even;
   int most_nodes = 10500;  ///< whatever the body's sides are like
 };

@@ -17,16 +17,17 @@ namespace {
 // A fifth of a second on two cores, a few per cent from the final answer.
 constexpr Quality coarse{.nodes = 1500, .light_across = 10, .way_across = 8};
 
-// A quarter of a megabyte of the device's memory for each prototype, and as much for each channel where they differ:
-// one beside others is as near as alone (docs/shapes.md).
+// Light takes a quarter of a megabyte of the device's memory for each prototype, a third where channels differ: one
+// beside others is as near as alone (docs/shapes.md).
 constexpr Quality thin{};
 
 // The terminator of a thick grain is sharp, and what is dark beside it shows the noise of few rays and the lack of
 // products: twice the memory.
-constexpr Quality thick{.light_across = 96, .terms = 48, .spacing = Spacing::nearer_across, .most_nodes = 8120};
+constexpr Quality thick{
+    .light_across = 96, .terms = 48, .shared_terms = 44, .spacing = Spacing::nearer_across, .most_nodes = 8120};
 
 // The light changes within ways that are short beside the grain, and nodes are worth more than products.
-constexpr Quality thickest{.nodes = 10500, .light_across = 96, .terms = 16, .most_nodes = 12200};
+constexpr Quality thickest{.nodes = 10500, .light_across = 96, .terms = 16, .shared_terms = 20, .most_nodes = 12200};
 
 // Of the time that the fine answer takes as well: what its rough one takes, and what tracing its grid does.
 constexpr double coarse_share = 0.04;
@@ -73,9 +74,9 @@ std::string describe_body(const Order& order) {
 }
 
 std::string describe(const Quality& quality) {
-  return fmt::format("nodes: {}, {}, {} at most\nrays: {} {}\nterms: {}\n", quality.nodes,
+  return fmt::format("nodes: {}, {}, {} at most\nrays: {} {}\nterms: {} {}\n", quality.nodes,
                      quality.spacing == Spacing::even ? "even" : "nearer across", quality.most_nodes,
-                     quality.light_across, quality.way_across, quality.terms);
+                     quality.light_across, quality.way_across, quality.terms, quality.shared_terms);
 }
 
 std::string describe(const StoredMedium& medium) {

@@ -9,7 +9,7 @@
 //   CONVEX               no line leaves the grain and enters it again
 //   HOLLOW               much of what leaves it enters it again
 //   MANY_TERMS           more products than the fewest: the grain is not of the thickest
-//   MORE_TERMS           more of them still: it is thick, and not of the thickest, and WALKED
+//   MORE_TERMS           more of them still: it is thick, and not of the thickest, and WALKED and GREY
 //   MOST_TERMS           most of them: it is as thick, and not WALKED
 //   GREY                 red, green and blue are the same medium, of which one is stored
 //   SUMMED               the products were summed for each light beforehand (passes/sum_products.comp), and where light is refracted and walked,
@@ -69,27 +69,23 @@ void look_up(vec3 to_light, int light) {
 }
 
 #ifndef SUMMED
-// Of one channel, at a texel's middle of `size`.
-float channel_at(vec3 node, vec3 size, int channel) {
-  vec3 scale = 1.0 / vec3(size.xy, size.z * float(LOBE_TEXELS));
-  float sum = 0.0;
-  for (int i = 0; i < CHANNEL_TEXELS; ++i) {
-    int block = channel * CHANNEL_TEXELS + i;
-    sum += dot(texture(sources, vec3(node.xy, node.z + float(block) * size.z) * scale), lobe[block]);
-  }
-  return sum;
-}
-
+// At a texel's middle of `size`.
 Spectrum products_at(vec3 node, vec3 size) {
 #ifdef STORED_LIGHTS
   if (light_block >= 0)
     return SPECTRUM(texture(light_sources, vec3(node.xy, node.z + float(light_block) * size.z) / vec3(textureSize(light_sources, 0))));
 #endif
+  vec3 scale = 1.0 / vec3(size.xy, size.z * float(TERM_TEXELS));
+  Spectrum sum = Spectrum(0.0);
+  for (int i = 0; i < TERM_TEXELS; ++i) {
+    vec4 terms = texture(sources, vec3(node.xy, node.z + float(i) * size.z) * scale);
 #ifdef GREY
-  return channel_at(node, size, 0);
+    sum += dot(terms, lobe[i]);
 #else
-  return vec3(channel_at(node, size, 0), channel_at(node, size, 1), channel_at(node, size, 2));
+    sum += vec3(dot(terms, lobe[i]), dot(terms, lobe[TERM_TEXELS + i]), dot(terms, lobe[2 * TERM_TEXELS + i]));
 #endif
+  }
+  return sum;
 }
 #endif
 

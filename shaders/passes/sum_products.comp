@@ -32,15 +32,6 @@ void take_lobe(int light) {
   barrier();
 }
 
-float channel_of(ivec3 place, int planes, int channel) {
-  float sum = 0.0;
-  for (int i = 0; i < CHANNEL_TEXELS; ++i) {
-    int block = channel * CHANNEL_TEXELS + i;
-    sum += dot(texelFetch(sources, ivec3(place.xy, place.z + block * planes), 0), lobe[block]);
-  }
-  return sum;
-}
-
 // Under the light whose lobe was taken. Channels of a grey medium are the same.
 vec3 source_of(ivec3 place, int planes) {
 #ifdef STORED_LIGHTS
@@ -53,11 +44,16 @@ vec3 source_of(ivec3 place, int planes) {
 #endif
   }
 #endif
+  vec3 sum = vec3(0.0);
+  for (int i = 0; i < TERM_TEXELS; ++i) {
+    vec4 terms = texelFetch(sources, ivec3(place.xy, place.z + i * planes), 0);
 #ifdef GREY
-  return vec3(channel_of(place, planes, 0));
+    sum += dot(terms, lobe[i]);
 #else
-  return vec3(channel_of(place, planes, 0), channel_of(place, planes, 1), channel_of(place, planes, 2));
+    sum += vec3(dot(terms, lobe[i]), dot(terms, lobe[TERM_TEXELS + i]), dot(terms, lobe[2 * TERM_TEXELS + i]));
 #endif
+  }
+  return sum;
 }
 
 void main() {

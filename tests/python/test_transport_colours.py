@@ -28,14 +28,16 @@ def sphere(around=96, rings=48):
     return native.Mesh(places.astype(numpy.float32), places.astype(numpy.float32), numpy.array(faces, numpy.uint32))
 
 
-def picture(mesh, sigma_t, albedo, to_light):
-    """(SIZE, SIZE, 3)."""
+def picture(mesh, sigma_t, albedo, to_light, of_array=False, boundary="index_matched"):
+    """(SIZE, SIZE, 3). In an array no sun is found by itself: few functions of its direction tell of it."""
     sigma_t = numpy.array(sigma_t)
-    material = native.Material(model="transport", boundary="index_matched", specular=False,
+    material = native.Material(model="transport", boundary=boundary, eta=1.3, specular=False,
                                sigma_s=tuple(sigma_t * albedo), sigma_a=tuple(sigma_t * (1.0 - numpy.array(albedo))))
     view = native.View(SIZE, SIZE)
     light = native.DirectionalLight(to_light, (1.0,) * 3)
-    view.set_scene(native.Scene(instances=[native.Instance(mesh, material, numpy.eye(4))], lights=[light]))
+    grain = {"arrays": [native.InstanceArray(mesh, material, numpy.eye(4)[None])]} if of_array else \
+        {"instances": [native.Instance(mesh, material, numpy.eye(4))]}
+    view.set_scene(native.Scene(**grain, lights=[light], exchange="off"))
     camera = native.Camera.look_at((0.0, 0.0, DISTANCE), (0.0,) * 3, (0.0, 1.0, 0.0), FIELD_OF_VIEW)
     view.set_camera(camera)
     view.render(16)
@@ -99,3 +101,16 @@ def test_a_colour_looks_the_same_alone_and_beside_others(ball, to_light):
     coloured = picture(ball, sigma_t, albedo, to_light)
     alone = [picture(ball, (sigma_t[i],) * 3, (albedo[i],) * 3, to_light)[..., i] for i in range(3)]
     assert differences(coloured, numpy.stack(alone, -1)).max() < 0.04
+
+
+# Thin and thick, where the same places are seen of all three colours, and where they are not.
+@pytest.mark.parametrize("boundary, sigma_t", [
+    ("index_matched", (3.0, 3.0, 3.0)), ("index_matched", (1.0, 2.0, 3.5)), ("dielectric", (1.0, 2.0, 3.5)),
+    ("dielectric", (9.0, 6.0, 3.0))])
+def test_colours_of_an_array_share_functions_of_the_place_and_look_the_same_alone(ball, boundary, sigma_t):
+    albedo = (0.999, 0.95, 0.6)
+    for to_light in TO_LIGHT.values():
+        together = picture(ball, sigma_t, albedo, to_light, True, boundary)
+        alone = [picture(ball, (sigma_t[i],) * 3, (albedo[i],) * 3, to_light, True, boundary)[..., i]
+                 for i in range(3)]
+        assert differences(together, numpy.stack(alone, -1)).max() < 0.04

@@ -44,8 +44,7 @@ std::vector<float> under_even_light(const StoredTransport& stored, const Walks& 
       double lobe = 0.0;
       for (int texel = 0; texel < octahedron_texels; ++texel)
         lobe += angles[static_cast<std::size_t>(texel)] * stored.lobes[term * octahedron_texels + texel];
-      source +=
-          share * lobe * stored.sources[(term * stored.nodes() + node) * static_cast<std::size_t>(stored.channels)];
+      source += share * lobe * stored.sources[term * stored.nodes() + node];
     }
     sources.push_back(static_cast<float>(source));
   }
@@ -82,13 +81,11 @@ TEST(StoredTransport, KeepsItsChannelsApart) {
   const Body body(scene::unit_sphere(32, 16));
   const auto green = [&](const glm::dvec3& sigma_t, const glm::dvec3& albedo) {
     const StoredTransport stored = compute_transport(body, {sigma_t, albedo, 1.3}, coarse);
-    const std::vector<float>& lobes = stored.lobes;
+    const std::size_t channel = stored.channels == 1 ? 0 : 1;
     double sum = 0.0;
     for (std::size_t node = 0; node < stored.nodes(); ++node)
-      for (int term = 0; term < stored.terms; ++term)
-        sum += lobes[(term * octahedron_texels + 5) * stored.channels + stored.channels / 2] *
-               stored.sources[(term * stored.nodes() + node) * static_cast<std::size_t>(stored.channels) +
-                              static_cast<std::size_t>(stored.channels / 2)];
+      for (std::size_t term = 0; term < static_cast<std::size_t>(stored.terms); ++term)
+        sum += stored.lobes[stored.lobe(term, 5, channel)] * stored.sources[term * stored.nodes() + node];
     return sum;
   };
   const double grey = green(glm::dvec3(3.0), glm::dvec3(0.9));
