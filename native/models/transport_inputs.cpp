@@ -395,11 +395,8 @@ MaterialInputs prototype_inputs(const scene::Material& material, const StoredTra
   const Blocks blocks(stored, terms);
   add_lobes(stored, blocks, inputs);
   inputs.volumes["sources"] = sources_volume(stored, blocks);
-  add_surface(stored,
-              terms > counts.more                           ? least_finer
-              : is_walked(material) && terms == counts.many ? finer_where_walked
-                                                            : finer,
-              inputs);
+  const bool shows_surface = is_walked(material) && terms == counts.many;
+  add_surface(stored, terms > counts.more ? least_finer : shows_surface ? finer_where_walked : finer, inputs);
   return inputs;
 }
 

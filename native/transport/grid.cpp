@@ -32,7 +32,7 @@ Grid::Grid(const Body& body, int nodes, Spacing spacing, int most_nodes, const E
   const glm::vec3 extent = glm::max(body.upper() - body.lower(), glm::vec3(1e-4F));
   const glm::vec3 shares = spacing == Spacing::even ? extent : glm::sqrt(extent);
   const glm::vec3 steps = shares * std::cbrt(static_cast<float>(nodes) / (shares.x * shares.y * shares.z));
-  // 18 of them behind one another are one texture, and 36 where those that lie nearer across have most terms.
+  // Up to 12 blocks of them, of so many along z, are behind one another in one texture of at least 2048 texels.
   constexpr int most_along = 112;
   const glm::ivec3 most(most_along, most_along, spacing == Spacing::even ? most_along : most_along / 2);
   constexpr int fewest_along = 4;

@@ -103,14 +103,20 @@ def test_a_colour_looks_the_same_alone_and_beside_others(ball, to_light):
     assert differences(coloured, numpy.stack(alone, -1)).max() < 0.04
 
 
-# Thin and thick, where the same places are seen of all three colours, and where they are not.
-@pytest.mark.parametrize("boundary, sigma_t", [
-    ("index_matched", (3.0, 3.0, 3.0)), ("index_matched", (1.0, 2.0, 3.5)), ("dielectric", (1.0, 2.0, 3.5)),
-    ("dielectric", (9.0, 6.0, 3.0))])
-def test_colours_of_an_array_share_functions_of_the_place_and_look_the_same_alone(ball, boundary, sigma_t):
+# What few functions tell of a sun in an array beside what is found for that very sun in a single grain: thin and thick,
+# where the same places are seen of all three colours, and where they are not. Measured .007 nearer to .005 less near,
+# of the thick one to .016.
+@pytest.mark.parametrize("boundary, sigma_t, less_near", [
+    ("index_matched", (3.0, 3.0, 3.0), 0.01), ("dielectric", (1.0, 1.5, 3.0), 0.01),
+    ("dielectric", (9.0, 6.0, 3.0), 0.02)])
+def test_colours_of_an_array_share_functions_of_the_place_and_are_as_near_as_alone(ball, boundary, sigma_t, less_near):
     albedo = (0.999, 0.95, 0.6)
+
+    def off(sigma_t, albedo, to_light):
+        right = picture(ball, sigma_t, albedo, to_light, False, boundary)
+        return differences(picture(ball, sigma_t, albedo, to_light, True, boundary), right)
+
     for to_light in TO_LIGHT.values():
-        together = picture(ball, sigma_t, albedo, to_light, True, boundary)
-        alone = [picture(ball, (sigma_t[i],) * 3, (albedo[i],) * 3, to_light, True, boundary)[..., i]
-                 for i in range(3)]
-        assert differences(together, numpy.stack(alone, -1)).max() < 0.04
+        together = off(sigma_t, albedo, to_light)
+        alone = numpy.array([off((sigma_t[i],) * 3, (albedo[i],) * 3, to_light)[i] for i in range(3)])
+        assert (together - alone).max() < less_near

@@ -25,9 +25,10 @@ namespace {
 
 constexpr Quality coarse{.nodes = 2500, .light_across = 16, .way_across = 12};
 
-/// The source function under radiance 1 from everywhere, at nodes inside the body. What albedo 1
+/// A channel's source function under radiance 1 from everywhere, at nodes inside the body. What albedo 1
 /// scatters of light that comes straight is added where it is not stored: as much as each node sees of the outside.
-std::vector<float> under_even_light(const StoredTransport& stored, const Walks& walks, double sigma_t) {
+std::vector<float> under_even_light(const StoredTransport& stored, const Walks& walks, double sigma_t,
+                                    std::size_t channel) {
   const Grid& grid = walks.grid();
   const Exchange exchange = walks.exchange(sigma_t);
   const std::array<float, octahedron_texels> angles = octahedron_solid_angles();
@@ -40,10 +41,10 @@ std::vector<float> under_even_light(const StoredTransport& stored, const Walks& 
     // What was scattered before is stored over 1 - E_2/2 of the depth (Abramowitz & Stegun 5.1.14).
     const double depth = std::max(sigma_t * static_cast<double>(grid.depths()[used]), 1e-9);
     const double share = stored.has_unscattered ? 1.0 : 1.0 - 0.5 * (std::exp(-depth) + depth * std::expint(-depth));
-    for (int term = 0; term < stored.terms; ++term) {
+    for (std::size_t term = 0; term < static_cast<std::size_t>(stored.terms); ++term) {
       double lobe = 0.0;
-      for (int texel = 0; texel < octahedron_texels; ++texel)
-        lobe += angles[static_cast<std::size_t>(texel)] * stored.lobes[term * octahedron_texels + texel];
+      for (std::size_t texel = 0; texel < octahedron_texels; ++texel)
+        lobe += angles[texel] * stored.lobes[stored.lobe(term, texel, channel)];
       source += share * lobe * stored.sources[term * stored.nodes() + node];
     }
     sources.push_back(static_cast<float>(source));
@@ -60,9 +61,21 @@ TEST(StoredTransport, KeepsItsEnergy) {
       const double sigma_t = mean_free_paths * body->unit();
       const StoredTransport stored = compute_transport(walks, {glm::dvec3(sigma_t), glm::dvec3(1.0), eta});
       EXPECT_EQ(stored.has_unscattered, eta != 1.0);
-      for (const float source : under_even_light(stored, walks, sigma_t))
+      for (const float source : under_even_light(stored, walks, sigma_t, 0))
         EXPECT_NEAR(source / (eta * eta), 1.0, 0.015) << "eta " << eta << ", " << mean_free_paths << " to the middle";
     }
+}
+
+TEST(StoredTransport, KeepsTheEnergyOfEachChannel) {
+  for (const double eta : {1.0, 1.5}) {
+    const auto body = std::make_shared<const Body>(cube());
+    Walks walks(body, Interface(eta), coarse, {});
+    const glm::dvec3 sigma_t = body->unit() * glm::dvec3(1.0, 1.5, 3.0);
+    const StoredTransport stored = compute_transport(walks, {sigma_t, glm::dvec3(1.0), eta});
+    for (int channel = 0; channel < 3; ++channel)
+      for (const float source : under_even_light(stored, walks, sigma_t[channel], static_cast<std::size_t>(channel)))
+        EXPECT_NEAR(source / (eta * eta), 1.0, 0.015) << "eta " << eta << ", channel " << channel;
+  }
 }
 
 TEST(StoredTransport, DependsOnTheSeedAloneNotOnThreads) {
