@@ -202,9 +202,9 @@ Volume smooth_slopes_volume(const StoredTransport& stored) {
 // What a prototype takes of the device's memory at most.
 constexpr std::size_t most_bytes = 500'000;
 
-// Spaces between the surface's nodes in one between the light's, if what is told beside the surface leaves room for as
-// many: where light is walked, which shows the surface the most, where it is not, and beside the most terms.
-constexpr double finer_where_walked = 2.5;
+// Spaces between the surface's nodes in one between the light's: where light is walked, which shows the surface the
+// most, where it is not, and beside the most terms.
+constexpr double finer_where_walked = transport::surface_finer;
 constexpr double finer = 2.0;
 constexpr double least_finer = 1.4;
 
@@ -241,10 +241,11 @@ std::vector<float> at_every_second_node(const std::vector<float>& values, const 
 // Taken at fewer nodes, rather than fitted to all, distances from a bevel that is narrower than a cell lift the whole
 // cell out of the grain, a cube of radius 10 was 0.8 % too dark, and walks meet facets' directions less well. A cube's
 // sharp edges lie best where the nodes of twice the light's fineness have them.
+// They are `finest` times as near as light's, or as near as there is room for.
 void add_surface(const StoredTransport& stored, double finest, MaterialInputs& inputs) {
   double times = finest;
-  for (const double fewer : {finer, least_finer})
-    if (!has_room_for_surface(inputs, surface_nodes(stored, times))) times = std::min(times, fewer);
+  while (times > least_finer && !has_room_for_surface(inputs, surface_nodes(stored, times)))
+    times = std::max(0.95 * times, least_finer);
   glm::ivec3 known = transport::surface_size(stored.size);
   std::vector<float> distances = stored.distances;
   if (times <= finer) {

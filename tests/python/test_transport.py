@@ -238,9 +238,11 @@ SURFACE_BYTES = 2 * 40**3
 
 
 # 8000 times 48 products would be most of it. What is long or flat has as many nodes as a cube, or more; what scatters
-# forwards is stored with its smoothed slopes; and colours share what products have of the place.
+# forwards is stored with its smoothed slopes and, if it is not thick, with a finer surface; and colours share what
+# products have of the place.
 THICK = SIGMA_T * 3.0
 FORWARDS = {"g": 0.3, "sigma_s": (0.9 * THICK / 0.7,) * 3}
+THIN_FORWARDS = {"g": 0.3, "sigma_s": (0.9 * SIGMA_T / 0.7,) * 3}
 
 
 def coloured(scale, **parameters):
@@ -254,6 +256,8 @@ def coloured(scale, **parameters):
     ((1.0, 0.33, 0.33), material(6.3), 400_000, 500_000),
     ((1.0, 1.0, 0.02), material(11.0), 400_000, 500_000),
     ((1.0, 1.0, 1.0), material(3.0, **FORWARDS), 400_000, 500_000),
+    ((1.0, 1.0, 1.0), material(1.0, **THIN_FORWARDS), 400_000, 500_000),
+    ((1.0, 1.0, 0.02), material(1.0, **THIN_FORWARDS), 400_000, 500_000),
     ((1.0, 1.0, 1.0), coloured(3.0), 400_000, 500_000),
     ((1.0, 0.33, 0.33), coloured(6.3), 400_000, 500_000),
     ((1.0, 1.0, 0.02), coloured(11.0), 400_000, 500_000),
@@ -261,8 +265,8 @@ def coloured(scale, **parameters):
     ((1.0, 1.0, 1.0), coloured(1.0), 400_000, 500_000),
     ((1.0, 1.0, 0.02), coloured(1.0, g=0.3), 400_000, 500_000),
     ((1.0, 1.0, 1.0), coloured(6.0), 400_000, 500_000),
-], ids=["cube", "long", "flat", "forwards", "coloured", "coloured long", "coloured flat", "coloured forwards",
-        "coloured thin", "coloured thin flat forwards", "coloured thickest"])
+], ids=["cube", "long", "flat", "forwards", "thin forwards", "flat forwards", "coloured", "coloured long",
+        "coloured flat", "coloured forwards", "coloured thin", "coloured thin flat forwards", "coloured thickest"])
 def test_what_a_grain_is_stored_in_takes_half_a_megabyte(cube, stretch, grain, least, most):
     transform = numpy.diag((*stretch, 1.0))
     light = native.DirectionalLight(LIGHTS["side"], (1.0,) * 3)
