@@ -61,6 +61,7 @@ transport::Lamp lamp_of(const scene::DirectionalLight& sun, const glm::dmat3& gr
     const lights::LightDraw drawn = lights::sample(sun, place, random);
     return transport::LampRay{grain_to_prototype * drawn.to_light, 1.0, drawn.reach};
   };
+  lamp.far = true;
   return lamp;
 }
 

@@ -78,7 +78,7 @@ void extrapolate(const Nodes& nodes, const glm::ivec3& node, float spacing, Entr
     const glm::ivec3 near = node + glm::ivec3(i % 3, i / 3 % 3, i / 9) - 1;
     if (!nodes.inside(near)) continue;
     const int other = nodes.used(near);
-    const float depth = nodes.depth_of(other);
+    const float depth = nodes.depth_of(other) - nodes.depth_of(self);
     if (depth < straight_below * glm::distance(nodes.place_of(other), nodes.place_of(self))) continue;
     below.push_back({other, depth});
     squares += depth * depth;

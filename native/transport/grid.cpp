@@ -16,11 +16,11 @@ namespace mesograin::transport {
 namespace {
 
 // Where a place counts as being on the surface.
-constexpr float below = 1e-4F;
+constexpr float on_surface_below = 1e-4F;
 
 // From the surface's nearest point into the body, at edges and corners too.
 glm::vec3 inwards(const Nearest& surface, const glm::vec3& place, bool inside) {
-  if (surface.distance > 0.1F * below)
+  if (surface.distance > 0.1F * on_surface_below)
     return (inside ? place - surface.point : surface.point - place) / surface.distance;
   // Nodes on the surface lie on the box, whose middle is the origin.
   return glm::normalize(-surface.normal - 0.5F * place);
@@ -28,7 +28,7 @@ glm::vec3 inwards(const Nearest& surface, const glm::vec3& place, bool inside) {
 
 }  // namespace
 
-Grid::Grid(const Body& body, int nodes, Spacing spacing, int most_nodes, const Effort& effort) {
+Grid::Grid(const Body& body, int nodes, Spacing spacing, int most_nodes, const Effort& effort, float least_depth) {
   const glm::vec3 extent = glm::max(body.upper() - body.lower(), glm::vec3(1e-4F));
   const glm::vec3 shares = spacing == Spacing::even ? extent : glm::sqrt(extent);
   const glm::vec3 steps = shares * std::cbrt(static_cast<float>(nodes) / (shares.x * shares.y * shares.z));
@@ -50,6 +50,7 @@ Grid::Grid(const Body& body, int nodes, Spacing spacing, int most_nodes, const E
   std::vector<float> distances(count);  // from the surface, negative inside
   used_.assign(count, -1);
   std::vector<glm::vec3> nearest(count);
+  const float below = std::max(least_depth * std::min({spacing_.x, spacing_.y, spacing_.z}), on_surface_below);
   run_pieces(effort, static_cast<std::size_t>(size_.z), [&](std::size_t z) {
     for (std::size_t i = z * plane; i < (z + 1) * plane; ++i) {
       const glm::ivec3 node(static_cast<int>(i % static_cast<std::size_t>(size_.x)),
@@ -66,7 +67,7 @@ Grid::Grid(const Body& body, int nodes, Spacing spacing, int most_nodes, const E
     if (distances[i] >= diagonal) continue;
     used_[i] = static_cast<int>(places_.size());
     places_.push_back(nearest[i]);
-    depths_.push_back(std::max(-distances[i], 0.0F));
+    depths_.push_back(std::max(-distances[i], below));
   }
   list_cells();
   measure_volumes(body);

@@ -23,12 +23,13 @@ struct Corner {
 enum class Spacing { even, nearer_across };
 
 /// Corner nodes lie on the body's box. Used are all nodes of cells that the body reaches into; those that lie outside
-/// it stand for the point of its surface that is nearest to them.
+/// it stand for a place below the point of its surface that is nearest to them.
 class Grid {
  public:
-  /// About `nodes` spaces between them in the body's box, and no more than `most_nodes` of them.
+  /// About `nodes` spaces between them in the body's box, and no more than `most_nodes` of them. No place is nearer to
+  /// the surface than `least_depth` of such a space.
   Grid(const Body& body, int nodes, Spacing spacing = Spacing::even, int most_nodes = std::numeric_limits<int>::max(),
-       const Effort& effort = {});
+       const Effort& effort = {}, float least_depth = 0.0F);
 
   const glm::ivec3& size() const { return size_; }
   const glm::vec3& lower() const { return lower_; }

@@ -21,6 +21,8 @@ struct Lamp {
   std::function<LampRay(const glm::dvec3& place, const glm::dvec2& random)> at;
 
   std::string about;  ///< lines of text that tell it from all others
+
+  bool far = false;  ///< a sun: of the place `at` makes nothing
 };
 
 }  // namespace mesograin::transport

@@ -11,6 +11,7 @@
 
 #include "physics/physics.h"
 #include "transport/octahedron.h"
+#include "transport/scattered_once.h"
 #include "transport/terms.h"
 
 namespace mesograin::transport {
@@ -31,14 +32,17 @@ void make_lobes_at_most_one(SharedTerms& terms) {
 }
 
 // Light that was scattered before falls off towards the surface within less than a thick grain's cell, more steeply the
-// nearer; what is left of it beside that of light that is even everywhere hardly does, and is linear between nodes.
+// nearer; what is left of it beside that of light that is even everywhere hardly does. That is what is told, by nodes
+// that it is linear between.
 float share_below(const Grid& grid, Eigen::Index node, double sigma_t) {
   return static_cast<float>(
       physics::scattered_share_below(sigma_t * static_cast<double>(grid.depths()[static_cast<std::size_t>(node)])));
 }
 
-void divide_by_share_below(Lights& sources, const Grid& grid, double sigma_t) {
-  for (Eigen::Index row = 0; row < sources.rows(); ++row) sources.row(row) /= share_below(grid, row, sigma_t);
+BetweenNodes over_share_below(const Grid& grid, double sigma_t) {
+  Eigen::VectorXf over(static_cast<Eigen::Index>(grid.depths().size()));
+  for (Eigen::Index row = 0; row < over.size(); ++row) over[row] = 1.0F / share_below(grid, row, sigma_t);
+  return between_nodes(grid) * over.asDiagonal();
 }
 
 // Beside its own share, of which each channel is told, light has what another channel's fall leaves of it.
@@ -131,7 +135,7 @@ StoredTransport transport_by(const Walks& walks, const StoredMedium& medium, con
   SharedTerms terms = shared_terms(walks.sights(shared_sigma_t), of_channels);
   make_lobes_at_most_one(terms);
   terms.amounts *= static_cast<float>(most_albedo);
-  if (!stored.has_unscattered) divide_by_share_below(terms.amounts, grid, shared_sigma_t);
+  if (!stored.has_unscattered) terms.amounts = Lights(over_share_below(grid, shared_sigma_t) * terms.amounts);
   for (std::size_t term = 0; term < static_cast<std::size_t>(stored.terms); ++term) {
     const auto column = static_cast<Eigen::Index>(term);
     put_sources(term, terms.amounts.col(column), grid, stored);
@@ -143,29 +147,55 @@ StoredTransport transport_by(const Walks& walks, const StoredMedium& medium, con
   return stored;
 }
 
+/// Where nothing refracts, of a sun: in each channel what it is after any number of scatterings, but the last albedo.
+Lights light_of_sun(const Walks& walks, const StoredMedium& medium, const Lamp& sun, const Effort& effort) {
+  const std::vector<double> extinctions = extinctions_of(medium);
+  Lights light = scattered_once(walks.body(), walks.grid(), extinctions, sun, part_of(effort, 0.0, 0.5));
+  for (Eigen::Index channel = 0; channel < light.cols(); ++channel) {
+    const double sigma_t = extinctions[static_cast<std::size_t>(channel)];
+    const double albedo = medium.albedo[static_cast<int>(channel)];
+    // Light is exchanged as it is told, so that none is lost: a little at each scattering would be much in the end.
+    const BetweenNodes over_share = over_share_below(walks.grid(), sigma_t);
+    const Lights first = static_cast<float>(albedo) * light.col(channel);
+    light.col(channel) = over_share * solve_multiple(walks.exchange_of_scattered(sigma_t), over_share, albedo, first,
+                                                     part_of(effort, 0.5, 1.0));
+  }
+  return light;
+}
+
+/// The same of any lamp.
+Lights light_of_lamp(const Walks& walks, const StoredMedium& medium, const Lamp& lamp, const Effort& effort) {
+  const Grid& grid = walks.grid();
+  const std::vector<double> extinctions = extinctions_of(medium);
+  const BetweenNodes between = between_nodes(grid);
+  Lights light = walks.unscattered(extinctions, lamp, part_of(effort, 0.0, 0.5));
+  for (Eigen::Index channel = 0; channel < light.cols(); ++channel) {
+    const double sigma_t = extinctions[static_cast<std::size_t>(channel)];
+    const Lights first = light.col(channel);
+    const Lights all = solve_multiple(walks.exchange(sigma_t), between, medium.albedo[static_cast<int>(channel)], first,
+                                      part_of(effort, 0.5, 1.0));
+    if (medium.eta == 1.0)
+      light.col(channel) = over_share_below(grid, sigma_t) * (all - first);
+    else
+      light.col(channel) = beyond_surface(grid) * all;
+  }
+  return light;
+}
+
 // As transport_by has it, of one column for each channel.
 StoredTransport lamp_transport(const Walks& walks, const StoredMedium& medium, const Lamp& lamp, const Effort& effort) {
   const Grid& grid = walks.grid();
   StoredTransport stored = without_light(walks, medium, medium.grey() ? 1 : 3);
-  const std::vector<double> extinctions = extinctions_of(medium);
-  if (extinctions.empty()) return stored;
-  const BetweenNodes between = between_nodes(grid);
-  const Lights columns = walks.unscattered(extinctions, lamp, part_of(effort, 0.0, 0.5));
+  if (medium.albedo == glm::dvec3(0.0)) return stored;  // clear: nothing is scattered
+  Lights light = medium.eta == 1.0 && lamp.far ? light_of_sun(walks, medium, lamp, effort)
+                                               : light_of_lamp(walks, medium, lamp, effort);
   const auto channels = static_cast<std::size_t>(stored.channels);
   for (std::size_t channel = 0; channel < channels; ++channel) {
-    const double sigma_t = extinctions[channel];
-    const double albedo = medium.albedo[static_cast<int>(channel)];
-    const Lights first = columns.col(static_cast<Eigen::Index>(channel));
-    Lights light = solve_multiple(walks.exchange(sigma_t), between, albedo, first, part_of(effort, 0.5, 1.0));
-    if (stored.has_unscattered)
-      light = Lights(beyond_surface(grid) * light);
-    else
-      light -= first;
-    light *= static_cast<float>(albedo);
-    if (!stored.has_unscattered) divide_by_share_below(light, grid, sigma_t);
-    const float most = light.cwiseAbs().maxCoeff();
+    auto column = light.col(static_cast<Eigen::Index>(channel));
+    column *= static_cast<float>(medium.albedo[static_cast<int>(channel)]);
+    const float most = column.cwiseAbs().maxCoeff();
     if (!(most > 0.0F)) continue;
-    put_sources(channel, light / most, grid, stored);
+    put_sources(channel, column / most, grid, stored);
     for (std::size_t texel = 0; texel < octahedron_texels; ++texel)
       stored.lobes[stored.lobe(channel, texel, channel)] = most;
   }

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <glm/common.hpp>
 #include <limits>
 
 namespace mesograin::transport {
@@ -28,6 +29,20 @@ std::vector<float> surface_distances(const Body& body, const Grid& grid, const E
     }
   });
   return distances;
+}
+
+float distance_at(const Grid& grid, const std::vector<float>& distances, const glm::vec3& place) {
+  const glm::ivec3 size = surface_size(grid.size());
+  const glm::vec3 scaled = (place - grid.lower()) / grid.spacing() * static_cast<float>(surface_finer);
+  const glm::ivec3 low = glm::clamp(glm::ivec3(scaled), glm::ivec3(0), size - 2);
+  const glm::vec3 along = glm::clamp(scaled - glm::vec3(low), 0.0F, 1.0F);
+  const auto in_row = [&](int y, int z) {
+    const int first = ((low.z + z) * size.y + low.y + y) * size.x + low.x;
+    const float* row = &distances[static_cast<std::size_t>(first)];
+    return glm::mix(row[0], row[1], along.x);
+  };
+  return glm::mix(glm::mix(in_row(0, 0), in_row(1, 0), along.y), glm::mix(in_row(0, 1), in_row(1, 1), along.y),
+                  along.z);
 }
 
 }  // namespace mesograin::transport

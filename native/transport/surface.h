@@ -20,4 +20,7 @@ inline glm::ivec3 surface_size(const glm::ivec3& size) { return surface_finer * 
 /// The distance from the surface at each of them, negative inside; x runs fastest.
 std::vector<float> surface_distances(const Body& body, const Grid& grid, const Effort& effort);
 
+/// The same at a place in the body's box, as it is drawn: linear between nodes.
+float distance_at(const Grid& grid, const std::vector<float>& distances, const glm::vec3& place);
+
 }  // namespace mesograin::transport

@@ -19,6 +19,11 @@ constexpr int solved_a_stored = 2;
 // Steps of the ladder from one that was traced to the farthest that it nearly tells, and a little for rounding.
 constexpr double farthest_told = 1.01;
 
+// Where nothing refracts, as deep are places of nodes on the surface and beyond it, in spaces between nodes: what was
+// scattered before rises steeply right below the surface, or falls where light grazes it, and a line from there through
+// the next node is about right in the mean over the way to it, for both.
+constexpr float matched_depth = 0.2F;
+
 // All of a lamp's light is one column, in which nothing else smooths noise.
 constexpr int lamp_rays = 1 << 17;
 
@@ -41,7 +46,8 @@ Walks::Walks(std::shared_ptr<const Body> body, const Interface& interface, const
     : body_(std::move(body)),
       interface_(interface),
       quality_(quality),
-      grid_(*body_, quality.nodes, quality.spacing, quality.most_nodes, part_of(effort, 0.0, 0.5)),
+      grid_(*body_, quality.nodes, quality.spacing, quality.most_nodes, part_of(effort, 0.0, 0.5),
+            interface.matched() ? matched_depth : 0.0F),
       surface_(surface_distances(*body_, grid_, part_of(effort, 0.5, 1.0))) {}
 
 void Walks::trace(const std::vector<double>& extinctions, const Effort& effort) {
@@ -69,7 +75,7 @@ void Walks::trace(const std::vector<double>& extinctions, const Effort& effort) 
   };
   unscattered_light(*body_, grid_, interface_, all, quality_.light_across, keep, part_of(effort, 0.0, 0.7));
   std::vector<TracedExchange> exchanges =
-      trace_exchange(*body_, grid_, interface_, missing, quality_.way_across, part_of(effort, 0.7, 1.0));
+      trace_exchange(*body_, grid_, interface_, missing, quality_.way_across, surface_, part_of(effort, 0.7, 1.0));
   for (std::size_t i = 0; i < missing.size(); ++i) {
     Step& step = steps[i];
     step.exchange = std::move(exchanges[i]);
@@ -149,6 +155,8 @@ Lights Walks::unscattered(double sigma_t, const Effort& effort) const {
 
 Exchange Walks::exchange(double sigma_t) const { return step(sigma_t).exchange.at(sigma_t); }
 
+Exchange Walks::exchange_of_scattered(double sigma_t) const { return step(sigma_t).exchange.of_scattered(sigma_t); }
+
 std::size_t Walks::bytes() const {
   std::size_t sum = surface_.size() * sizeof(float);
   for (const auto& [sigma_t, step] : steps_) {
@@ -158,7 +166,7 @@ std::size_t Walks::bytes() const {
     sum += of_lobes * sizeof(float) + of_sights * (sizeof(float) + sizeof(int));
     sum += (step.exchange.distances.size() + traced.values.size() + traced.columns.size()) * sizeof(float) +
            (step.light.size() + step.exchange.escapes.size()) * sizeof(Logarithm) +
-           traced.first.size() * sizeof(std::size_t);
+           step.exchange.shares.size() * sizeof(Share) + traced.first.size() * sizeof(std::size_t);
   }
   return sum;
 }

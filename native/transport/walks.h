@@ -56,6 +56,7 @@ class Walks {
   Lights unscattered(const std::vector<double>& extinctions, const Lamp& lamp, const Effort& effort = {}) const;
 
   Exchange exchange(double sigma_t) const;
+  Exchange exchange_of_scattered(double sigma_t) const;  ///< TracedExchange::of_scattered
 
   /// What is seen, and by which lobes light that is scattered once is told: of the ladder's step, for they say but what
   /// matters.

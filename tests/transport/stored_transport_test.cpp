@@ -8,6 +8,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <memory>
+#include <numeric>
 
 #include "scene/sphere.h"
 #include "shapes.h"
@@ -36,7 +37,11 @@ std::vector<float> under_even_light(const StoredTransport& stored, const Walks& 
   for (std::size_t node = 0; node < stored.nodes(); ++node) {
     if (grid.used()[node] < 0) continue;
     const auto used = static_cast<std::size_t>(grid.used()[node]);
-    if (!(grid.depths()[used] > 0.0F)) continue;
+    const auto place = static_cast<int>(node);
+    const glm::vec3 own = stored.lower + glm::vec3(place % stored.size.x, place / stored.size.x % stored.size.y,
+                                                   place / (stored.size.x * stored.size.y)) *
+                                             stored.spacing;
+    if (glm::distance(own, grid.places()[used]) > 0.0F) continue;
     double source = stored.has_unscattered ? 0.0 : exchange.escape[used];
     // What was scattered before is stored over 1 - E_2/2 of the depth (Abramowitz & Stegun 5.1.14).
     const double depth = std::max(sigma_t * static_cast<double>(grid.depths()[used]), 1e-9);
@@ -117,8 +122,8 @@ TEST(StoredTransport, ReusesItsWalksForOtherColours) {
     const StoredMedium medium{glm::dvec3(step * change), glm::dvec3(0.95), 1.3};
     compute_transport(walks, medium);
     EXPECT_EQ(walks.bytes(), known) << "nothing was traced";
-    const TracedExchange fresh =
-        trace_exchange(*body, walks.grid(), Interface(1.3), {step * change}, coarse.way_across, Effort{.seed = 7})[0];
+    const TracedExchange fresh = trace_exchange(*body, walks.grid(), Interface(1.3), {step * change}, coarse.way_across,
+                                                walks.surface(), Effort{.seed = 7})[0];
     const Exchange near = walks.exchange(step * change);
     double difference = 0.0, sum = 0.0;
     for (std::size_t row = 0; row < near.rows(); ++row) {
@@ -137,6 +142,32 @@ TEST(StoredTransport, ReusesItsWalksForOtherColours) {
   // The same medium, whatever was asked for before.
   const StoredMedium medium{glm::dvec3(1.1 * step), glm::dvec3(0.95), 1.3};
   EXPECT_EQ(compute_transport(walks, medium).sources, compute_transport(*body, medium, coarse).sources);
+}
+
+// The same of what is scattered again where nothing refracts, with its share below the surface.
+TEST(StoredTransport, ReusesItsSharesForOtherColours) {
+  const auto body = std::make_shared<const Body>(cube());
+  Walks walks(body, Interface(1.0), coarse, {});
+  const double step = nearest_step(5.0);
+  walks.trace({step}, {});
+  for (const double change : {0.83, 1.0, 1.2}) {
+    const TracedExchange fresh = trace_exchange(*body, walks.grid(), Interface(1.0), {step * change}, coarse.way_across,
+                                                walks.surface(), Effort{.seed = 7})[0];
+    const Exchange ours = walks.exchange_of_scattered(step * change);
+    const Exchange theirs = fresh.of_scattered(step * change);
+    double difference = 0.0, sum = 0.0;
+    for (std::size_t row = 0; row < ours.rows(); ++row) {
+      const auto of_row = [row](const Exchange& exchange) {
+        return std::accumulate(exchange.values.begin() + static_cast<std::ptrdiff_t>(exchange.first[row]),
+                               exchange.values.begin() + static_cast<std::ptrdiff_t>(exchange.first[row + 1]), 0.0);
+      };
+      difference += std::abs(of_row(ours) - of_row(theirs));
+      sum += of_row(theirs);
+      // All but what comes straight, and what was scattered once of that.
+      EXPECT_LT(of_row(theirs), 1.0F - theirs.escape[row]);
+    }
+    EXPECT_LT(difference / sum, 0.02) << change;
+  }
 }
 
 // While a slider is dragged, walks that were traced a step of the ladder from there tell what is seen about as well as
@@ -196,7 +227,7 @@ TEST(StoredTransport, FallsOffAsFastBetweenNodesFarApart) {
   const Body body(scene::unit_sphere(32, 16));
   const auto in_the_middle = [&](int nodes) {
     const Grid grid(body, nodes);
-    const Exchange exchange = trace_exchange(body, grid, Interface(1.3), {sigma_t}, 16, {})[0].traced;
+    const Exchange exchange = trace_exchange(body, grid, Interface(1.3), {sigma_t}, 16, {}, {})[0].traced;
     Lights lit(static_cast<Eigen::Index>(exchange.rows()), 1);
     for (std::size_t node = 0; node < exchange.rows(); ++node)
       lit(static_cast<Eigen::Index>(node), 0) = exchange.escape[node];

@@ -33,18 +33,6 @@ class SurfaceTest : public testing::Test {
     return grid_->lower() + node * grid_->spacing() / static_cast<float>(surface_finer);
   }
 
-  float between(const glm::vec3& node) const {
-    const glm::ivec3 low = glm::min(glm::ivec3(node), size_ - 2);
-    const glm::vec3 along = node - glm::vec3(low);
-    float sum = 0.0F;
-    for (int corner = 0; corner < 8; ++corner) {
-      const glm::ivec3 step(corner & 1, corner >> 1 & 1, corner >> 2);
-      const glm::vec3 weights = glm::mix(1.0F - along, along, glm::vec3(step));
-      sum += weights.x * weights.y * weights.z * at(low + step);
-    }
-    return sum;
-  }
-
   float true_distance(const glm::vec3& where) const {
     const float distance = body_->nearest(where).distance;
     return body_->contains(where) ? -distance : distance;
@@ -72,7 +60,7 @@ TEST_F(SurfaceTest, CornersAreSharperThanTheLightsNodesWouldTell) {
   float worst = 0.0F;
   for (int i = 0; i < 20000; ++i) {
     const glm::vec3 node = glm::vec3(random.uniform(), random.uniform(), random.uniform()) * glm::vec3(size_ - 1);
-    worst = std::max(worst, std::abs(between(node) - true_distance(place(node))));
+    worst = std::max(worst, std::abs(distance_at(*grid_, distances_, place(node)) - true_distance(place(node))));
   }
   EXPECT_LT(worst, 0.2F * grid_->spacing().x);
 }
