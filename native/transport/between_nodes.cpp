@@ -1,6 +1,6 @@
 // Two corrections. A line between two nodes lies h^2 f''/12 above f in the mean: light that falls off within few
 // spacings would reach too far at each scattering. And a node beyond the surface knows the light at the surface's
-// nearest point, as if it were that far out: light is taken to go on there as it rises below.
+// nearest point, or a little below, as if it were that far out: light is taken to go on there as it rises below.
 #include "transport/between_nodes.h"
 
 #include <cmath>

@@ -18,7 +18,7 @@ namespace mesograin::transport {
 namespace {
 
 // Rays from each node, squared, and places along each.
-constexpr int rays_back_across = 9;
+constexpr int rays_back_across = 8;
 constexpr int places_a_ray = 4;
 
 // Points of a sun that are told apart, squared, if they do not all lie within an angle of this cosine, about a degree.
