@@ -39,10 +39,10 @@ float share_below(const Grid& grid, Eigen::Index node, double sigma_t) {
       physics::scattered_share_below(sigma_t * static_cast<double>(grid.depths()[static_cast<std::size_t>(node)])));
 }
 
-BetweenNodes over_share_below(const Grid& grid, double sigma_t) {
+Eigen::DiagonalMatrix<float, Eigen::Dynamic> over_share_below(const Grid& grid, double sigma_t) {
   Eigen::VectorXf over(static_cast<Eigen::Index>(grid.depths().size()));
   for (Eigen::Index row = 0; row < over.size(); ++row) over[row] = 1.0F / share_below(grid, row, sigma_t);
-  return between_nodes(grid) * over.asDiagonal();
+  return Eigen::DiagonalMatrix<float, Eigen::Dynamic>(over);
 }
 
 // Beside its own share, of which each channel is told, light has what another channel's fall leaves of it.
@@ -155,7 +155,7 @@ Lights light_of_sun(const Walks& walks, const StoredMedium& medium, const Lamp& 
     const double sigma_t = extinctions[static_cast<std::size_t>(channel)];
     const double albedo = medium.albedo[static_cast<int>(channel)];
     // Light is exchanged as it is told, so that none is lost: a little at each scattering would be much in the end.
-    const BetweenNodes over_share = over_share_below(walks.grid(), sigma_t);
+    const BetweenNodes over_share = between_nodes(walks.grid()) * over_share_below(walks.grid(), sigma_t);
     const Lights first = static_cast<float>(albedo) * light.col(channel);
     light.col(channel) = over_share * solve_multiple(walks.exchange_of_scattered(sigma_t), over_share, albedo, first,
                                                      part_of(effort, 0.5, 1.0));
