@@ -16,6 +16,7 @@
 #include "base/file.h"
 #include "shapes.h"
 #include "transport/octahedron.h"
+#include "transport/surface.h"
 #include "transport/transport_file.h"
 
 namespace mesograin::transport {
@@ -40,7 +41,8 @@ class WorksTest : public testing::Test {
     stored.size = glm::ivec3(2);
     stored.terms = 4;
     stored.channels = 1;
-    stored.distances.assign(27, 0.5F);
+    const auto surface_nodes = static_cast<std::size_t>(surface_size(stored.size).x);
+    stored.distances.assign(surface_nodes * surface_nodes * surface_nodes, 0.5F);
     stored.sources.assign(32, 0.25F);
     stored.lobes.assign(4 * octahedron_texels, 1.0F);
     return stored;
