@@ -21,9 +21,13 @@ Across across(vec3 to_light) {
 // Layers of lights, a texel a line: where along it, from the box's middle towards the light, it is inside the grain: from x to y, and from z to w.
 uniform sampler3D light_lines;
 
-float inside_from(float along, vec4 line) { return max(line.y - max(line.x, along), 0.0) + max(line.w - max(line.z, along), 0.0); }
+// x: how much of it is inside from there on, y: whether it meets the grain at all; times a share.
+vec2 inside_from(float along, vec4 line, float share) {
+  float way = max(line.y - max(line.x, along), 0.0) + max(line.w - max(line.z, along), 0.0);
+  return line.y > line.x ? share * vec2(way, 1.0) : vec2(0.0);
+}
 
-// How much of the straight line to a light is inside the grain, in the mean of the four lines beside it.
+// How much of the straight line to a light is inside the grain, in the mean of those of the four lines beside it that meet it.
 float way_of_light(vec3 place, vec3 to_light, int light) {
   vec3 from_middle = place - stored.lower - half_box();
   Across lines = across(to_light);
@@ -32,11 +36,10 @@ float way_of_light(vec3 place, vec3 to_light, int light) {
   ivec2 line = clamp(ivec2(at), ivec2(0), ivec2(last - 1));
   vec2 share = clamp(at - vec2(line), vec2(0.0), vec2(1.0));
   float along = dot(from_middle, to_light);
-  vec2 ways = mix(vec2(inside_from(along, texelFetch(light_lines, ivec3(line, light), 0)),
-                       inside_from(along, texelFetch(light_lines, ivec3(line.x, line.y + 1, light), 0))),
-                  vec2(inside_from(along, texelFetch(light_lines, ivec3(line.x + 1, line.y, light), 0)),
-                       inside_from(along, texelFetch(light_lines, ivec3(line.x + 1, line.y + 1, light), 0))),
-                  share.x);
-  return mix(ways.x, ways.y, share.y);
+  vec2 sum = inside_from(along, texelFetch(light_lines, ivec3(line, light), 0), (1.0 - share.x) * (1.0 - share.y));
+  sum += inside_from(along, texelFetch(light_lines, ivec3(line.x + 1, line.y, light), 0), share.x * (1.0 - share.y));
+  sum += inside_from(along, texelFetch(light_lines, ivec3(line.x, line.y + 1, light), 0), (1.0 - share.x) * share.y);
+  sum += inside_from(along, texelFetch(light_lines, ivec3(line.x + 1, line.y + 1, light), 0), share.x * share.y);
+  return sum.x / max(sum.y, 1e-9);
 }
 #endif

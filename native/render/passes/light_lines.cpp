@@ -10,7 +10,7 @@ namespace {
 // Lines stand two pixels apart, a shadow's edge is not told from a straight one; of a small picture they are as many
 // as tell how long the ways near the grain's rim are.
 constexpr double pixels_a_line = 2.0;
-constexpr int fewest_lines = 96;
+constexpr int fewest_lines = 160;
 constexpr int most_lines = 384;
 constexpr int lines_step = 32;  // a picture that grows a little has as many
 
