@@ -424,7 +424,7 @@ const gl::Program& DeviceCache::shading(const DeviceMaterial& material, const Sh
   if (shading.stored_lights) defines.emplace_back("STORED_LIGHTS");
   if (shading.stored_lamps) defines.emplace_back("STORED_LAMPS");
   if (shading.summed) defines.emplace_back("SUMMED");
-  if (shading.summed && !material.has("REFRACTION")) defines.emplace_back("LIGHT_LINES");
+  if (shading.light_lines) defines.emplace_back("LIGHT_LINES");
   if (shading.together) defines.emplace_back("TOGETHER");
   if (shading.portion) defines.push_back(portion_define(*shading.portion));
   return program(fmt::format("{} {} {}", pass, model, fmt::join(defines, " ")), gl::ShaderSource({vertex}, {}),

@@ -54,6 +54,7 @@ struct Shading {
   bool stored_lamps = false;      ///< and of some that have a place
   bool summed = false;            ///< what is stored of a prototype was summed for each light
   bool together = false;          ///< and for all of them together
+  bool light_lines = false;       ///< lines tell how far light that nothing has scattered has come
   std::optional<Portion> portion{};  ///< told alone
 };
 

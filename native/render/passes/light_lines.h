@@ -13,9 +13,13 @@ namespace mesograin::render {
 
 class LightLines {
  public:
-  /// For lights that are bound as storage, and a grain that so many pixels show.
+  /// How many stand side by side in a grain that so many pixels show: 0 where light does not go straight in it, or
+  /// where they cost more than that each pixel follows it.
+  static int across(const DeviceMaterial& material, double pixels);
+
+  /// So many squared for each of the lights that are bound as storage.
   void cut(DeviceCache& cache, const DeviceMaterial& material, const glm::mat3& grain_to_prototype, std::size_t lights,
-           double pixels);
+           int across);
 
   /// To a program that is compiled for them.
   void bind(const gl::Program& program) const { program.set("light_lines", *lines_); }

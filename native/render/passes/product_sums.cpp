@@ -51,17 +51,19 @@ bool ProductSums::can_be_together(const DeviceMaterial& material, std::size_t li
 
 bool ProductSums::hold(const Of& of) const {
   return sums_ && of_.material.lock() == of.material.lock() && of_.version == of.version &&
-         of_.stored_lights == of.stored_lights && of_.grain_to_prototype == of.grain_to_prototype &&
-         of_.to_lights == of.to_lights && of_.irradiances == of.irradiances;
+         of_.stored_lights == of.stored_lights && of_.lines == of.lines &&
+         of_.grain_to_prototype == of.grain_to_prototype && of_.to_lights == of.to_lights &&
+         of_.irradiances == of.irradiances;
 }
 
-void ProductSums::sum(const Sample& sample, const Draw& draw, std::optional<std::size_t> stored, double pixels,
+void ProductSums::sum(const Sample& sample, const Draw& draw, std::optional<std::size_t> stored, int lines,
                       bool together) {
   const DeviceMaterial& material = *draw.material;
   const std::vector<LightDirection>& lights = sample.lights.distant;
   Of of{draw.material,
         material.version(),
         stored ? sample.stored_lights.version(*stored) : 0,
+        lines,
         glm::mat3(draw.grain_to_prototype),
         {},
         {}};
@@ -81,8 +83,7 @@ void ProductSums::sum(const Sample& sample, const Draw& draw, std::optional<std:
     tracks_.trace(sample.cache, material, nodes, of.grain_to_prototype, lights.size(), together,
                   static_cast<int>(sample.index));
   if (held) return;
-  straight_ = !material.has("REFRACTION");
-  if (straight_) lines_.cut(sample.cache, material, of.grain_to_prototype, lights.size(), pixels);
+  if (lines > 0) lines_.cut(sample.cache, material, of.grain_to_prototype, lights.size(), lines);
 
   const std::size_t sums = together ? 1 : lights.size();
   const GLenum format = material.has("GREY") && !together ? GL_R32F : GL_RGBA32F;
@@ -101,7 +102,7 @@ void ProductSums::sum(const Sample& sample, const Draw& draw, std::optional<std:
 void ProductSums::bind(const gl::Program& program) const {
   program.set("summed", *sums_);
   if (tracked_) tracks_.bind(program);
-  if (straight_) lines_.bind(program);
+  if (of_.lines > 0) lines_.bind(program);
 }
 
 }  // namespace mesograin::render

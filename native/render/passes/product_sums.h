@@ -1,5 +1,5 @@
 // Stored transport under the very lights of a sample: what pixels would each sum anew is summed once at its nodes, and
-// light that nothing has scattered is followed into the grain once, where it goes straight or walks ask for it.
+// light that nothing has scattered is followed into the grain once, where walks ask for it or it goes straight.
 #pragma once
 
 #include <cstddef>
@@ -31,9 +31,9 @@ class ProductSums {
   static bool can_be_together(const DeviceMaterial& material, std::size_t lights);
 
   /// For a draw that they pay for, if it, its turn or a light is another than the last time; what is followed, anew in
-  /// every sample. `stored`: the draw's number if what single lights do in it is stored or will be; so many `pixels`
-  /// show it. Binds textures of its own: a program's come after.
-  void sum(const Sample& sample, const Draw& draw, std::optional<std::size_t> stored, double pixels, bool together);
+  /// every sample. `stored`: the draw's number if what single lights do in it is stored or will be; `lines`:
+  /// how many tell of light that goes straight, side by side, or 0. Binds textures of its own: a program's come after.
+  void sum(const Sample& sample, const Draw& draw, std::optional<std::size_t> stored, int lines, bool together);
 
   /// To a program that is compiled for them.
   void bind(const gl::Program& program) const;
@@ -44,6 +44,7 @@ class ProductSums {
     std::weak_ptr<const DeviceMaterial> material;
     int version = 0;
     int stored_lights = 0;  // StoredLights::version
+    int lines = 0;          // LightLines::across
     glm::mat3 grain_to_prototype{0.0F};
     std::vector<glm::vec3> to_lights;
     std::vector<glm::vec3> irradiances;  // if they are summed together
@@ -54,8 +55,7 @@ class ProductSums {
   Of of_;
   std::optional<gl::Buffer> directions_;
   std::optional<gl::Volume> sums_;
-  bool tracked_ = false;  // light that nothing has scattered; else lines tell of it, if it goes straight
-  bool straight_ = false;
+  bool tracked_ = false;
   LightTracks tracks_;
   LightLines lines_;
 };

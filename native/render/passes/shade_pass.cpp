@@ -278,7 +278,11 @@ const gl::Program& ShadePass::prepare(const Sample& sample, std::size_t unit, Sh
   shading.together =
       shading.summed && nothing_stands_in_light && ProductSums::can_be_together(material, sample.lights.distant.size());
   const bool stored = draw != nullptr && scene::traits_of(material.model()).mesh && sample.stored_lights.any(number);
-  if (shading.summed) sums_.sum(sample, *draw, stored ? std::optional(number) : std::nullopt, pixels, shading.together);
+  if (shading.summed) {
+    const int lines = LightLines::across(material, pixels);
+    shading.light_lines = lines > 0;
+    sums_.sum(sample, *draw, stored ? std::optional(number) : std::nullopt, lines, shading.together);
+  }
   shading.stored_lights = stored && !shading.summed;
   shading.stored_lamps = shading.stored_lights && sample.stored_lights.any_lamps(number);
   const gl::Program& program = sample.cache.shading(material, shading);
