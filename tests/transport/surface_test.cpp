@@ -53,6 +53,21 @@ TEST_F(SurfaceTest, NodesAreAsFarFromItAsTheyAreToldByNeighbours) {
         EXPECT_NEAR(at({x, y, z}), true_distance(place({x, y, z})), 1e-5F) << x << " " << y << " " << z;
 }
 
+TEST_F(SurfaceTest, NodesDeepBelowItAreToldByThoseAround) {
+  lay_out(cube(), 512);
+  const float spacing = grid_->spacing().x / static_cast<float>(surface_finer);
+  int told = 0;
+  for (int z = 0; z < size_.z; ++z)
+    for (int y = 0; y < size_.y; ++y)
+      for (int x = 0; x < size_.x; ++x) {
+        const float distance = true_distance(place({x, y, z}));
+        const bool near = std::abs(distance) < 2.0F * spacing;
+        EXPECT_NEAR(at({x, y, z}), distance, near ? 1e-5F : spacing) << x << " " << y << " " << z;
+        told += std::abs(at({x, y, z}) - distance) > 1e-5F ? 1 : 0;
+      }
+  EXPECT_GT(told, 100);
+}
+
 // In the cell at a cube's corner what is linear between nodes is 3/8 of their spacing off in the middle.
 TEST_F(SurfaceTest, CornersAreSharperThanTheLightsNodesWouldTell) {
   lay_out(cube(), 512);
