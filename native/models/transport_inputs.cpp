@@ -104,6 +104,13 @@ void add_peak(double g, MaterialInputs& inputs) {
   inputs.uniforms["forward.wide_g"] = static_cast<float>(1.0 - (rest - turned) / (1.0 - peak));
 }
 
+// Light falls off more slowly in the media that stand for a walk's own after so many wide scatterings: that shows
+// through a grain of many mean free paths, for from behind a ball 20 of them across was 6 % too bright after four, and
+// 25 in its middle. What of a mean chord counts as many.
+constexpr double many_free_paths = 8.0;
+constexpr int exact_where_many = 6;
+constexpr int exact_where_few = 4;
+
 // Of the medium itself, per unit of the body.
 void add_forward(const scene::Material& material, const StoredTransport& stored, MaterialInputs& inputs) {
   const glm::dvec3 similar_albedo = stored_medium(material).albedo;
@@ -114,6 +121,9 @@ void add_forward(const scene::Material& material, const StoredTransport& stored,
   inputs.uniforms["forward.g"] = static_cast<float>(g);
   inputs.uniforms["forward.one_minus_g"] = static_cast<float>(1.0 - g);
   add_peak(g, inputs);
+  const glm::dvec3 thickness = stored.mean_chord * stored.unit * material.scale * (material.sigma_s + material.sigma_a);
+  inputs.uniforms["forward.exact_scatterings"] =
+      std::max({thickness.r, thickness.g, thickness.b}) > many_free_paths ? exact_where_many : exact_where_few;
 }
 
 using FourNumbers = std::array<float, terms_a_texel>;

@@ -23,12 +23,11 @@ struct Forward {
   float within;        // the share of scattering by less than the peak's angle
   float peak;          // the share of it that is the peak's
   float wide_g;        // of the rest
+  // Wide ones that are followed in the medium itself; from then on two of them in one medium, then two in one that scatters less often.
+  int exact_scatterings;
 };
 uniform Forward forward;
 
-// Wide ones; from then on two of them with one medium, then two with one that scatters less often. Light falls off more slowly in these: after four a
-// ball 20 mean free paths across was 6 % too bright from behind, and 25 in its middle.
-const int EXACT_SCATTERINGS = 6;
 const float LEAST_KEPT = 0.1;  // of the first direction's axis, by the mean cosine: then the stored source function tells the rest
 const int MOST_STEPS = 40;
 const float LEAST_FLIGHT = 1e-7;       // in mean free paths
@@ -166,7 +165,7 @@ Radiance walked_radiance(vec3 place, vec3 direction, vec3 to_light, int light, f
       float versine = 1.0 - dot(unscattered.back, direction);
       float phase = henyey_greenstein(versine, g, one_minus_g);
       float mean_cosine = whole && !narrow ? forward.wide_g : g;
-      bool coarser = !narrow && scatterings + 1 >= EXACT_SCATTERINGS && scatterings % 2 == 1;
+      bool coarser = !narrow && scatterings + 1 >= forward.exact_scatterings && scatterings % 2 == 1;
       // What comes from there on is told of the medium that is similar in its first moment (van de Hulst 1980, section 14.1.3).
       if (coarser) sigma_s /= 1.0 + mean_cosine;
       float wide = whole && versine < forward.peak_versine ? forward.edge : phase;

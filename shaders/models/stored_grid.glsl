@@ -15,20 +15,16 @@ float distance_at_node(vec3 node) { return texture(distances, (node + 0.5) / (st
 
 float distance_at(vec3 place) { return distance_at_node(to_surface_nodes(place)); }
 
-// Of the cell that a place is in.
+const float BESIDE = 0.2;  // a node, on either side: how the surface lies there, not in the mean of the nodes around
+
 vec3 outwards_at(vec3 place) {
   vec3 node = to_surface_nodes(place);
-  ivec3 low = min(ivec3(node), ivec3(stored.last_surface_node) - 1);
-  vec3 share = node - vec3(low);
-  vec4 near = vec4(texelFetch(distances, low, 0).r, texelFetch(distances, low + ivec3(1, 0, 0), 0).r,
-                   texelFetch(distances, low + ivec3(0, 1, 0), 0).r, texelFetch(distances, low + ivec3(1, 1, 0), 0).r);
-  vec4 far = vec4(texelFetch(distances, low + ivec3(0, 0, 1), 0).r, texelFetch(distances, low + ivec3(1, 0, 1), 0).r,
-                  texelFetch(distances, low + ivec3(0, 1, 1), 0).r, texelFetch(distances, low + ivec3(1, 1, 1), 0).r);
-  vec4 between = mix(near, far, share.z);
-  vec4 apart = far - near;
-  vec3 gradient = vec3(mix(between.y - between.x, between.w - between.z, share.y), mix(between.z - between.x, between.w - between.y, share.x),
-                       mix(mix(apart.x, apart.y, share.x), mix(apart.z, apart.w, share.x), share.y)) *
-                  stored.surface_nodes_a_unit;
+  vec3 before = max(node - BESIDE, vec3(0.0));
+  vec3 after = min(node + BESIDE, stored.last_surface_node);
+  vec3 gradient = vec3(distance_at_node(vec3(after.x, node.yz)) - distance_at_node(vec3(before.x, node.yz)),
+                       distance_at_node(vec3(node.x, after.y, node.z)) - distance_at_node(vec3(node.x, before.y, node.z)),
+                       distance_at_node(vec3(node.xy, after.z)) - distance_at_node(vec3(node.xy, before.z))) *
+                  stored.surface_nodes_a_unit / (after - before);
   return gradient * inversesqrt(max(dot(gradient, gradient), 1e-12));
 }
 

@@ -208,6 +208,7 @@ vec3 march(vec3 place, vec3 direction, float way, int taps) {
 // What leaves the grain is followed until so little of it is left.
 const float LEAST_PASSED = 0.004;
 const float LEAST_FOLLOWED_ON = 0.02;
+const float HALF_SCATTERED = 0.693;  // mean free paths
 #ifdef CLEAR
 const int MOST_WAYS = 6;
 #else
@@ -298,12 +299,14 @@ Radiance radiance_reflected(vec3 place, vec3 direction, float way, Spectrum left
     vec3 facet = facet_outwards(place, direction, i);
     float again = dot(facet, direction) > 0.0 ? kept_inside(place, direction, facet) : 0.0;
     left *= passed * again;
+    if (largest(left) < LEAST_PASSED) break;
+    direction = reflected_inwards(place, direction, facet);
     if (largest(left) < LEAST_FOLLOWED_ON || i + 1 == ways) {
-      // From there on as if every way were like that one and the source as it is there.
-      sum += left * (1.0 - passed) / (1.0 - later_again(again) * passed) * source_at(place);
+      // From there on as if every way were like that one, and the source as it is where half of the light that comes back is scattered.
+      vec3 halfway = place + min(0.5 * way, HALF_SCATTERED / largest(SPECTRUM(stored.sigma_t))) * direction;
+      sum += left * (1.0 - passed) / (1.0 - later_again(again) * passed) * source_at(halfway);
       break;
     }
-    direction = reflected_inwards(place, direction, facet);
   }
   return sum;
 }
