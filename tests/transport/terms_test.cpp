@@ -63,6 +63,7 @@ TEST(SharedTerms, TellChannelsThatAreAlikeAsTheirOwnDo) {
 TEST(SharedTerms, TellFaintChannelsToo) {
   const std::vector<Lights> lights = {some_light(2), 1e-3F * some_light(3), Lights::Zero(nodes, octahedron_texels)};
   std::vector<Terms> own;
+  own.reserve(lights.size());
   for (const Lights& light : lights) own.push_back(own_terms(light, 12));
   const SharedTerms terms = shared_terms(all_nodes(), own);
   EXPECT_EQ(terms.amounts.cols(), 12);
