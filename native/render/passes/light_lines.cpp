@@ -7,11 +7,10 @@
 namespace mesograin::render {
 namespace {
 
-// Lines stand two pixels apart, a shadow's edge is not told from a straight one; of a small picture they are as many
-// as tell how long the ways near the grain's rim are.
-constexpr double pixels_a_line = 2.0;
-constexpr int fewest_lines = 160;
-constexpr int most_lines = 384;
+// Lines stand a pixel apart, and never as few as would show as bands where light grazes a surface.
+constexpr double pixels_a_line = 1.0;
+constexpr int fewest_lines = 384;
+constexpr int most_lines = 768;
 constexpr int lines_step = 32;  // a picture that grows a little has as many
 
 // Looks at the surface for a line, and for a light at a pixel: at six places along its ray, a few for each in a convex
