@@ -79,7 +79,8 @@ def test_a_few_samples_tell_what_a_grain_that_scatters_forwards_shows_of_an_even
     seen = seen_in_even_world(SHAPES[shape](), medium, 16)
     print(shape, boundary, radius, g, f"{seen.mean():.4f} {seen.min():.3f} {seen.max():.3f}")
     assert abs(seen.mean() - 1.0) < 0.015
-    assert seen.max() < 2.0
+    # Its grain is .16 to .17: of ten seeds' thousands of pixels the brightest were 1.7 to 2.0.
+    assert seen.std() < 0.2 and seen.max() < 2.2
 
 
 def uneven_world():
