@@ -12,20 +12,6 @@ using Map = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor
 
 constexpr int whole_side = transport::octahedron_side;
 
-// Beyond an edge a map goes on mirrored about that edge's middle.
-int texel_at(int x, int y) {
-  constexpr int last = whole_side - 1;
-  if (x < 0 || x > last) {
-    x = x < 0 ? 0 : last;
-    y = last - y;
-  }
-  if (y < 0 || y > last) {
-    y = y < 0 ? 0 : last;
-    x = last - x;
-  }
-  return y * whole_side + x;
-}
-
 /// Takes what is at the framed map's texels along a side to those of one with fewer, which tell them best.
 Eigen::MatrixXf best_along(int side) {
   Eigen::MatrixXd told = Eigen::MatrixXd::Zero(framed(whole_side), framed(side));  // by each of the fewer
@@ -43,7 +29,8 @@ Eigen::MatrixXf best_along(int side) {
 std::vector<float> framed_map(const std::vector<float>& lobe, int side) {
   Map map(framed(whole_side), framed(whole_side));
   for (int y = 0; y < framed(whole_side); ++y)
-    for (int x = 0; x < framed(whole_side); ++x) map(y, x) = lobe[static_cast<std::size_t>(texel_at(x - 1, y - 1))];
+    for (int x = 0; x < framed(whole_side); ++x)
+      map(y, x) = lobe[static_cast<std::size_t>(transport::octahedron_texel(x - 1, y - 1))];
   if (side < whole_side) {
     const Eigen::MatrixXf best = best_along(side);
     map = Map(best * map * best.transpose());

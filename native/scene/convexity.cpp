@@ -5,9 +5,8 @@
 
 #include <cstdint>
 #include <glm/geometric.hpp>
-#include <map>
 #include <optional>
-#include <utility>
+#include <unordered_map>
 #include <vector>
 
 #include "scene/pieces.h"
@@ -19,6 +18,9 @@ namespace {
 // Of the mesh's reach: how far a neighbour's corner may stand above a triangle's plane.
 constexpr double tolerance = 1e-5;
 
+/// Of an edge, as one of its triangles goes along it.
+std::uint64_t edge(std::uint32_t from, std::uint32_t to) { return std::uint64_t{from} << 32U | to; }
+
 }  // namespace
 
 bool is_convex(const Mesh& mesh) {
@@ -29,7 +31,8 @@ bool is_convex(const Mesh& mesh) {
     int triangles;
   };
   Pieces pieces(numbers.size());
-  std::map<std::pair<std::uint32_t, std::uint32_t>, Side> sides;  // by edge, as one of its triangles goes along it
+  std::unordered_map<std::uint64_t, Side> sides;
+  sides.reserve(3 * mesh.triangles().size());
   // Triangles without area, such as at a sphere's poles, are no part of the surface.
   const auto collapsed = [&](const glm::uvec3& triangle) {
     return numbers[triangle.x] == numbers[triangle.y] || numbers[triangle.y] == numbers[triangle.z] ||
@@ -39,7 +42,7 @@ bool is_convex(const Mesh& mesh) {
     for (int corner = 0; corner < 3 && !collapsed(triangle); ++corner) {
       const std::uint32_t from = numbers[triangle[corner]];
       const std::uint32_t to = numbers[triangle[(corner + 1) % 3]];
-      Side& side = sides.try_emplace({from, to}, Side{{}, 0}).first->second;
+      Side& side = sides.try_emplace(edge(from, to), Side{{}, 0}).first->second;
       side.opposite = glm::dvec3(mesh.positions()[triangle[(corner + 2) % 3]]);
       ++side.triangles;
       pieces.join(from, to);
@@ -59,7 +62,7 @@ bool is_convex(const Mesh& mesh) {
     for (int corner = 0; corner < 3; ++corner) {
       const std::uint32_t from = numbers[triangle[corner]];
       const std::uint32_t to = numbers[triangle[(corner + 1) % 3]];
-      const auto other = sides.find({to, from});
+      const auto other = sides.find(edge(to, from));
       if (other == sides.end()) {
         closed = false;
         continue;

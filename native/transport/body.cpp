@@ -4,12 +4,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <map>
-#include <set>
+#include <unordered_map>
 #include <utility>
 
 #include "base/error.h"
@@ -25,11 +26,12 @@ namespace {
 
 // Edges of triangles around a hole have no partner that runs the other way.
 std::size_t open_edges(const std::vector<glm::uvec3>& triangles) {
-  std::map<std::pair<unsigned, unsigned>, int> balance;
+  std::unordered_map<std::uint64_t, int> balance;
+  balance.reserve(2 * triangles.size());
   for (const glm::uvec3& triangle : triangles)
     for (int i = 0; i < 3; ++i) {
       const unsigned from = triangle[i], to = triangle[(i + 1) % 3];
-      balance[std::minmax(from, to)] += from < to ? 1 : -1;
+      balance[std::uint64_t{std::min(from, to)} << 32U | std::max(from, to)] += from < to ? 1 : -1;
     }
   return static_cast<std::size_t>(
       std::count_if(balance.begin(), balance.end(), [](const auto& edge) { return edge.second != 0; }));
@@ -211,9 +213,10 @@ bool Body::contains(const glm::vec3& place) const {
   int votes = 0;
   for (const glm::vec3& line : lines) {
     const std::optional<Hit> hit = first_hit(place, line);
-    if (hit && glm::dot(hit->normal, line) > 0.0F) ++votes;
+    votes += hit && glm::dot(hit->normal, line) > 0.0F ? 1 : -1;
+    if (std::abs(votes) == 2) break;
   }
-  return votes >= 2;
+  return votes > 0;
 }
 
 // A line enters a body that does not cross itself before it leaves it.

@@ -95,6 +95,11 @@ void put_sources(std::size_t term, const Eigen::VectorXf& sources, const Grid& g
     if (grid.used()[node] >= 0) stored.sources[term * stored.nodes() + node] = in_half(sources(grid.used()[node]));
 }
 
+void put_lobe(std::size_t term, std::size_t channel, const std::vector<float>& lobe, StoredTransport& stored) {
+  for (std::size_t texel = 0; texel < octahedron_texels; ++texel)
+    stored.lobes[stored.lobe(term, texel, channel)] = lobe[texel];
+}
+
 /// Of the three numbers the one between the others.
 double middle(const glm::dvec3& of) { return std::max(std::min(of.r, of.g), std::min(std::max(of.r, of.g), of.b)); }
 
@@ -139,10 +144,12 @@ StoredTransport transport_by(const Walks& walks, const StoredMedium& medium, con
   for (std::size_t term = 0; term < static_cast<std::size_t>(stored.terms); ++term) {
     const auto column = static_cast<Eigen::Index>(term);
     put_sources(term, terms.amounts.col(column), grid, stored);
-    for (std::size_t texel = 0; texel < octahedron_texels; ++texel)
-      for (std::size_t channel = 0; channel < of_channels.size(); ++channel)
-        stored.lobes[stored.lobe(term, texel, channel)] =
-            terms.lobes(column, static_cast<Eigen::Index>(channel * octahedron_texels + texel));
+    const Eigen::Index texels = terms.lobes.cols() / channels;
+    for (int channel = 0; channel < channels; ++channel) {
+      const float* lobe = terms.lobes.row(column).data() + channel * texels;
+      put_lobe(term, static_cast<std::size_t>(channel), octahedron_map({lobe, lobe + texels}, quality.directions),
+               stored);
+    }
   }
   return stored;
 }

@@ -29,52 +29,78 @@ struct Lattice {
 
 constexpr float margin = 1.001F;  // of rounding
 
-// A neighbour tells how far the surface can be at most, and, if it does not come between, on which side the node is.
-std::vector<float> asked_at_all(const Body& body, const Lattice& lattice, const Effort& effort) {
-  std::vector<float> distances(static_cast<std::size_t>(lattice.size.x) * lattice.rows());
+/// What the body tells of nodes.
+struct Known {
+  std::vector<float> distances;   // negative inside
+  std::vector<glm::vec3> points;  // of the surface, the nearest
+};
+
+/// The surface is nearer to a place than this, for `point` is one of it.
+float farthest_possible(const glm::vec3& place, const glm::vec3& point) {
+  constexpr float rounding = 1e-6F;
+  return margin * glm::distance(place, point) + rounding;
+}
+
+/// Whether two places that are so far apart, and so far from the surface, are on the same side of it for certain.
+bool on_same_side(float apart, float distance, float other_distance) {
+  return margin * apart < std::max(std::abs(distance), std::abs(other_distance));
+}
+
+// A neighbour's point tells how far the surface can be at most, and, if it does not come between, on which side the
+// node is.
+Known asked_at_all(const Body& body, const Lattice& lattice, const Effort& effort) {
+  const std::size_t count = static_cast<std::size_t>(lattice.size.x) * lattice.rows();
+  Known known{std::vector<float>(count), std::vector<glm::vec3>(count)};
   run_pieces(effort, lattice.rows(), [&](std::size_t row) {
     const auto number = static_cast<int>(row);
     float before = 0.0F;
+    float reach = std::numeric_limits<float>::infinity();
     for (int x = 0; x < lattice.size.x; ++x) {
       const glm::ivec3 node(x, number % lattice.size.y, number / lattice.size.y);
-      const float reach =
-          x > 0 ? margin * (std::abs(before) + lattice.spacing.x) : std::numeric_limits<float>::infinity();
-      const float distance = body.nearest(lattice.place(node), reach).distance;
-      const bool beside_surface = x == 0 || std::abs(before) <= margin * lattice.spacing.x;
-      before = (beside_surface ? body.contains(lattice.place(node)) : before < 0.0F) ? -distance : distance;
-      distances[lattice.index(node)] = before;
+      const glm::vec3 place = lattice.place(node);
+      const Nearest nearest = body.nearest(place, reach);
+      const bool as_before = x > 0 && on_same_side(lattice.spacing.x, nearest.distance, before);
+      before = (as_before ? before < 0.0F : body.contains(place)) ? -nearest.distance : nearest.distance;
+      known.distances[lattice.index(node)] = before;
+      known.points[lattice.index(node)] = nearest.point;
+      reach = farthest_possible(lattice.place(node + glm::ivec3(1, 0, 0)), nearest.point);
     }
   });
-  return distances;
+  return known;
 }
 
 // Between nodes that are known, every second of these. Where none of those around is near the surface it is told well
 // enough by them.
 std::vector<float> asked_between(const Body& body, const Lattice& lattice, const Lattice& known_lattice,
-                                 const std::vector<float>& known, const Effort& effort) {
+                                 const Known& known, const Effort& effort) {
   const float apart = margin * glm::length(known_lattice.spacing);  // of those around a node at most
   std::vector<float> distances(static_cast<std::size_t>(lattice.size.x) * lattice.rows());
   run_pieces(effort, lattice.rows(), [&](std::size_t row) {
     const auto number = static_cast<int>(row);
     for (int x = 0; x < lattice.size.x; ++x) {
       const glm::ivec3 node(x, number % lattice.size.y, number / lattice.size.y);
+      const glm::vec3 place = lattice.place(node);
       const glm::ivec3 low = node / 2, high = (node + 1) / 2;
-      float sum = 0.0F, nearest = std::numeric_limits<float>::infinity();
+      // All of those around are as far from the place.
+      float sum = 0.0F, nearest = std::numeric_limits<float>::infinity(), farthest = 0.0F, reach = nearest;
       for (int corner = 0; corner < 8; ++corner) {
         const glm::ivec3 beside((corner & 1) != 0 ? high.x : low.x, (corner & 2) != 0 ? high.y : low.y,
                                 (corner & 4) != 0 ? high.z : low.z);
-        const float distance = known[known_lattice.index(beside)];
+        const std::size_t other = known_lattice.index(beside);
+        const float distance = known.distances[other];
         sum += distance / 8.0F;
         nearest = std::min(nearest, std::abs(distance));
+        if (std::abs(distance) > std::abs(farthest)) farthest = distance;
+        reach = std::min(reach, farthest_possible(place, known.points[other]));
       }
       float& distance = distances[lattice.index(node)];
       if (low == high || nearest > apart) {
         distance = sum;
         continue;
       }
-      const glm::vec3 place = lattice.place(node);
-      distance = body.nearest(place, nearest + apart).distance;
-      if (body.contains(place)) distance = -distance;
+      distance = body.nearest(place, reach).distance;
+      const bool as_beside = on_same_side(glm::distance(place, known_lattice.place(low)), distance, farthest);
+      if (as_beside ? farthest < 0.0F : body.contains(place)) distance = -distance;
     }
   });
   return distances;
@@ -88,7 +114,7 @@ std::vector<float> surface_distances(const Body& body, const Grid& grid, const E
   const glm::vec3 spacing = grid.spacing() / static_cast<float>(surface_finer);
   const Lattice lattice{grid.lower(), spacing, size};
   const Lattice every_second{grid.lower(), 2.0F * spacing, (size + 1) / 2};
-  const std::vector<float> known = asked_at_all(body, every_second, part_of(effort, 0.0, 0.5));
+  const Known known = asked_at_all(body, every_second, part_of(effort, 0.0, 0.5));
   return asked_between(body, lattice, every_second, known, part_of(effort, 0.5, 1.0));
 }
 

@@ -4,7 +4,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <algorithm>
-#include <array>
+#include <cmath>
 #include <limits>
 
 #include "transport/octahedron.h"
@@ -47,9 +47,10 @@ Eigen::MatrixXf orthonormal(const Eigen::MatrixXf& columns) {
 /// The root of what each direction counts: by its solid angle, and, so that light which hardly enters, for it grazes a
 /// flat grain, is told well too, by the root of what it lets in. Where there is none at all they are numbers, too.
 Eigen::ArrayXf direction_weights(const Lights& light) {
-  const std::array<float, octahedron_texels> angles = octahedron_solid_angles();
+  const auto side = static_cast<int>(std::lround(std::sqrt(static_cast<double>(light.cols()))));
+  const std::vector<float> angles = octahedron_solid_angles(side);
   const Eigen::ArrayXf entered = light.colwise().norm().transpose().array();
-  return (Eigen::Map<const Eigen::ArrayXf>(angles.data(), octahedron_texels) /
+  return (Eigen::Map<const Eigen::ArrayXf>(angles.data(), light.cols()) /
           entered.max(std::max(1e-3F * entered.mean(), std::numeric_limits<float>::min())))
       .sqrt();
 }
@@ -99,10 +100,11 @@ SharedTerms shared_terms(const Sights& sights, const std::vector<Terms>& channel
   const Lights seen = sights * amounts;
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXf> solver(seen.transpose() * seen);
   const Eigen::MatrixXf leading = solver.eigenvectors().rightCols(count);
-  Lights lobes(count, static_cast<Eigen::Index>(channels.size()) * octahedron_texels);
+  const Eigen::Index texels = channels.front().told_by.lobes.cols();
+  Lights lobes(count, static_cast<Eigen::Index>(channels.size()) * texels);
   for (std::size_t channel = 0; channel < channels.size(); ++channel) {
     const auto number = static_cast<Eigen::Index>(channel);
-    lobes.middleCols(number * octahedron_texels, octahedron_texels).noalias() =
+    lobes.middleCols(number * texels, texels).noalias() =
         seen_of[channel] * leading.middleRows(number * count, count).transpose() * channels[channel].told_by.lobes;
   }
   return {amounts * leading, lobes};

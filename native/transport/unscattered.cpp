@@ -198,10 +198,10 @@ double usual_irradiance(const SurfacePoints& points, const Body& body, const Lam
 }  // namespace
 
 void unscattered_light(const Body& body, const Grid& grid, const Interface& interface,
-                       const std::vector<double>& extinctions, int across, const KeepLight& keep,
+                       const std::vector<double>& extinctions, int side, int across, const KeepLight& keep,
                        const Effort& effort) {
-  run_pieces(effort, octahedron_texels, [&](std::size_t texel) {
-    const Incidence incidence(body, octahedron_direction(static_cast<int>(texel)));
+  run_pieces(effort, static_cast<std::size_t>(side) * static_cast<std::size_t>(side), [&](std::size_t texel) {
+    const Incidence incidence(body, octahedron_direction(static_cast<int>(texel), side));
     const glm::vec3 towards = -incidence.to_light();
     Random random(effort.seed, texel);
     Tracks tracks(grid, extinctions);

@@ -18,9 +18,11 @@ namespace mesograin::transport {
 /// threads.
 using KeepLight = std::function<void(std::size_t, const std::vector<float>&)>;
 
-/// `extinctions` are sigma_t per unit of the body; `across` rays squared for each direction.
+/// `extinctions` are sigma_t per unit of the body; the map has `side` texels along a side, and `across` rays squared
+/// for each.
 void unscattered_light(const Body& body, const Grid& grid, const Interface& interface,
-                       const std::vector<double>& extinctions, int across, const KeepLight& keep, const Effort& effort);
+                       const std::vector<double>& extinctions, int side, int across, const KeepLight& keep,
+                       const Effort& effort);
 
 /// The same of a lamp, per its strength: [node * extinctions + extinction], by so many `rays`.
 std::vector<float> unscattered_light(const Body& body, const Grid& grid, const Interface& interface,

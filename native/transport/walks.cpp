@@ -2,12 +2,10 @@
 #include "transport/walks.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 
 #include "transport/near_extinctions.h"
-#include "transport/octahedron.h"
 #include "transport/unscattered.h"
 
 namespace mesograin::transport {
@@ -48,7 +46,8 @@ Walks::Walks(std::shared_ptr<const Body> body, const Interface& interface, const
       quality_(quality),
       grid_(*body_, quality.nodes, quality.spacing, quality.most_nodes, part_of(effort, 0.0, 0.5),
             interface.matched() ? matched_depth : 0.0F),
-      surface_(surface_distances(*body_, grid_, part_of(effort, 0.5, 1.0))) {}
+      surface_(surface_distances(*body_, grid_, part_of(effort, 0.5, 1.0))),
+      solid_angles_(octahedron_solid_angles(quality.directions)) {}
 
 void Walks::trace(const std::vector<double>& extinctions, const Effort& effort) {
   std::vector<double> missing;
@@ -62,18 +61,20 @@ void Walks::trace(const std::vector<double>& extinctions, const Effort& effort) 
   for (const double wanted : missing)
     for (const float sigma_t : extinctions_near(wanted)) all.push_back(sigma_t);
   const std::size_t nodes = grid_.places().size();
+  const std::size_t texels = solid_angles_.size();
   std::vector<Step> steps(missing.size());
-  for (Step& step : steps) step.light.resize(nodes * octahedron_texels * near_extinctions);
+  for (Step& step : steps) step.light.resize(nodes * texels * near_extinctions);
   const KeepLight keep = [&](std::size_t texel, const std::vector<float>& radiance) {
     for (std::size_t i = 0; i < steps.size(); ++i)
       for (std::size_t node = 0; node < nodes; ++node) {
         const auto deputy = static_cast<std::size_t>(grid_.deputies()[node]);
         for (std::size_t e = 0; e < near_extinctions; ++e)
-          steps[i].light[(node * octahedron_texels + texel) * near_extinctions + e] =
+          steps[i].light[(node * texels + texel) * near_extinctions + e] =
               known_logarithm(radiance[deputy * all.size() + i * near_extinctions + e]);
       }
   };
-  unscattered_light(*body_, grid_, interface_, all, quality_.light_across, keep, part_of(effort, 0.0, 0.7));
+  unscattered_light(*body_, grid_, interface_, all, quality_.directions, quality_.light_across, keep,
+                    part_of(effort, 0.0, 0.7));
   std::vector<TracedExchange> exchanges =
       trace_exchange(*body_, grid_, interface_, missing, quality_.way_across, surface_, part_of(effort, 0.7, 1.0));
   for (std::size_t i = 0; i < missing.size(); ++i) {
@@ -113,8 +114,7 @@ const Walks::Step& Walks::step(double sigma_t) const {
 // takes out what nodes at the surface have wrong by standing for more than themselves.
 template <typename Row>
 float Walks::correction(const Step& step, const NearWeights& weights, std::size_t node, const Row& row) const {
-  static const std::array<float, octahedron_texels> angles = octahedron_solid_angles();
-  const Eigen::Map<const Eigen::RowVectorXf> solid_angles(angles.data(), octahedron_texels);
+  const Eigen::Map<const Eigen::RowVectorXf> solid_angles(solid_angles_.data(), row.size());
   const auto square = static_cast<float>(interface_.eta() * interface_.eta());
   const float right = square * weights.decayed(&step.exchange.escapes[node * near_extinctions]);
   return std::clamp(right / std::max(row.dot(solid_angles), 1e-9F), 0.1F, 10.0F);
@@ -122,10 +122,11 @@ float Walks::correction(const Step& step, const NearWeights& weights, std::size_
 
 Lights Walks::unscattered(const Step& step, double sigma_t, const Effort& effort) const {
   const NearWeights weights(step.exchange.sigma_t, sigma_t);
-  Lights light(static_cast<Eigen::Index>(grid_.places().size()), octahedron_texels);
+  const std::size_t texels = solid_angles_.size();
+  Lights light(static_cast<Eigen::Index>(grid_.places().size()), static_cast<Eigen::Index>(texels));
   of_nodes(grid_, effort, [&](std::size_t node) {
     auto row = light.row(static_cast<Eigen::Index>(node));
-    weights.decayed(&step.light[node * octahedron_texels * near_extinctions], row);
+    weights.decayed(&step.light[node * texels * near_extinctions], row);
     row *= correction(step, weights, node, row);
   });
   return light;
@@ -133,14 +134,15 @@ Lights Walks::unscattered(const Step& step, double sigma_t, const Effort& effort
 
 Lights Walks::unscattered(const std::vector<double>& extinctions, const Lamp& lamp, const Effort& effort) const {
   const std::size_t count = extinctions.size();
+  const std::size_t texels = solid_angles_.size();
   const std::vector<float> found = unscattered_light(*body_, grid_, interface_, extinctions, lamp_rays, lamp, effort);
   Lights light(static_cast<Eigen::Index>(grid_.places().size()), static_cast<Eigen::Index>(count));
   for (std::size_t e = 0; e < count; ++e) {
     const Step& near = step(extinctions[e]);
     const NearWeights weights(near.exchange.sigma_t, extinctions[e]);
     of_nodes(grid_, effort, [&](std::size_t node) {
-      Eigen::RowVectorXf row(octahedron_texels);
-      weights.decayed(&near.light[node * octahedron_texels * near_extinctions], row);
+      Eigen::RowVectorXf row(static_cast<Eigen::Index>(texels));
+      weights.decayed(&near.light[node * texels * near_extinctions], row);
       const auto deputy = static_cast<std::size_t>(grid_.deputies()[node]);
       light(static_cast<Eigen::Index>(node), static_cast<Eigen::Index>(e)) =
           found[deputy * count + e] * correction(near, weights, node, row);

@@ -13,6 +13,7 @@
 #include "transport/interface.h"
 #include "transport/lamp.h"
 #include "transport/multiple.h"
+#include "transport/octahedron.h"
 #include "transport/sights.h"
 #include "transport/surface.h"
 #include "transport/terms.h"
@@ -21,9 +22,10 @@ namespace mesograin::transport {
 
 /// How much work goes into it.
 struct Quality {
-  int nodes = 6600;       ///< of the grid in the body's box
-  int light_across = 32;  ///< rays for each direction of light, squared
-  int way_across = 16;    ///< rays from each node, squared
+  int nodes = 6600;                  ///< of the grid in the body's box
+  int directions = octahedron_side;  ///< of light that are told apart: texels along a side of their map
+  int light_across = 32;             ///< rays for each of them, squared
+  int way_across = 16;               ///< rays from each node, squared
   int terms = 24;         ///< that are stored of a grey medium: 16, 24 or 48 (shaders/models/stored_products.glsl)
   int shared_terms = 32;  ///< that all channels of another share: 20, 32 or 44
   Spacing spacing = Spacing::even;
@@ -88,6 +90,7 @@ class Walks {
   Quality quality_;
   Grid grid_;
   std::vector<float> surface_;
+  std::vector<float> solid_angles_;  // of the texels that light comes from
   std::map<double, Step> steps_;
 };
 

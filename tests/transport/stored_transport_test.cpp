@@ -32,7 +32,7 @@ std::vector<float> under_even_light(const StoredTransport& stored, const Walks& 
                                     std::size_t channel) {
   const Grid& grid = walks.grid();
   const Exchange exchange = walks.exchange(sigma_t);
-  const std::array<float, octahedron_texels> angles = octahedron_solid_angles();
+  const std::vector<float> angles = octahedron_solid_angles();
   std::vector<float> sources;
   for (std::size_t node = 0; node < stored.nodes(); ++node) {
     if (grid.used()[node] < 0) continue;

@@ -35,7 +35,7 @@ TEST(UnscatteredLight, EntersWhatLiesBehind) {
   const float highest = octahedron_direction(texel_above).z;
   double upper = 0.0, lower = 0.0;
   std::mutex mutex;
-  unscattered_light(body, grid, Interface(eta), {1e-6}, 16,
+  unscattered_light(body, grid, Interface(eta), {1e-6}, octahedron_side, 16,
                     [&](std::size_t texel, const std::vector<float>& radiance) {
                       if (octahedron_direction(static_cast<int>(texel)).z < highest - 1e-4F) return;
                       const std::lock_guard lock(mutex);
