@@ -18,8 +18,9 @@ namespace {
 // a direction's: fewer directions have more each.
 constexpr Quality coarse{.nodes = 1500, .directions = 16, .light_across = 24, .way_across = 6};
 
-// Of a grain that is not thin: within a second, where the coarse answer is farther off and the fine one takes ten.
-constexpr Quality between{.nodes = 4500, .directions = 16, .light_across = 32, .way_across = 6};
+// Within a second, where coarse nodes are so many mean free paths apart that what they tell is farther off.
+constexpr Quality less_coarse{.nodes = 4500, .directions = 16, .light_across = 32, .way_across = 6};
+constexpr double coarse_spacing = 1.0;
 
 // Light takes a quarter of a megabyte of the device's memory for each prototype, a third where channels differ: one
 // beside others is as near as alone (docs/shapes.md).
@@ -42,14 +43,10 @@ double densest(const StoredMedium& medium) { return std::max({medium.sigma_t.r, 
 constexpr double thick_spacing = 0.5;
 constexpr double thickest_spacing = 1.25;
 
-/// Mean free paths between a thin grain's nodes. `medium` is per unit of the body.
-double thin_spacing(const Body& body, const StoredMedium& medium) { return densest(medium) * node_spacing(body, thin); }
-
-bool is_thin(const Body& body, const StoredMedium& medium) { return thin_spacing(body, medium) < thick_spacing; }
-
+/// `medium` is per unit of the body.
 Quality fine(const Body& body, const StoredMedium& medium) {
-  if (is_thin(body, medium)) return thin;
-  return thin_spacing(body, medium) < thickest_spacing ? thick : thickest;
+  const double spacing = densest(medium) * node_spacing(body, thin);
+  return spacing < thick_spacing ? thin : spacing < thickest_spacing ? thick : thickest;
 }
 
 // How much denser than densest_told one channel may be that is told as if it were that, so that the others are told at
@@ -216,7 +213,8 @@ void Works::work(const Job& job, const std::stop_token& stop) {
       if (!known(*many, medium)) tell_first(recalled_transport(*many, medium, quick));
     } else {
       if (coarsely_told) tell_first(compute_transport(*few, medium, quick));
-      if (!is_thin(body, medium)) tell_first(compute_transport(*walks(job, between, quick), medium, quick));
+      if (densest(medium) * node_spacing(body, coarse) > coarse_spacing)
+        tell_first(compute_transport(*walks(job, less_coarse, quick), medium, quick));
     }
     if (!many) many = walks(job, quality, part_of(effort, coarse_share, 2.0 * coarse_share));
     const auto stored =
