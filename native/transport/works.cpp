@@ -19,7 +19,7 @@ namespace {
 constexpr Quality coarse{.nodes = 1500, .directions = 16, .light_across = 24, .way_across = 6};
 
 // Within a second, where coarse nodes are so many mean free paths apart that what they tell is farther off.
-constexpr Quality less_coarse{.nodes = 4500, .directions = 16, .light_across = 32, .way_across = 6};
+constexpr Quality less_coarse{.nodes = 4500, .directions = 16, .light_across = 32, .way_across = 8};
 constexpr double coarse_spacing = 1.0;
 
 // Light takes a quarter of a megabyte of the device's memory for each prototype, a third where channels differ: one
@@ -212,7 +212,8 @@ void Works::work(const Job& job, const std::stop_token& stop) {
       if (coarsely_told && nearly_known(*few, medium)) tell_first(recalled_transport(*few, medium, quick));
       if (!known(*many, medium)) tell_first(recalled_transport(*many, medium, quick));
     } else {
-      if (coarsely_told) tell_first(compute_transport(*few, medium, quick));
+      // Told as a thinner one it may be, for nothing is known yet.
+      tell_first(compute_transport(*few, medium, quick));
       if (densest(medium) * node_spacing(body, coarse) > coarse_spacing)
         tell_first(compute_transport(*walks(job, less_coarse, quick), medium, quick));
     }

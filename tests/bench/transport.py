@@ -1,6 +1,6 @@
 """How long the model transport takes to answer: for a new mesh, for another colour of it, for another extinction.
 
-    transport.py BUILD_FOLDER [--radius R] [--mesh FILE]
+    transport.py BUILD_FOLDER [--radius R] [--mesh FILE] [--eta ETA] [--channels R G B]
 
 Seconds of processor time, of all threads, until there is a coarse answer, until there is one within 5 % of the final
 one, and until there is the final one; and how far the coarse picture is from it: sum|coarse - final| / sum final in
@@ -24,11 +24,11 @@ LIGHT = {"type": "distant", "direction_to_light": [0.8, 0.6, 0], "irradiance_lin
 NEAR = 0.05  # of the final picture: an answer that is no farther off serves
 
 
-def answers(native, view, mesh, sigma_s, sigma_a):
+def answers(native, view, mesh, eta, sigma_s, sigma_a):
     """(processor seconds, picture) of each answer of `transport`, the final one last."""
     scene, camera, _ = native.load_scene({
         "geometry": {"shape": "mesh", "file": str(mesh)}, "camera": CAMERA, "resolution": [96, 96], "lights": [LIGHT],
-        "material": {"kind": "medium", "sigma_s": sigma_s, "sigma_a": sigma_a, "eta": 1.3, "specular": False}},
+        "material": {"kind": "medium", "sigma_s": sigma_s, "sigma_a": sigma_a, "eta": eta, "specular": False}},
         model="transport")
     started = time.process_time()
     view.set_scene(scene)
@@ -41,7 +41,7 @@ def answers(native, view, mesh, sigma_s, sigma_a):
             seconds = time.process_time() - started - known
             before = time.process_time()
             view.render(8)
-            drawn.append((seconds, shapes.blocks(view.read()[..., 0])))
+            drawn.append((seconds, shapes.blocks(view.read()[..., :3].sum(axis=2))))
             known += time.process_time() - before  # what drawing took
         if final:
             return drawn
@@ -53,6 +53,9 @@ def main():
     parser.add_argument("build", help="the folder of the native module")
     parser.add_argument("--radius", type=float, default=3.0, help="of a ball as large, in mean free paths (default: 3)")
     parser.add_argument("--mesh", type=pathlib.Path, default=SOURCE / "tests/data/shapes/cube.obj")
+    parser.add_argument("--eta", type=float, default=1.3, help="index of refraction (default: 1.3)")
+    parser.add_argument("--channels", type=float, nargs=3, default=(1.0, 1.0, 1.0),
+                        help="how much of the extinction each channel has (default: 1 1 1)")
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         os.environ["XDG_CACHE_HOME"] = folder
@@ -64,8 +67,8 @@ def main():
         for name, thickness, albedo in (("a new mesh", 1.0, 0.9), ("another colour", 1.03, 0.8),
                                         ("white", 0.97, 0.999), ("twice the extinction", 2.0, 0.9),
                                         ("the first again, a little browner", 1.02, 0.85)):
-            here = sigma_t * thickness
-            drawn = answers(native, view, options.mesh, here * albedo, here * (1 - albedo))
+            here = sigma_t * thickness * numpy.array(options.channels)
+            drawn = answers(native, view, options.mesh, options.eta, list(here * albedo), list(here * (1 - albedo)))
             final = drawn[-1][1]
             told = [f"{seconds:.2f} s ({100 * numpy.abs(picture - final).sum() / final.sum():.1f} %)"
                     for seconds, picture in drawn[:-1]]

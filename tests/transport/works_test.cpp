@@ -128,6 +128,22 @@ TEST_F(WorksTest, TellsByTheWalksOfAMomentAgo) {
   EXPECT_EQ(far->news().number, 2) << "they tell nothing of that";
 }
 
+// Coarse nodes are too far apart for a thick grain: what is nearer comes before what takes long.
+TEST_F(WorksTest, TellsOfAThickGrainInBetween) {
+  Works works{TransportCache(folder_)};
+  Order thick = order();
+  thick.medium.sigma_t *= 8.0;
+  const auto computation = works.ask(thick);
+  std::vector<std::size_t> nodes;
+  for (int number = 1; number <= 2; ++number) {
+    News news = computation->news();
+    while (news.number < number) news = computation->news();
+    ASSERT_TRUE(news.stored && !news.final);
+    nodes.push_back(news.stored->nodes());
+  }
+  EXPECT_GT(nodes[1], 2 * nodes[0]);
+}
+
 // What a lamp does is found by the same walks, after all that is asked of a grain itself, and kept as that is.
 TEST_F(WorksTest, TellsOfALampAfterAllOthers) {
   const auto beside = [](double place, double height = 2.0) {
