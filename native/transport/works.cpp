@@ -20,7 +20,7 @@ constexpr Quality coarse{.nodes = 1500, .directions = 16, .light_across = 24, .w
 
 // Within a second, where coarse nodes are so many mean free paths apart that what they tell is farther off.
 constexpr Quality less_coarse{.nodes = 4500, .directions = 16, .light_across = 32, .way_across = 8};
-constexpr double coarse_spacing = 1.0;
+constexpr double coarse_spacing = 1.25;
 
 // Light takes a quarter of a megabyte of the device's memory for each prototype, a third where channels differ: one
 // beside others is as near as alone (docs/shapes.md).
