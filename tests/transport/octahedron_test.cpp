@@ -19,6 +19,7 @@ float height(const glm::vec3& direction) { return direction.z + 0.5F * direction
 
 TEST(Octahedron, AMapOfFewerTexelsIsSmoothAcrossItsEdges) {
   std::vector<float> heights;
+  heights.reserve(few_texels);
   for (int texel = 0; texel < few_texels; ++texel) heights.push_back(height(octahedron_direction(texel, few)));
   const std::vector<float> map = octahedron_map(heights, few);
   ASSERT_EQ(map.size(), std::size_t{octahedron_texels});
