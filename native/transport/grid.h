@@ -51,6 +51,15 @@ class Grid {
   /// the body belongs to have a neighbour.
   const std::vector<int>& deputies() const { return deputies_; }
 
+  /// Eight nodes next to one another, the used ones of which answer for what is between them; -1 where one is not used.
+  struct Cell {
+    std::array<int, 8> used;
+    bool whole;  ///< all corners are used
+  };
+
+  /// x runs fastest.
+  const std::vector<Cell>& cells() const { return cells_; }
+
   /// The used nodes around a place inside the body; their weights make 1.
   std::array<Corner, 8> corners(const glm::vec3& place) const;
 
@@ -58,11 +67,6 @@ class Grid {
   int corner(const glm::vec3& place, const glm::vec3& random) const;
 
  private:
-  struct Cell {
-    std::array<int, 8> used;
-    bool whole;  ///< all corners are used
-  };
-
   std::size_t index(const glm::ivec3& node) const;
   const Cell& cell(const glm::vec3& place, glm::vec3& along) const;
   void list_cells();

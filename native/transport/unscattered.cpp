@@ -15,14 +15,13 @@
 #include "transport/incidence.h"
 #include "transport/octahedron.h"
 #include "transport/random.h"
+#include "transport/tracks.h"
 
 namespace mesograin::transport {
 namespace {
 
-// A ray is given up at its next reflection when so little of it is left, and before when it is next to nothing beside
-// what is scattered there.
+// A ray is given up at its next reflection when so little of it is left.
 constexpr float least_flux = 3e-3F;
-constexpr float least_track = 1e-4F;
 constexpr int most_reflections = 64;
 // And one that leaves and enters again for ever, after so many entries.
 constexpr int most_beams = 64;
@@ -33,49 +32,6 @@ constexpr std::size_t lamp_pieces = 32;
 constexpr double beyond_body = 2.5;
 // A ray that meets the surface so much before a point of it meets that point, in units of the body.
 constexpr float near_enough = 1e-4F;
-
-class Tracks {
- public:
-  Tracks(const Grid& grid, const std::vector<double>& extinctions)
-      : grid_(grid),
-        extinctions_(extinctions.begin(), extinctions.end()),
-        sums_(grid.places().size() * extinctions.size(), 0.0F),
-        passed_(extinctions.size()),
-        tracks_(extinctions.size()),
-        step_(0.5F * std::min({grid.spacing().x, grid.spacing().y, grid.spacing().z})) {}
-
-  /// Leaves the fluence of a ray of `flux` on its way; each extinction has so much of it left as `left` says.
-  void add(const glm::vec3& place, const glm::vec3& direction, float length, float flux, std::vector<float>& left,
-           Random& random) {
-    const int steps = std::max(1, static_cast<int>(std::ceil(length / step_)));
-    const float step = length / static_cast<float>(steps);
-    const std::size_t count = extinctions_.size();
-    for (std::size_t e = 0; e < count; ++e) {
-      passed_[e] = std::exp(-extinctions_[e] * step);
-      tracks_[e] = flux * (extinctions_[e] * step > 1e-4F ? (1.0F - passed_[e]) / extinctions_[e] : step);
-    }
-    for (int s = 0; s < steps; ++s) {
-      const auto corners = grid_.corners(place + (static_cast<float>(s) + random.uniform()) * step * direction);
-      for (std::size_t e = 0; e < count; ++e) {
-        const float track = left[e] * tracks_[e];
-        left[e] *= passed_[e];
-        for (const Corner& corner : corners)
-          sums_[static_cast<std::size_t>(corner.node) * count + e] += track * corner.weight;
-      }
-      if (flux * *std::max_element(left.begin(), left.end()) < least_track) return;
-    }
-  }
-
-  std::vector<float> take() { return std::move(sums_); }
-
- private:
-  const Grid& grid_;
-  std::vector<float> extinctions_;
-  std::vector<float> sums_;
-  std::vector<float> passed_;  // of a step, for each extinction
-  std::vector<float> tracks_;  // of a whole ray's step
-  float step_;
-};
 
 // Light on its way into the body, and what of it is left for each extinction.
 struct Beam {
@@ -215,7 +171,7 @@ void unscattered_light(const Body& body, const Grid& grid, const Interface& inte
       come_in(body, interface, start + hit->distance * towards, towards, hit->normal, 1.0F, extinctions.size(), tracks,
               random);
     }
-    std::vector<float> radiance = tracks.take();
+    std::vector<float> radiance = tracks.at_nodes();
     make_mean_radiance(grid, incidence.area() / (count * count), extinctions.size(), radiance);
     keep(texel, radiance);
   });
@@ -248,7 +204,7 @@ std::vector<float> unscattered_light(const Body& body, const Grid& grid, const I
       come_in(body, interface, point.place, -to_lamp, point.normal, cosine * static_cast<float>(ray.irradiance / usual),
               extinctions.size(), tracks, random);
     }
-    found[piece] = tracks.take();
+    found[piece] = tracks.at_nodes();
   });
   for (const std::vector<float>& piece : found)
     std::transform(piece.begin(), piece.end(), sum.begin(), sum.begin(), std::plus());
