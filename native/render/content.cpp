@@ -100,7 +100,7 @@ Content::Content(DeviceCache& cache, const scene::Scene& scene, Content before,
     if (!shades_itself(draws_[i]) && !draws_[i].light_maps && (!ground_ || draws_[i].radius > draws_[*ground_].radius))
       ground_ = i;
   find_bounds();
-  find_shadows();
+  find_what_hinders();
   textured_ = std::any_of(draws_.begin(), draws_.end(), [](const Draw& draw) { return draw.material->textured(); });
   if (instances_)
     for (const InstanceGroup& group : instances_->groups()) textured_ = textured_ || group.material->textured();
@@ -151,16 +151,19 @@ bool Content::any_shows_behind() const {
   return std::any_of(draws_.begin(), draws_.end(), [](const Draw& draw) { return draw.material->shows_behind(); });
 }
 
-void Content::find_shadows() {
-  shadows_ = count() > 1 ||
-             std::any_of(draws_.begin(), draws_.end(), [this](const Draw& draw) { return shades_itself(draw); });
+void Content::find_what_hinders() {
+  shadows_ = hinders_mirrors_ = count() > 1;
+  for (const Draw& draw : draws_) {
+    hinders_mirrors_ = hinders_mirrors_ || shades_itself(draw);
+    shadows_ = shadows_ || (shades_itself(draw) && !scene::traits_of(draw.material->model()).mesh);
+  }
 }
 
 void Content::take_news() {
   for (Draw& draw : draws_)
     if (!draw.material->light_maps()) draw.light_maps.reset();
   if (instances_) instances_->drop_light_maps();
-  find_shadows();
+  find_what_hinders();
 }
 
 int Content::version() const {

@@ -92,9 +92,12 @@ class Content {
   /// The draw of this instance of the scene's, which is in no array.
   std::size_t draw_of(std::size_t instance) const;
 
-  /// Whether something may stand in the light of something: there are two objects, or one with a hollow that its model
-  /// does not know of.
+  /// Whether something may stand in the light of something, for all that its model knows: there are two objects, or one
+  /// with a hollow whose own light no stored transport tells.
   bool shadows() const { return shadows_; }
+
+  /// Whether something may stand before what something mirrors: there are two objects, or one with a hollow.
+  bool hinders_mirrors() const { return hinders_mirrors_; }
 
   /// Whether there is one object, and nothing else for it to see.
   bool alone() const { return count() == 1; }
@@ -118,7 +121,7 @@ class Content {
   std::size_t count() const { return (instances_ ? instances_->count() : 0) + draws_.size(); }
   void tell_objects(const scene::Scene& scene);
   void find_bounds();
-  void find_shadows();
+  void find_what_hinders();
 
   std::vector<Draw> draws_;
   std::optional<Instances> instances_;
@@ -128,6 +131,7 @@ class Content {
   std::optional<std::size_t> ground_;  // which draw
   std::vector<std::size_t> alone_;     // instances that are in no array, whatever they are
   bool shadows_ = false;
+  bool hinders_mirrors_ = false;
   bool textured_ = false;
 };
 

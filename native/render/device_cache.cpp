@@ -417,7 +417,10 @@ const gl::Program& DeviceCache::shading(const DeviceMaterial& material, const Sh
   if (film) defines.emplace_back("FILM_TRANSPARENT");
   if (backdrop) defines.emplace_back("BACKDROP");
   if (shading.sees_behind) defines.emplace_back("SEES_BEHIND");
-  if (shading.mirrors_world && material.facets()) defines.emplace_back("MIRRORS_WORLD");
+  if (shading.mirrors_world && material.facets()) {
+    defines.emplace_back("MIRRORS_WORLD");
+    if (shading.mirrors_hindered) defines.emplace_back("MIRRORS_HINDERED");
+  }
   if (shading.lights_at_place) defines.emplace_back("LIGHTS_AT_PLACE");
   if (shading.near_lights) defines.emplace_back("NEAR_LIGHTS");
   if (shading.lights_about) defines.emplace_back("LIGHTS_ABOUT");

@@ -46,7 +46,8 @@ struct Shading {
   bool backdrop = false;          ///< and the camera sees it otherwise, through what does not refract, too
   bool film_transparent = false;  ///< or as a transparent film
   bool sees_behind = false;       ///< what stands there before that is found by rays
-  bool mirrors_world = false;     ///< or in its facets, and what stands before it
+  bool mirrors_world = false;     ///< or in its facets
+  bool mirrors_hindered = false;  ///< and rays find what stands before it
   bool lights_at_place = false;   ///< the place that is shaded draws its own directions of lights that have a place
   bool near_lights = false;       ///< such lights send each point of a grain that has light maps what they send there
   bool lights_about = false;      ///< and are so near that it matters where light comes in

@@ -4,7 +4,7 @@
 //
 // What is chosen at compile time:
 //   MIRRORS_WORLD        the surface has facets, and there is a world, or something that may stand before it
-//   SHADOWS              something may: a ray follows
+//   MIRRORS_HINDERED     something may: a ray follows
 #include "models/interface.glsl"
 #include "models/pixel_random.glsl"
 #include "physics/prelude.glsl"
@@ -31,7 +31,7 @@ float share_of_light(SurfacePoint point, LightSample light, float mu_o) {
   return light.density / (light.density + own);
 }
 
-#ifdef SHADOWS
+#ifdef MIRRORS_HINDERED
 // What a surface mirrors this much of, a ray always follows; what it mirrors less of, as often as it is less, to count as much more (Arvo and
 // Kirk, "Particle Transport and Image Synthesis", 1990, Russian roulette).
 const float MIRRORED_FOR_SURE = 0.1;
@@ -66,7 +66,7 @@ Mirrored mirrored_world(SurfacePoint point, float mu_o) {
   float passed = 2.0 * visibility * mu_i * (mu_o + ggx_smith_root(mu_o, alpha));
   float share = own / (own + drawn_density_of_world(mirrored.from));
   mirrored.passed = passed * facet_reflectance(mu_h);
-#ifdef SHADOWS
+#ifdef MIRRORS_HINDERED
   mirrored.passed *= follow(mirrored.passed);
 #endif
   mirrored.radiance = share * mirrored.passed * seen_of_world(mirrored.from);

@@ -16,8 +16,8 @@
 //   WHOLE_GRAIN          the model knows what light does in all of the grain, but not where it enters
 //   EMITS                the surface sends out light of its own
 //   PORTION              of all that, one thing alone is told (models/portions.glsl)
-//   MIRRORS_WORLD        the surface has facets, and there is something to be mirrored; where anything may stand in the way, it is for a later
-//                        pass to add
+//   MIRRORS_WORLD        the surface has facets, and there is something to be mirrored
+//   MIRRORS_HINDERED     something may stand in the way: it is for a later pass to add
 //   SEES_BEHIND          the surface does not refract, and what is seen straight through it is for that pass, too
 //   FACETS_ALONE         the surface is of facets alone
 //   MIRRORED             the viewer is another surface, a pixel each
@@ -201,7 +201,7 @@ vec3 locally_lit(SurfacePoint point, Outwards outwards) {
 vec3 emitted();
 #endif
 
-#if (defined(MIRRORS_WORLD) && defined(SHADOWS)) || defined(SEES_BEHIND)
+#if defined(MIRRORS_HINDERED) || defined(SEES_BEHIND)
 #define LOOKS_ON
 Mirrored mirrored = Mirrored(vec3(0.0), vec3(0.0), vec3(0.0));
 #endif
@@ -238,7 +238,7 @@ vec3 lit_point(SurfacePoint point) {
   sum += portion(TRANSMISSION_PORTION, crossing);
 #endif
 #ifdef MIRRORS_WORLD
-#ifdef SHADOWS
+#ifdef MIRRORS_HINDERED
   mirrored = mirrored_world(point, outwards.mu);
   mirrored.radiance = portion(SPECULAR_PORTION, mirrored.radiance);
   mirrored.passed = portion(SPECULAR_PORTION, mirrored.passed);

@@ -148,7 +148,8 @@ void write_shading(Writer& writer) {
                                                           near_instances,
                                                           told,
                                                           clear};
-  const std::vector<std::vector<std::string>> mirrors = {{"MIRRORS_WORLD"}, {"MIRRORS_WORLD", "SHADOWS"}};
+  const std::vector<std::vector<std::string>> mirrors = {
+      {"MIRRORS_WORLD"}, {"MIRRORS_WORLD", "MIRRORS_HINDERED"}, {"MIRRORS_WORLD", "MIRRORS_HINDERED", "SHADOWS"}};
   std::set<std::string> written;
   for (const scene::Material& material : every_choice()) {
     const std::string model(scene::model_names[static_cast<std::size_t>(material.model)]);

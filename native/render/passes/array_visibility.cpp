@@ -47,7 +47,7 @@ Mirrors ArrayVisibility::mirrors(const Content& content, bool traced, bool world
                                  const std::function<bool(std::size_t unit)>& asks) const {
   if (behind && traced) return Mirrors::hindered;
   if (!content.facets(asks)) return Mirrors::none;
-  if (!content.shadows()) return world ? Mirrors::unhindered : Mirrors::none;
+  if (!content.hinders_mirrors()) return world ? Mirrors::unhindered : Mirrors::none;
   return traced ? Mirrors::hindered : Mirrors::none;
 }
 

@@ -149,6 +149,7 @@ bool ShadePass::shade_seen_units(const Sample& sample, const ShadowPass& shadows
                  .gathered = gathered.ran() && sample.exchange.any(),
                  .sees_behind = sees_behind,
                  .mirrors_world = sample.mirrors != Mirrors::none && sample.portion != Portion::normal,
+                 .mirrors_hindered = looks_on,
                  .portion = sample.portion});
     shadows.bind(program, material);
     gathered.bind(program);
@@ -272,11 +273,8 @@ const gl::Program& ShadePass::prepare(const Sample& sample, std::size_t unit, Sh
   const double pixels = draw == nullptr ? 0.0 : pixels_of(sample, *draw);
   shading.summed = draw != nullptr && !shading.mirrored && !sample.lighting.any_local() &&
                    ProductSums::pay(material, sample.lights.distant, pixels);
-  // What a grain with hollows does to its own light its stored transport tells.
-  const bool nothing_stands_in_light = shading.shadows == Shadows::none ||
-                                       (shading.alone && !shading.exchange && scene::traits_of(material.model()).mesh);
-  shading.together =
-      shading.summed && nothing_stands_in_light && ProductSums::can_be_together(material, sample.lights.distant.size());
+  shading.together = shading.summed && shading.shadows == Shadows::none &&
+                     ProductSums::can_be_together(material, sample.lights.distant.size());
   const bool stored = draw != nullptr && scene::traits_of(material.model()).mesh && sample.stored_lights.any(number);
   if (shading.summed) {
     const int lines = LightLines::across(material, pixels);
