@@ -75,13 +75,14 @@ void ProductSums::sum(const Sample& sample, const Draw& draw, std::optional<std:
   }
   const bool held = hold(of);
   tracked_ = asks_for_unscattered(material);
-  if (held && !tracked_) return;
+  if (held && (!tracked_ || tracked_sample_ == sample.index)) return;
   directions_.emplace(device);
   directions_->bind_storage(layout::DISTANT_LIGHTS_BINDING);
   const glm::ivec3 nodes = light_nodes(material);
   if (tracked_)
     tracks_.trace(sample.cache, material, nodes, of.grain_to_prototype, lights.size(), together,
                   static_cast<int>(sample.index));
+  tracked_sample_ = sample.index;
   if (held) return;
   if (lines > 0) lines_.cut(sample.cache, material, of.grain_to_prototype, lights.size(), lines);
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
@@ -56,6 +57,7 @@ class ProductSums {
   std::optional<gl::Buffer> directions_;
   std::optional<gl::Volume> sums_;
   bool tracked_ = false;
+  std::uint32_t tracked_sample_ = 0;
   LightTracks tracks_;
   LightLines lines_;
 };

@@ -271,7 +271,8 @@ const gl::Program& ShadePass::prepare(const Sample& sample, std::size_t unit, Sh
   const Draw* draw = sample.content.draw(unit);
   const std::size_t number = draw == nullptr ? 0 : static_cast<std::size_t>(draw - sample.content.draws().data());
   const double pixels = draw == nullptr ? 0.0 : pixels_of(sample, *draw);
-  shading.summed = draw != nullptr && !shading.mirrored && !sample.lighting.any_local() &&
+  // What is mirrored is few pixels: sums pay if it is the very draw that was seen.
+  shading.summed = draw != nullptr && (!shading.mirrored || shading.alone) && !sample.lighting.any_local() &&
                    ProductSums::pay(material, sample.lights.distant, pixels);
   shading.together = shading.summed && shading.shadows == Shadows::none &&
                      ProductSums::can_be_together(material, sample.lights.distant.size());
