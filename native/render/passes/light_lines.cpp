@@ -19,16 +19,24 @@ constexpr double looks_a_line = 40.0;
 constexpr double looks_a_pixel_of_convex = 30.0;
 constexpr double looks_a_pixel = 300.0;
 
+// Of lights that lie where they lay in the sample before: as many share the lines, and more where a picture is to be
+// rid of its noise.
+constexpr double samples_of_steady = 2.0;
+
 // As shaders/passes/cut_light_lines.comp has it.
 constexpr int lines_a_group = 64;
 
 }  // namespace
 
-int LightLines::across(const DeviceMaterial& material, double pixels) {
+int LightLines::across(const DeviceMaterial& material, const std::vector<LightDirection>& lights, double pixels) {
   if (material.has("REFRACTION")) return 0;
   const int wanted = static_cast<int>(std::min(std::sqrt(pixels) / pixels_a_line, static_cast<double>(most_lines)));
   const int side = std::max((wanted + lines_step - 1) / lines_step * lines_step, fewest_lines);
-  const double spared = pixels * (material.has("CONVEX") ? looks_a_pixel_of_convex : looks_a_pixel);
+  const bool steady = std::all_of(lights.begin(), lights.end(), [](const LightDirection& light) {
+    return light.angle == 0.0 && light.density == 0.0;
+  });
+  const double spared =
+      pixels * (material.has("CONVEX") ? looks_a_pixel_of_convex : looks_a_pixel) * (steady ? samples_of_steady : 1.0);
   return looks_a_line * side * side < spared ? side : 0;
 }
 

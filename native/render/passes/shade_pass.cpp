@@ -278,7 +278,7 @@ const gl::Program& ShadePass::prepare(const Sample& sample, std::size_t unit, Sh
                      ProductSums::can_be_together(material, sample.lights.distant.size());
   const bool stored = draw != nullptr && scene::traits_of(material.model()).mesh && sample.stored_lights.any(number);
   if (shading.summed) {
-    const int lines = LightLines::across(material, pixels);
+    const int lines = LightLines::across(material, sample.lights.distant, pixels);
     shading.light_lines = lines > 0;
     sums_.sum(sample, *draw, stored ? std::optional(number) : std::nullopt, lines, shading.together);
   }
