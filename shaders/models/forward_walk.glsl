@@ -125,150 +125,165 @@ Radiance walked_radiance(vec3 place, vec3 direction, vec3 to_light, int light, f
   bool unmet = false;          // where the walk is now no light was looked for from there
 #endif
   float sharpness = SUN_SHARPNESS * sqrt(1.0 + float(sample_index) / SHARPENED_BY);
-  for (int i = 0; i < MOST_STEPS; ++i) {
-    vec4 random = vec4(pcg4d(seed + uvec4(0u, 0u, 0u, uint(i + 1) << 8u)) >> 8u) * (1.0 / 16777216.0);
-    if (i == 0) random.xy = low_discrepancy_beside_pixel(uint(sample_index), pcg4d(uvec4(seed.xy, 5u, seed.w)).xy);
-    Spectrum sigma_t = sigma_s + sigma_a;
-#ifdef GREY
-    float flown_at = sigma_t;
-#else
-    // As one of the channels, drawn for each step, would fly: all count by how likely they would, together, have done so.
-    random.w *= 3.0;
-    float flown_at = sigma_t[int(random.w)];
-    random.w = fract(random.w);
+  int i = 0;
+  bool again_inside;
+  do {
+    float leaving = 0.0;  // the grain: what counts of it
+#ifdef WALKS_END_IN_WORLD
+    float seen_outside = 1.0;
+    vec3 outside;
 #endif
-    float flight = max(-log(1.0 - random.x), LEAST_FLIGHT) / max(flown_at, LEAST_EXTINCTION);
-    float way = way_through(place, direction, flight);
-    place += way * direction;
+    for (; i < MOST_STEPS; ++i) {
+      vec4 random = vec4(pcg4d(seed + uvec4(0u, 0u, 0u, uint(i + 1) << 8u)) >> 8u) * (1.0 / 16777216.0);
+      if (i == 0) random.xy = low_discrepancy_beside_pixel(uint(sample_index), pcg4d(uvec4(seed.xy, 5u, seed.w)).xy);
+      Spectrum sigma_t = sigma_s + sigma_a;
+#ifdef GREY
+      float flown_at = sigma_t;
+#else
+      // As one of the channels, drawn for each step, would fly: all count by how likely they would, together, have done so.
+      random.w *= 3.0;
+      float flown_at = sigma_t[int(random.w)];
+      random.w = fract(random.w);
+#endif
+      float flight = max(-log(1.0 - random.x), LEAST_FLIGHT) / max(flown_at, LEAST_EXTINCTION);
+      float way = way_through(place, direction, flight);
+      place += way * direction;
 #ifndef GREY
-    vec3 passed = exp(-sigma_t * way);
+      vec3 passed = exp(-sigma_t * way);
 #endif
-    if (way >= flight) {
+      if (way >= flight) {
 #ifdef GREY
-      left *= sigma_s / sigma_t;
+        left *= sigma_s / sigma_t;
 #else
-      left *= 3.0 * sigma_s * passed / dot(sigma_t, passed);
+        left *= 3.0 * sigma_s * passed / dot(sigma_t, passed);
 #endif
-      if (kept < LEAST_KEPT) {
-        sum += left * source_at(place) / SPECTRUM(forward.similar_albedo);
-        break;
-      }
-      mirrored = false;
+        if (kept < LEAST_KEPT) {
+          sum += left * source_at(place) / SPECTRUM(forward.similar_albedo);
+          break;
+        }
+        mirrored = false;
 #ifdef TRACED
-      Unscattered unscattered = unscattered_found(place, light);
+        Unscattered unscattered = unscattered_found(place, light);
 #elif defined(LIGHT_LINES)
-      Unscattered unscattered = Unscattered(to_light, way_of_light(place, to_light, light), 1.0);
+        Unscattered unscattered = Unscattered(to_light, way_of_light(place, to_light, light), 1.0);
 #else
-      Unscattered unscattered = unscattered_at(place, to_light);
+        Unscattered unscattered = unscattered_at(place, to_light);
 #endif
-      first_place = false;
-      float versine = 1.0 - dot(unscattered.back, direction);
-      float phase = henyey_greenstein(versine, g, one_minus_g);
-      float mean_cosine = whole && !narrow ? forward.wide_g : g;
-      bool coarser = !narrow && scatterings + 1 >= forward.exact_scatterings && scatterings % 2 == 1;
-      // What comes from there on is told of the medium that is similar in its first moment (van de Hulst 1980, section 14.1.3).
-      if (coarser) sigma_s /= 1.0 + mean_cosine;
-      float wide = whole && versine < forward.peak_versine ? forward.edge : phase;
-      Spectrum wide_sigma_s = narrow ? sigma_s * (1.0 - forward.peak) : sigma_s;
-      Spectrum lit = wide * exp(-(wide_sigma_s + sigma_a) * unscattered.way);
-      if (narrow) {
-        lit += (phase - wide) * exp(-(sigma_s + sigma_a) * unscattered.way);
-      } else if (whole) {
-        lit /= 1.0 - forward.peak;
-      }
-      bool without_peak = whole && !narrow;
+        first_place = false;
+        float versine = 1.0 - dot(unscattered.back, direction);
+        float phase = henyey_greenstein(versine, g, one_minus_g);
+        float mean_cosine = whole && !narrow ? forward.wide_g : g;
+        bool coarser = !narrow && scatterings + 1 >= forward.exact_scatterings && scatterings % 2 == 1;
+        // What comes from there on is told of the medium that is similar in its first moment (van de Hulst 1980, section 14.1.3).
+        if (coarser) sigma_s /= 1.0 + mean_cosine;
+        float wide = whole && versine < forward.peak_versine ? forward.edge : phase;
+        Spectrum wide_sigma_s = narrow ? sigma_s * (1.0 - forward.peak) : sigma_s;
+        Spectrum lit = wide * exp(-(wide_sigma_s + sigma_a) * unscattered.way);
+        if (narrow) {
+          lit += (phase - wide) * exp(-(sigma_s + sigma_a) * unscattered.way);
+        } else if (whole) {
+          lit /= 1.0 - forward.peak;
+        }
+        bool without_peak = whole && !narrow;
 #ifdef WALKS_END_IN_WORLD
 #ifdef TOGETHER
-      drawn = density_found;
+        drawn = density_found;
 #endif
-      lit *= share_of_drawn(drawn, density_of_turn(versine, g, one_minus_g, without_peak));
+        lit *= share_of_drawn(drawn, density_of_turn(versine, g, one_minus_g, without_peak));
 #endif
 #ifdef TOGETHER
-      lit *= unscattered.irradiance;
-      sum += left * lit * colour_found;
+        lit *= unscattered.irradiance;
+        sum += left * lit * colour_found;
 #else
-      sum += left * (unscattered.irradiance * lit);
+        sum += left * (unscattered.irradiance * lit);
 #endif
 
-      float turn = scattered_versine(g, one_minus_g, random.y * (narrow || !whole ? 1.0 : 1.0 - forward.peak));
-      if (narrow) {
-        narrow = turn < forward.peak_versine && random.w * henyey_greenstein(turn, g, one_minus_g) >= forward.edge;
-      } else if (whole && random.y * (1.0 - forward.peak) > 1.0 - forward.within) {
-        turn = random.w * forward.peak_versine;
-      }
+        float turn = scattered_versine(g, one_minus_g, random.y * (narrow || !whole ? 1.0 : 1.0 - forward.peak));
+        if (narrow) {
+          narrow = turn < forward.peak_versine && random.w * henyey_greenstein(turn, g, one_minus_g) >= forward.edge;
+        } else if (whole && random.y * (1.0 - forward.peak) > 1.0 - forward.within) {
+          turn = random.w * forward.peak_versine;
+        }
 #ifdef WALKS_END_IN_WORLD
-      turned_density = density_of_turn(turn, g, one_minus_g, without_peak);
-      unmet = false;
+        turned_density = density_of_turn(turn, g, one_minus_g, without_peak);
+        unmet = false;
 #endif
-      direction = turned(direction, turn, random.z);
-      if (narrow) continue;
-      sigma_s = wide_sigma_s;
-      ++scatterings;
-      kept *= abs(whole ? forward.wide_g : g);
-      if (coarser) {
-        whole = false;
-        g = mean_cosine * mean_cosine;
-        one_minus_g = 1.0 - g;
-      }
-      continue;
-    }
-#ifndef GREY
-    left *= 3.0 * passed / (passed.r + passed.g + passed.b);
-#endif
-#ifdef REFRACTION
-    vec3 normal = outwards_at(place);
-    float cosine = dot(normal, direction);
-    float again = fresnel_reflectance(min(cosine, 1.0), 1.0 / stored.eta);
-#ifdef TRACED
-    float followed = again;
-#else
-    if (mirrored && !first_place && again < 1.0) {
-      vec3 outside = refract(direction, -normal, stored.eta);
-      float lobe = (1.0 - again) * stored.eta * stored.eta * sharpness / (2.0 * PI) * exp(sharpness * (dot(outside, to_light) - 1.0));
-#ifdef WALKS_END_IN_WORLD
-      if (drawn > 0.0) lobe = 0.0;
-#endif
-      sum += left * lobe;
-    }
-    float followed = max(again, LEAST_FOLLOWED * largest(left));
-#endif
-    if (cosine <= 0.0) break;
-    if (random.w >= followed) {
-#ifdef WALKS_END_IN_WORLD
-      vec3 outside = refract(direction, -normal, stored.eta);
-      Spectrum leaving = left * ((1.0 - again) / (1.0 - followed));
-#endif
-#ifndef CONVEX
-      float beyond = comes_in_again(place, direction);
-      if (beyond > 0.0) {
-        left *= beyond / (1.0 - followed);
-        mirrored = false;
-#ifdef WALKS_END_IN_WORLD
-        unmet = true;
-#endif
+        direction = turned(direction, turn, random.z);
+        if (narrow) continue;
+        sigma_s = wide_sigma_s;
+        ++scatterings;
+        kept *= abs(whole ? forward.wide_g : g);
+        if (coarser) {
+          whole = false;
+          g = mean_cosine * mean_cosine;
+          one_minus_g = 1.0 - g;
+        }
         continue;
       }
+#ifndef GREY
+      left *= 3.0 * passed / (passed.r + passed.g + passed.b);
 #endif
+#ifdef REFRACTION
+      vec3 normal = outwards_at(place);
+      float cosine = dot(normal, direction);
+      float again = fresnel_reflectance(min(cosine, 1.0), 1.0 / stored.eta);
+#ifdef TRACED
+      float followed = again;
+#else
+      if (mirrored && !first_place && again < 1.0) {
+        vec3 outside = refract(direction, -normal, stored.eta);
+        float lobe = (1.0 - again) * stored.eta * stored.eta * sharpness / (2.0 * PI) * exp(sharpness * (dot(outside, to_light) - 1.0));
 #ifdef WALKS_END_IN_WORLD
-      if (!first_place) leave_for_world(leaving, outside, turned_density, unmet);
+        if (drawn > 0.0) lobe = 0.0;
 #endif
-      break;
-    }
-    left *= again / followed;
-    direction = direction - 2.0 * cosine * normal;
-    mirrored = true;
+        sum += left * lobe;
+      }
+      float followed = max(again, LEAST_FOLLOWED * largest(left));
+#endif
+      if (cosine <= 0.0) break;
+      if (random.w >= followed) {
+        leaving = 1.0 / (1.0 - followed);
+#ifdef WALKS_END_IN_WORLD
+        seen_outside = (1.0 - again) * leaving;
+        outside = refract(direction, -normal, stored.eta);
+#endif
+        break;
+      }
+      left *= again / followed;
+      direction = direction - 2.0 * cosine * normal;
+      mirrored = true;
 #if defined(WALKS_END_IN_WORLD) && !defined(TRACED)
-    unmet = true;
+      unmet = true;
 #endif
 #else
+      leaving = 1.0;
+#ifdef WALKS_END_IN_WORLD
+      outside = direction;
+#endif
+      break;
+#endif
+    }
+    // Software renderers follow several walks at once: what those that have left may enter again is looked for when all are done.
+    again_inside = false;
+    if (leaving > 0.0) {
 #ifndef CONVEX
-    if (comes_in_again(place, direction) > 0.0) continue;
+      float beyond = comes_in_again(place, direction);
+      again_inside = beyond > 0.0;
 #endif
 #ifdef WALKS_END_IN_WORLD
-    if (!first_place) leave_for_world(left, direction, turned_density, unmet);
+      if (!again_inside && !first_place) leave_for_world(left * seen_outside, outside, turned_density, unmet);
 #endif
-    break;
+#ifndef CONVEX
+      left *= beyond * leaving;
+#ifdef REFRACTION
+      mirrored = false;
+#ifdef WALKS_END_IN_WORLD
+      unmet = true;
 #endif
-  }
+#endif
+      ++i;
+#endif
+    }
+  } while (again_inside);
   return sum;
 }
