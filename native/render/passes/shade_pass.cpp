@@ -271,7 +271,7 @@ const gl::Program& ShadePass::prepare(const Sample& sample, std::size_t unit, Sh
   const Draw* draw = sample.content.draw(unit);
   const std::size_t number = draw == nullptr ? 0 : static_cast<std::size_t>(draw - sample.content.draws().data());
   const double pixels = draw == nullptr ? 0.0 : pixels_of(sample, *draw);
-  // What is mirrored is few pixels: sums pay if it is the very draw that was seen.
+  // Few pixels mirror a draw: sums pay there if they are at hand, of the only draw, which was shaded by them.
   shading.summed = draw != nullptr && (!shading.mirrored || shading.alone) && !sample.lighting.any_local() &&
                    ProductSums::pay(material, sample.lights.distant, pixels);
   shading.together = shading.summed && shading.shadows == Shadows::none &&
