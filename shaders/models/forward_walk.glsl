@@ -231,8 +231,8 @@ Radiance walked_radiance(vec3 place, vec3 direction, vec3 to_light, int light, f
       float followed = again;
 #else
       if (mirrored && !first_place && again < 1.0) {
-        vec3 outside = refract(direction, -normal, stored.eta);
-        float lobe = (1.0 - again) * stored.eta * stored.eta * sharpness / (2.0 * PI) * exp(sharpness * (dot(outside, to_light) - 1.0));
+        vec3 mirrored_out = refract(direction, -normal, stored.eta);
+        float lobe = (1.0 - again) * stored.eta * stored.eta * sharpness / (2.0 * PI) * exp(sharpness * (dot(mirrored_out, to_light) - 1.0));
 #ifdef WALKS_END_IN_WORLD
         if (drawn > 0.0) lobe = 0.0;
 #endif
