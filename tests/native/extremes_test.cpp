@@ -29,7 +29,7 @@ bool all_extremes() { return std::getenv("MESOGRAIN_ALL_EXTREMES") != nullptr; }
 #if defined(__SANITIZE_ADDRESS__)
 constexpr int some = 20;
 #else
-constexpr int some = 200;
+constexpr int some = 120;
 #endif
 
 int grain_count() { return all_extremes() ? 10000 : some; }
@@ -124,6 +124,9 @@ glm::dvec3 sent_back(View& view, const Material& material) {
 }
 
 TEST(Extremes, GrainsSendBackNoMoreThanCameIn) {
+#if defined(__SANITIZE_ADDRESS__)
+  GTEST_SKIP() << "What the device draws is not instrumented, and what sends it is by the other tests here.";
+#endif
   View view(24, 24);
   view.set_taps(64);
   for (const Model model : {Model::model_2, Model::model_3})

@@ -138,12 +138,17 @@ TEST_F(HeapTest, AnArrayOfOpaqueGrainsIsAsOneByOne) {
   }
 }
 
+#if defined(__SANITIZE_ADDRESS__)
+// What the device draws is not instrumented, and the same code sends it to each model's program.
+const std::vector<scene::Model> translucent = {scene::Model::model_3};
+#else
+const std::vector<scene::Model> translucent = {scene::Model::model_2, scene::Model::model_3};
+#endif
+
 // Their light maps are from directions near the light's.
 TEST_F(HeapTest, AnArrayOfTranslucentGrainsIsNearlyAsOneByOne) {
-  for (const Visibility visibility : {Visibility::drawn, Visibility::cast}) {
-    expect_array_as_one_by_one(few_triangles(), scene::Model::model_2, 0.035, visibility);
-    expect_array_as_one_by_one(few_triangles(), scene::Model::model_3, 0.035, visibility);
-  }
+  for (const Visibility visibility : {Visibility::drawn, Visibility::cast})
+    for (const scene::Model model : translucent) expect_array_as_one_by_one(few_triangles(), model, 0.035, visibility);
 }
 
 // Grains on a ground, some mirrored, close enough to shade each other; a lamp and a sun.

@@ -10,10 +10,13 @@ from mesograin.engine import identities, motion, passes, status
 
 DISTANCES = (6.0, 5.0, 4.0)
 
+HELD_SIZE = 104
+"""Pixels on each side of what holds the device, for some nine seconds of two cores."""
+
 
 def hold_device(window):
     """A native.View and its native.Rendering, whose one sample holds the device's thread for many seconds."""
-    view = held_device.view(window.native, 144)
+    view = held_device.view(window.native, HELD_SIZE)
     return view, view.start(1)
 
 
@@ -105,7 +108,7 @@ def end_render_where_the_device_gets_busy(window, owner, name, blurred=False, ma
     render.resolution_x = render.resolution_y = 64
     render.use_motion_blur = blurred
     status.clear()
-    view, held = held_device.view(window.native, 144), []
+    view, held = held_device.view(window.native, HELD_SIZE), []
     called = getattr(owner, name)
 
     def hold_and_call(*arguments):
