@@ -11,8 +11,8 @@
 namespace mesograin::transport {
 
 /// The fluence of rays at a grid's nodes, for each of some extinctions, sigma_t per unit of the body. It is summed in
-/// cells, eight numbers beside one another, and comes to the nodes at the end: most of what light in a body takes to
-/// be found is spent here.
+/// cells, eight numbers beside one another, and comes to the nodes at the end: summed at each node that was passed it
+/// took half of the time that a new mesh takes.
 class Tracks {
  public:
   Tracks(const Grid& grid, const std::vector<double>& extinctions);
