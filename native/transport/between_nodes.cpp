@@ -1,6 +1,7 @@
 // Two corrections. A line between two nodes lies h^2 f''/12 above f in the mean: light that falls off within few
-// spacings would reach too far at each scattering. And a node beyond the surface knows the light at the surface's
-// nearest point, or a little below, as if it were that far out: light is taken to go on there as it rises below.
+// spacings would reach too far at each scattering, and to what looks in. And a node beyond the surface knows the light
+// at the surface's nearest point, or a little below, as if it were that far out: light is taken to go on there as it
+// rises below.
 #include "transport/between_nodes.h"
 
 #include <cmath>
@@ -91,7 +92,9 @@ void extrapolate(const Nodes& nodes, const glm::ivec3& node, float spacing, Entr
   }
 }
 
-BetweenNodes amounts_of(const Grid& grid, bool straightened) {
+}  // namespace
+
+BetweenNodes between_nodes(const Grid& grid) {
   const Nodes nodes(grid);
   const glm::vec3& spacing = grid.spacing();
   const float mean_spacing = std::cbrt(spacing.x * spacing.y * spacing.z);
@@ -105,7 +108,7 @@ BetweenNodes amounts_of(const Grid& grid, bool straightened) {
         entries.emplace_back(self, self, 1.0F);
         if (!nodes.inside(node))
           extrapolate(nodes, node, mean_spacing, entries);
-        else if (straightened)
+        else
           straighten(nodes, node, entries);
       }
   const auto count = static_cast<Eigen::Index>(grid.places().size());
@@ -113,11 +116,5 @@ BetweenNodes amounts_of(const Grid& grid, bool straightened) {
   amounts.setFromTriplets(entries.begin(), entries.end());
   return amounts;
 }
-
-}  // namespace
-
-BetweenNodes between_nodes(const Grid& grid) { return amounts_of(grid, true); }
-
-BetweenNodes beyond_surface(const Grid& grid) { return amounts_of(grid, false); }
 
 }  // namespace mesograin::transport

@@ -13,7 +13,4 @@ using BetweenNodes = Eigen::SparseMatrix<float, Eigen::RowMajor>;
 
 BetweenNodes between_nodes(const Grid& grid);
 
-/// The same for nodes beyond the surface alone: inside, lines between nodes are what they were.
-BetweenNodes beyond_surface(const Grid& grid);
-
 }  // namespace mesograin::transport

@@ -111,7 +111,6 @@ StoredTransport transport_by(const Walks& walks, const StoredMedium& medium, con
   const int channels = stored.channels;
   if (medium.albedo == glm::dvec3(0.0)) return stored;  // clear: nothing is scattered
   const BetweenNodes between = between_nodes(grid);
-  const BetweenNodes beyond = beyond_surface(grid);
   // What is seen of the others is nearly what is seen of this one.
   const double shared_sigma_t = middle(medium.sigma_t);
   const double most_albedo = std::max({medium.albedo.r, medium.albedo.g, medium.albedo.b});
@@ -127,11 +126,11 @@ StoredTransport transport_by(const Walks& walks, const StoredMedium& medium, con
         part_of(effort, static_cast<double>(channel) / channels, static_cast<double>(channel + 1) / channels));
     // What is scattered again is told by these lobes well enough, and all that is not is known.
     scattered -= first;
-    // What view rays see just below the surface lies between nodes beyond it and those below. Even light stays even.
+    // View rays see what lies between nodes, just below the surface those beyond it and below. Even light stays even.
     // Where light that was scattered before is told beside it (below), its fall towards the surface is in that.
     if (!stored.has_unscattered) light.setZero();
     add_product(light, scattered, lobes.lobes, effort);
-    if (stored.has_unscattered) light = Lights(beyond * light);
+    if (stored.has_unscattered) light = Lights(between * light);
     of_channels.push_back(principal_terms(walks.sights(sigma_t), light, lobes, stored.terms, effort));
     Lights& amounts = of_channels.back().amounts;
     amounts *= static_cast<float>(medium.albedo[channel] / most_albedo);
@@ -184,7 +183,7 @@ Lights light_of_lamp(const Walks& walks, const StoredMedium& medium, const Lamp&
     if (medium.eta == 1.0)
       light.col(channel) = over_share_below(grid, sigma_t) * (all - first);
     else
-      light.col(channel) = beyond_surface(grid) * all;
+      light.col(channel) = between * all;
   }
   return light;
 }

@@ -49,15 +49,16 @@ Quality fine(const Body& body, const StoredMedium& medium) {
   return spacing < thick_spacing ? thin : spacing < thickest_spacing ? thick : thickest;
 }
 
-// How much denser than densest_told one channel may be that is told as if it were that, so that the others are told at
-// all. A grain that is so dense in more of them is nearer to photons by model 3 (docs/shapes.md).
-constexpr double most_thinned = 2.0;
+// How much denser than densest_told a medium may be that is told as if it were that, and how much one channel, so that
+// the others are told at all. A grain that is denser is nearer to photons by model 3 (docs/shapes.md).
+constexpr double most_thinned = 1.3;
+constexpr double most_thinned_alone = 2.0;
 
 /// Whether so dense a medium is stored, where densest_told() is `told`.
 bool is_told(const StoredMedium& medium, double told) {
   const int too_dense =
       (medium.sigma_t.r > told ? 1 : 0) + (medium.sigma_t.g > told ? 1 : 0) + (medium.sigma_t.b > told ? 1 : 0);
-  return too_dense == 0 || (too_dense == 1 && densest(medium) <= most_thinned * told);
+  return densest(medium) <= (too_dense <= 1 ? most_thinned_alone : most_thinned) * told;
 }
 
 /// Light that begins in a body comes in nowhere.
@@ -187,7 +188,7 @@ void Works::work(const Job& job, const std::stop_token& stop) {
           "Light's transport is stored for grains up to about {:.0f} mean free paths across, in one channel {:.0f}; "
           "this "
           "one has {:.0f}.",
-          2.0 * told, 2.0 * most_thinned * told, 2.0 * densest(medium));
+          2.0 * most_thinned * told, 2.0 * most_thinned_alone * told, 2.0 * densest(medium));
     if (job.order.lamp) {
       if (is_inside(*job.order.lamp, body)) {
         tell(nullptr, {}, true);
