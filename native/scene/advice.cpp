@@ -134,8 +134,9 @@ Advice advise(const Material& material, const Shape& shape, double tolerance) {
     return {Model::transport, 0.0,
             fmt::format("{}: nothing is scattered, and no other model shows what is behind a clear grain of any shape.",
                         named(Model::transport))};
+  const bool thick = radius > automatic::most_transported;
   const bool transported =
-      shape.closed && radius <= automatic::most_transported && radii.back() <= automatic::densest_transported;
+      shape.closed && radii.back() <= (thick ? automatic::all_transported : automatic::densest_transported);
   if (transported && std::abs(material.g) > automatic::most_g) return forwards(material.g);
   const double round = roundness(shape);
   const std::string_view told = round > 0.99 ? "a sphere" : "grains about as round";
@@ -145,14 +146,15 @@ Advice advise(const Material& material, const Shape& shape, double tolerance) {
     if (error <= tolerance) return measured(model.model, error, told, radius);
     if (!nearest || error < nearest->error) nearest = measured(model.model, error, told, radius);
   }
-  const bool thick = radius > automatic::most_transported;
+  const std::string_view others = thick ? "five shapes of radius 20" : "cube, flake and rice";
+  const double of_transport = thick ? automatic::thick_transport_error : automatic::transport_error;
   const double of_model_3 = thick ? automatic::thick_model_3_error : automatic::model_3_error;
   const Advice any_shape =
-      transported ? measured(Model::transport, automatic::transport_error, "cube, flake and rice", radius)
+      transported ? measured(Model::transport, of_transport, others, radius)
                   : Advice{Model::model_3, of_model_3,
                            fmt::format("{}: {}, which transport cannot take; measured {:.2g} % off on {}.",
                                        named(Model::model_3), shape.closed ? "it is too thick" : "its mesh is open",
-                                       of_model_3, thick ? "five shapes of radius 20" : "cube, flake and rice")};
+                                       of_model_3, others)};
   // Of shapes like a cube's the tables above say nothing beyond what is taken for near enough of any.
   const bool nearer = nearest->error <= automatic::tolerance && nearest->error < any_shape.error;
   return nearer && any_shape.error > tolerance ? *nearest : any_shape;

@@ -50,9 +50,10 @@ inline constexpr std::string_view name = {json.dumps(auto["name"])};
 inline constexpr double tolerance = {float(auto["tolerance"])!r};
 inline constexpr double roundness_of_less_round = {float(auto["less_round"]["roundness"])!r};
 inline constexpr double roundness_of_flat = {float(auto["flat"]["roundness"])!r};
-/// Mean free paths to the radius, of the channel in the middle and of the densest.
+/// Mean free paths to the radius, of the channel in the middle and of the densest; or of all.
 inline constexpr double most_transported = {float(auto["most_transported"]["middle"])!r};
 inline constexpr double densest_transported = {float(auto["most_transported"]["densest"])!r};
+inline constexpr double all_transported = {float(auto["most_transported"]["all"])!r};
 inline constexpr double transport_error = {float(auto["angular"]["transport"])!r};
 inline constexpr double most_g = {float(auto["forwards"]["most_g"])!r};
 /// Up to this |g|.
@@ -62,7 +63,8 @@ struct Forwards {{
 }};
 inline constexpr std::array<Forwards, {len(forwards)}> forwards{{{{{of_g}}}}};
 inline constexpr double model_3_error = {float(auto["angular"]["model_3"])!r};
-/// Where it is too thick for transport.
+/// Of radius 20: the most that is stored, and where it is too thick for that.
+inline constexpr double thick_transport_error = {float(auto["thick"]["transport"])!r};
 inline constexpr double thick_model_3_error = {float(auto["thick"]["model_3"])!r};
 {tables}/// The cheapest first.
 inline constexpr std::array<OfModel, {len(auto["round"])}> of_models{{{{

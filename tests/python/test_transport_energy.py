@@ -9,6 +9,7 @@ import numpy
 import pytest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "bench"))
+import shape_pictures  # noqa: E402
 import sphere_mesh  # noqa: E402
 
 
@@ -81,6 +82,34 @@ def test_a_few_samples_tell_what_a_grain_that_scatters_forwards_shows_of_an_even
     assert abs(seen.mean() - 1.0) < 0.015
     # Its grain is .16 to .17: of ten seeds' thousands of pixels the brightest were 1.7 to 2.0.
     assert seen.std() < 0.2 and seen.max() < 2.2
+
+
+def benched(shape):
+    """One of shape_pictures.MESHES, smooth and all of it seen, and the radius of the sphere of equal volume."""
+    vertices, triangles = shape_pictures.mesh(shape)
+    vertices *= 1.4 / numpy.linalg.norm(vertices, axis=1).max()
+    corners = vertices[triangles]
+    across = numpy.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals = numpy.zeros_like(vertices)
+    for corner in range(3):
+        numpy.add.at(normals, triangles[:, corner], across)
+    normals /= numpy.linalg.norm(normals, axis=1, keepdims=True)
+    volume = abs(float((corners[:, 0] * across).sum())) / 6.0
+    mesh = native.Mesh(numpy.float32(vertices), numpy.float32(normals), numpy.uint32(triangles))
+    return mesh, (0.75 * volume / math.pi) ** (1.0 / 3.0)
+
+
+# A little too dense to be told, they are stored as if they were not: .998 to 1.003. Model 3 makes 1.02 of the flake and
+# .96 of the torus.
+@pytest.mark.parametrize("shape", ["flake", "torus"])
+def test_a_grain_that_is_thinned_keeps_its_energy(shape):
+    mesh, size = benched(shape)
+    medium = native.Material(model="transport", sigma_s=(20.0 / size,) * 3, sigma_a=(0.0,) * 3, eta=1.3,
+                             boundary="dielectric")
+    seen = seen_in_even_world(mesh, medium, 24)[..., 1]
+    print(shape, f"{seen.mean():.4f} {seen.min():.3f} {seen.max():.3f}")
+    assert abs(seen.mean() - 1.0) < 0.015
+    assert seen.min() > 0.85 and seen.max() < 1.05
 
 
 def uneven_world():
