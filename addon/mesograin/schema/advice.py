@@ -7,8 +7,8 @@ an ellipsoid whose isoperimetric quotient is LESS_ROUND["roundness"], and from a
 the front and the side, where it is not dark. FLAT: the same of a flake, whose quotient is FLAT["roundness"], at a
 radius of 100 of albedo 0.999 alone. ANGULAR: of others, the mean over a cube, a flake and rice at a radius of 3, eta
 1.3, albedo 0.9, three sides. THICK: of those that are nearly or quite too thick for `transport`, the mean over these
-three, sand and a torus at a radius of 20, three albedos, front and side. FORWARDS: where |g| is more than most_g, of a grain of sand by
-`transport`, by the largest |g| for which an error is told.
+three, sand and a torus at a radius of 20, three albedos, front and side. FORWARDS: where |g| is more than most_g, of a
+grain of sand by `transport`, by the largest |g| for which an error is told.
 """
 
 from dataclasses import dataclass
