@@ -18,8 +18,9 @@ namespace {
 // a direction's: fewer directions have more each.
 constexpr Quality coarse{.nodes = 1500, .directions = 16, .light_across = 24, .way_across = 6};
 
-// Within a second, where coarse nodes are so many mean free paths apart that what they tell is farther off.
-constexpr Quality less_coarse{.nodes = 4500, .directions = 16, .light_across = 32, .way_across = 8};
+// Within a second of two cores', where coarse nodes are so many mean free paths apart that what they tell is farther
+// off: some per cent from the final answer, too.
+constexpr Quality less_coarse{.nodes = 9000, .directions = 16, .light_across = 48, .way_across = 12};
 constexpr double coarse_spacing = 1.25;
 
 // Light takes a quarter of a megabyte of the device's memory for each prototype, a third where channels differ: one
