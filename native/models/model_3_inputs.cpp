@@ -133,6 +133,7 @@ void add_crossed(const std::array<BodyMedium, 3>& media, MaterialInputs& inputs)
 MaterialInputs model_3_inputs(const Material& material, double grain_radius) {
   const bool half_space = material.profile == Profile::half_space;
   MaterialInputs inputs = half_space ? half_space_inputs(material, false) : MaterialInputs{};
+  inputs.defines.emplace_back("ENTRIES");
   const BodySurface surface = body_surface(material);
   const std::array<BodyMedium, 3> media = body_media(material, grain_radius);
   add_body_uniforms(material, grain_radius, inputs);

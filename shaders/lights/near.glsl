@@ -6,7 +6,7 @@
 // in between it goes from one to the other.
 const real NEAR_RADII = 5.0;
 const real FAR_RADII = 6.75;
-// The same of models that know the grain inside, whose own error is no larger than what a lamp farther away is off.
+// The same of models that know the grain inside, or where light enters it, whose own error is no larger than what a lamp farther away is off.
 const real INSIDE_NEAR_RADII = 14.0;
 const real INSIDE_FAR_RADII = 20.0;
 // The same for a spot: how much of its soft edge crosses the grain.

@@ -18,12 +18,11 @@ struct LightSample {
   vec3 entering;       // irradiance of the parallel light that is worth what comes in elsewhere and leaves at the point
   vec3 entering_from;  // the direction towards that parallel light, of models that know the grain inside; to_light, but where a lamp is near
   vec3 itself;         // the direction towards it where to_light is that of an instance's map, drawn from nearby; to_light elsewhere
-  vec3 entering_once;  // the same, along the axis of the light's map, of what is scattered once; negative where that is not known
 };
 
 // Of a light that is the same for all of the grain.
 LightSample parallel_light(vec3 to_light, vec3 irradiance, int index, float angle, int map, float density) {
-  return LightSample(to_light, irradiance, index, angle, map, density, irradiance, to_light, to_light, vec3(-1.0));
+  return LightSample(to_light, irradiance, index, angle, map, density, irradiance, to_light, to_light);
 }
 
 // What the point and its viewer make of it, before any light.

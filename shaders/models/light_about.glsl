@@ -3,8 +3,8 @@
 // lamp and of a parallel light: their ratio is the irradiance of the parallel light that would leave as much.
 // Not physical: the grain is a ball, of the similar medium that scatters isotropically; light that comes in is not refracted.
 //
-// What is chosen at compile time: SINGLE_MARCHED (the model tells light that was scattered once by itself, along the light map) and
-// WHOLE_GRAIN (it knows more of the grain's shape than the normal).
+// What is chosen at compile time: SINGLE_MARCHED (the model tells light that was scattered once by itself, along the light map), WHOLE_GRAIN (it
+// knows more of the grain's shape than the normal) and ENTRIES (it looks about itself, and asks for the ball where that stands for the grain).
 #include "lights/light.glsl"
 #include "lights/near.glsl"
 #include "models/interface.glsl"
@@ -84,9 +84,8 @@ vec3 worth(Found found, vec3 brightest, vec3 own) {
   return mix(own, min(found.of_lamp / max(found.of_parallel, vec3(1e-30)), brightest), vec3(greaterThan(found.of_parallel, vec3(1e-30))));
 }
 
-// `lamp` as seen from `middle`, where grain space begins; `lamp_random`: which point of it; `to_middle`: from there to the lamp.
-// Instances are shown from directions nearby instead, whose mean is told.
-void look_about(DeviceLight lamp, vec3 middle, vec2 lamp_random, SurfacePoint point, vec3 to_middle, inout LightSample light) {
+// `lamp` as seen from `middle`, where grain space begins; `lamp_random`: which point of it.
+void look_in_ball(DeviceLight lamp, vec3 middle, vec2 lamp_random, SurfacePoint point, inout LightSample light) {
   float near = nearness(lamp, middle, 0.0, ball.radius * grain_unit, false);
   if (near == 0.0) return;
   float mu = clamp(dot(point.normal, point.to_viewer), 0.0, 1.0);
@@ -105,7 +104,6 @@ void look_about(DeviceLight lamp, vec3 middle, vec2 lamp_random, SurfacePoint po
   float first_random = low_discrepancy(uint(sample_index), pcg4d(seed).xy).x;
 
   Found all = Found(vec3(0.0), vec3(0.0));
-  Found once = Found(vec3(0.0), vec3(0.0));
   vec3 place = outwards;
   vec3 direction = inwards;
   vec3 left = vec3(1.0);
@@ -152,19 +150,23 @@ void look_about(DeviceLight lamp, vec3 middle, vec2 lamp_random, SurfacePoint po
       Found scattered = entering_by_cosine(around, place, direction);
       all = Found(all.of_lamp + left * scattered.of_lamp, all.of_parallel + left * scattered.of_parallel);
     } else {
-      LightDraw drawn = lamp_at(around, place);
-      vec3 lamp_here = left * drawn.irradiance * unscattered_share(place, drawn.to_light);
 #ifdef SINGLE_MARCHED
-      if (begins)
-        once = Found(once.of_lamp + lamp_here, once.of_parallel + left * unscattered_share(place, to_middle));
-      else
+      if (!begins)
 #endif
+      {
+        LightDraw drawn = lamp_at(around, place);
+        vec3 lamp_here = left * drawn.irradiance * unscattered_share(place, drawn.to_light);
         all = Found(all.of_lamp + lamp_here, all.of_parallel + left * unscattered_share(place, to_light));
+      }
     }
     begins = max(left.r, max(left.g, left.b)) < LEAST_LEFT;
   }
   light.entering = mix(light.irradiance, worth(all, around.irradiance, light.irradiance), near);
-#ifdef SINGLE_MARCHED
-  light.entering_once = worth(once, around.irradiance, light.irradiance);
-#endif
 }
+
+#ifndef ENTRIES
+// `to_middle`: from there to the lamp. Instances are shown from directions nearby instead, whose mean is told.
+void look_about(DeviceLight lamp, vec3 middle, vec2 lamp_random, SurfacePoint point, vec3 to_middle, inout LightSample light) {
+  look_in_ball(lamp, middle, lamp_random, point, light);
+}
+#endif

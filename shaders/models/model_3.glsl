@@ -10,6 +10,7 @@
 //   SINGLE_MARCHED       `refracted_light`: first-order scattering is not in the kernel
 #include "models/body_light.glsl"
 #include "models/interface.glsl"
+#include "models/lamp_at_entries.glsl"
 #include "models/light_map.glsl"
 #include "models/pixel_random.glsl"
 #include "models/portions.glsl"
@@ -111,9 +112,32 @@ float is_sphere(LightFrame frame, LightMapTexel mapped, float height, float from
   return 1.0 - smoothstep(1.0, 2.0, apart);
 }
 
+#ifdef LIGHTS_ABOUT
+// Grains whose sphere is as large as this, over how far they reach, are balls: in those walks tell more of a lamp than diffusion does.
+const float LEAST_ROUND = 0.85;
+const float ROUND = 0.95;
+
+// How much of the grain is a ball.
+float ball_share() { return smoothstep(LEAST_ROUND, ROUND, body.radius / grain_reach); }
+
+void look_about(DeviceLight lamp, vec3 middle, vec2 lamp_random, SurfacePoint point, vec3 to_middle, inout LightSample light) {
+  lamp_about_index = light.index;
+  lamp_about = LampAbout(lamp, lamp_random, middle, to_middle, vec3(0.0), nearness(lamp, middle, 0.0, grain_unit * grain_reach, true));
+  if (ball_share() > 0.0) look_in_ball(lamp, middle, lamp_random, point, light);
+}
+
+// How much of what the light does is told by where it enters.
+float by_entries(LightSample light, LightFrame frame) {
+  if (light.index != lamp_about_index) lamp_about.near = 0.0;
+  lamp_about.turned = frame.z_axis - lamp_about.to_middle;
+  return lamp_about.near * (1.0 - ball_share());
+}
+#endif
+
 struct Gathered {
   Spectrum grain;   // exitance per irradiance, by these samples
   Spectrum sphere;  // the same of the sphere that fits
+  Spectrum lamp;    // of the grain, per emission of a lamp that is near
 };
 
 // Where it is known where light came in, once for all taps, none asks for itself.
@@ -144,7 +168,7 @@ Gathered gather(Seen seen, Draws draws) {
 
   float last_share = float(textureSize(kernel_inverse, 0).x - 1);
   float shares = last_share * last_share / sampling.largest_depth;
-  Gathered sum = Gathered(Spectrum(0.0), Spectrum(0.0));
+  Gathered sum = Gathered(Spectrum(0.0), Spectrum(0.0), Spectrum(0.0));
   int i = 0;
   do {
     vec2 random = low_discrepancy(draws.first + uint(i), draws.offset);
@@ -164,7 +188,7 @@ Gathered gather(Seen seen, Draws draws) {
     float height_squared = radius * radius - dot(from_axis, from_axis);
     LightMapTexel entry = light_map_at(frame, seen.map, place * body.radius);
     float entry_height = entry.position.z / body.radius;
-    float cosine = entry.normal.z;
+    vec3 entry_normal = entry.normal;
     float lit = entry.lit ? 1.0 : 0.0;
     if (height_squared > 0.0) {
       float rise = sqrt(height_squared);
@@ -174,18 +198,26 @@ Gathered gather(Seen seen, Draws draws) {
       float same = is_sphere(frame, entry, sphere_height, length(from_axis), radius, rise / radius);
       // Farther off than this a texel's doubt is little beside the distance.
       same *= 1.0 - smoothstep(4.0, 8.0, length(spread) * body.radius / light_map_texel_width(frame));
+      vec3 sphere_normal = vec3(from_axis, rise) / radius;
       entry_height = entry.lit ? mix(entry_height, sphere_height, same) : sphere_height;
-      cosine = entry.lit ? mix(cosine, rise / radius, same) : rise / radius;
+      entry_normal = entry.lit ? mix(entry_normal, sphere_normal, same) : sphere_normal;
       lit = mix(lit, 1.0, same);
     }
     if (lit > 0.0) {
       float apart = max(distance(vec3(place, entry_height), position), nearest);
       lit *= light_reaches_tap(frame, body.radius * vec3(place, entry_height));
-      sum.grain += lit * min(weight * SPECTRUM(kernel_at(apart, cosine)), Spectrum(MOST_A_SAMPLE_COUNTS));
+      sum.grain += lit * min(weight * SPECTRUM(kernel_at(apart, entry_normal.z)), Spectrum(MOST_A_SAMPLE_COUNTS));
+#ifdef LIGHTS_ABOUT
+      if (lamp_about.near > 0.0) {
+        LampThere there = lamp_there(frame, body.radius * vec3(place, entry_height));
+        Spectrum sent = SPECTRUM(kernel_at(apart, max(dot(entry_normal, there.to_lamp), 0.0)));
+        sum.lamp += lit * lamp_enters(there, entry_normal) * min(weight * sent, Spectrum(MOST_A_SAMPLE_COUNTS));
+      }
+#endif
     }
   } while (++i < draws.count);
   float share = exp(-depth_here) * within / float(max(draws.count, 1));
-  return Gathered(share * sum.grain, share * sum.sphere);
+  return Gathered(share * sum.grain, share * sum.sphere, share * sum.lamp);
 }
 
 // Radiance per irradiance of light scattered many times, given that of the sphere that fits.
@@ -234,9 +266,71 @@ Entry entry_above(LightMapTexel mapped, LightFrame frame, vec3 point, vec3 centr
   return entry;
 }
 
-// Radiance inside, just below the surface, per irradiance: light that was scattered once on the view ray's way through the grain.
+// Light that has come in, at a point inside, before it is scattered.
+struct LightInside {
+  float irradiance;  // per irradiance outside
+  float way_in;      // over the grain's radius
+  vec3 direction;    // in which it goes
+};
+
+// Of light from `to_light` that would have entered `above` the point, straight, on a surface of this normal: at the place in the unit sphere that has
+// this normal so far above it.
+LightInside light_inside(vec3 to_light, vec3 normal, float above) {
+  float facing = max(dot(normal, to_light), 0.0);
+  vec3 aside = normal - facing * to_light;
+  float tilt = length(aside);
+  float depth = clamp(above, 0.0, 2.0 * facing);
+  float z = facing - depth;
+  vec3 lighting = at_nodes(refracted_light, vec2(min(tilt * inversesqrt(max((1.0 - z) * (1.0 + z), 1e-8)), 1.0), 0.5 + 0.5 * z)).rgb;
+  vec3 sideways = tilt > 1e-6 ? lighting.z / tilt * aside : vec3(0.0);
+  return LightInside(lighting.x, lighting.y * depth + max(above - depth, 0.0),
+                     sideways - sqrt(max((1.0 - lighting.z) * (1.0 + lighting.z), 0.0)) * to_light);
+}
+
+// What of it is scattered towards the viewer; `inwards`: the refracted view ray.
+Spectrum scattered_towards(LightInside light, vec3 inwards) {
+  vec3 turn = light.direction + single.sign_g * inwards;
+  float phase = light.irradiance * henyey_greenstein(0.5 * dot(turn, turn), single.absolute_g, single.one_minus_absolute_g);
+#ifdef FORWARD_PEAK
+  // Light that has met the peak before is scattered by the rest alone.
+  float rest = light.irradiance * single.rest * henyey_greenstein(0.5 * dot(turn, turn), single.rest_g, 1.0 - single.rest_g);
+  return mix(Spectrum(rest), Spectrum(phase), exp(-SPECTRUM(single.peak) * light.way_in));
+#else
+  return Spectrum(phase);
+#endif
+}
+
+#ifdef LIGHTS_ABOUT
+const int LOOKS_FOR_ENTRY = 2;
+
+// Of a lamp that is near, per emission. `entry`: above the point, as the light's map has it; where the lamp's light came in is looked for from there.
+LightInside lamp_inside(Seen seen, Entry entry, vec3 point, vec3 centre) {
+  vec3 enters = point + vec3(0.0, 0.0, entry.above);
+  LampThere there = lamp_there(seen.frame, body.radius * enters);
+  for (int look = 0; look < LOOKS_FOR_ENTRY; ++look) {
+    float along = dot(enters - point, entry.normal) / max(dot(there.to_lamp, entry.normal), LEAST_COSINE);
+    vec3 place = vec3((point + along * there.to_lamp).xy, point.z);
+    Entry other = entry_above(light_map_at(seen.frame, seen.map, place.xy * body.radius), seen.frame, place, centre, seen.fit.radius);
+    if (other.lit == 0.0) break;
+    entry = other;
+    enters = place + vec3(0.0, 0.0, entry.above);
+    there = lamp_there(seen.frame, body.radius * enters);
+  }
+  float facing = dot(there.to_lamp, entry.normal);
+  LightInside inside = light_inside(there.to_lamp, entry.normal, max(dot(enters - point, entry.normal), 0.0) / max(facing, LEAST_COSINE));
+  inside.irradiance *= facing > 0.0 ? there.irradiance : 0.0;
+  return inside;
+}
+#endif
+
+// Of light that was scattered once on the view ray's way through the grain: radiance inside, just below the surface.
+struct ScatteredOnce {
+  vec3 parallel;  // per irradiance
+  vec3 lamp;      // per emission of a lamp that is near
+};
+
 // `inwards`: the refracted view ray, light space.
-vec3 single_scattering(Seen seen, vec3 inwards, Draws draws) {
+ScatteredOnce single_scattering(Seen seen, vec3 inwards, Draws draws) {
   LightFrame frame = seen.frame;
   BodyFit fit = seen.fit;
   vec3 position = seen.position;
@@ -265,6 +359,7 @@ vec3 single_scattering(Seen seen, vec3 inwards, Draws draws) {
 
   float shift = low_discrepancy(draws.first, draws.offset).x;
   Spectrum sum = Spectrum(0.0);
+  Spectrum of_lamp = Spectrum(0.0);
   Spectrum plane = Spectrum(0.0);
   int i = 0;
   do {
@@ -289,31 +384,20 @@ vec3 single_scattering(Seen seen, vec3 inwards, Draws draws) {
     vec3 point = position + t * inwards;
     Entry entry = entry_above(light_map_at(frame, seen.map, point.xy * body.radius), frame, point, centre, fit.radius);
     if (entry.lit == 0.0) continue;
-    float above = entry.above;
-    float lit = entry.lit * light_reaches_tap(frame, body.radius * (point + vec3(0.0, 0.0, above)));
-
-    // The place in the unit sphere that has this normal above it, at this depth.
-    float tilt = length(entry.normal.xy);
-    float depth = clamp(above, 0.0, 2.0 * entry.normal.z);
-    float z = entry.normal.z - depth;
-    vec3 lighting = at_nodes(refracted_light, vec2(min(tilt * inversesqrt(max((1.0 - z) * (1.0 + z), 1e-8)), 1.0), 0.5 + 0.5 * z)).rgb;
-    float way_in = lighting.y * depth + max(above - depth, 0.0);
-    vec3 direction =
-        vec3(lighting.z * (tilt > 1e-6 ? entry.normal.xy / tilt : vec2(1.0, 0.0)), -sqrt(max((1.0 - lighting.z) * (1.0 + lighting.z), 0.0)));
-    vec3 turn = direction + single.sign_g * inwards;
-    float phase = henyey_greenstein(0.5 * dot(turn, turn), single.absolute_g, single.one_minus_absolute_g);
-#ifdef FORWARD_PEAK
-    // Light that has met the peak before is scattered by the rest alone.
-    Spectrum scattered = mix(Spectrum(single.rest * henyey_greenstein(0.5 * dot(turn, turn), single.rest_g, 1.0 - single.rest_g)), Spectrum(phase),
-                             exp(-SPECTRUM(single.peak) * way_in));
-#else
-    float scattered = phase;
-#endif
+    float lit = entry.lit * light_reaches_tap(frame, body.radius * (point + vec3(0.0, 0.0, entry.above)));
+    LightInside light = light_inside(vec3(0.0, 0.0, 1.0), entry.normal, entry.above);
     // Where the light's way in hardly grows, far samples are too rare for what they find; each may count as many, but not as any number.
-    sum += lit * lighting.x * scattered * drawn * min(exp(rate * t - sigma_t * (t + way_in)), Spectrum(MOST_A_SAMPLE_COUNTS));
+    sum += lit * scattered_towards(light, inwards) * drawn * min(exp(rate * t - sigma_t * (t + light.way_in)), Spectrum(MOST_A_SAMPLE_COUNTS));
+#ifdef LIGHTS_ABOUT
+    if (lamp_about.near > 0.0) {
+      light = lamp_inside(seen, entry, point, centre);
+      of_lamp += lit * scattered_towards(light, inwards) * drawn * min(exp(rate * t - sigma_t * (t + light.way_in)), Spectrum(MOST_A_SAMPLE_COUNTS));
+    }
+#endif
   } while (++i < draws.count);
   // What the lit plane's own integral says the samples should have found.
-  return single.sigma_s * sum * mean_way / max(plane, Spectrum(1e-30));
+  vec3 each = single.sigma_s * mean_way / max(plane, Spectrum(1e-30));
+  return ScatteredOnce(each * sum, each * of_lamp);
 }
 #endif
 
@@ -332,6 +416,12 @@ Outwards look_outwards(SurfacePoint point) { return through_surface(point); }
 
 vec3 evaluate_model(SurfacePoint point, Outwards outwards, LightSample light) {
   LightFrame frame = light_frame(light);
+#ifdef LIGHTS_ABOUT
+  // What enters is told over what a parallel light does that comes along the map's axis.
+  float entries_tell = by_entries(light, frame);
+  vec3 own_direction = light.to_light;
+  light.to_light = normalize(mix(light.to_light, frame.z_axis, entries_tell));
+#endif
   BodyFit fit = fit_body(point, outwards, light, frame);
   vec3 position = to_light_space(frame, point.position) / body.radius;
   vec3 normal = to_light_space(frame, point.normal);
@@ -360,19 +450,27 @@ vec3 evaluate_model(SurfacePoint point, Outwards outwards, LightSample light) {
   vec3 fit_normal = vec3(normal.xy * (tilt * inversesqrt(max(dot(normal.xy, normal.xy), 1e-12))), fit.facing);
   Seen seen = Seen(frame, light.map, fit, position, fit_normal);
   Gathered gathered = gather(seen, Draws(multiple_share, uint(sample_index * multiple_share), offset.xy));
+#ifdef LIGHTS_ABOUT
+  light.entering = mix(light.entering, lamp_about.lamp.emission.rgb * (gathered.lamp / max(gathered.grain, Spectrum(1e-6))), entries_tell);
+#endif
   vec3 radiance = portion(SUBSURFACE_PORTION, light.entering * on_the_grain(gathered, sphere, lobe, fit.radius));
 #ifdef SINGLE_MARCHED
   vec3 to_viewer = to_light_space(frame, point.to_viewer);
   vec3 inwards = (fit.mu_o * normal - to_viewer) / body.eta - fit.mu_o_refracted * normal;
-  vec3 inside = single_scattering(seen, inwards, Draws(single_share, uint(sample_index * single_share), offset.zw));
+  ScatteredOnce once = single_scattering(seen, inwards, Draws(single_share, uint(sample_index * single_share), offset.zw));
+  vec3 inside = once.parallel * light.irradiance;
 #ifdef NEAR_LIGHTS
-  inside *= light.entering_once.r < 0.0 ? light.irradiance * turned_to_light(fit) : light.entering_once;
-#else
-  inside *= light.irradiance;
+  inside *= turned_to_light(fit);
+#endif
+#ifdef LIGHTS_ABOUT
+  inside = mix(inside, once.lamp * lamp_about.lamp.emission.rgb, lamp_about.near);
 #endif
   radiance += portion(SINGLE_SCATTERING_PORTION, fit.transmittance / (body.eta * body.eta) * inside);
 #endif
   if (entered >= 0.0) radiance *= entered;
+#ifdef LIGHTS_ABOUT
+  light.to_light = own_direction;
+#endif
 #ifdef SPECULAR
   radiance += portion(SPECULAR_PORTION, fit.visible * fit.reached * specular_reflection(point, outwards, light));
 #endif

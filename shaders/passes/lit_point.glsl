@@ -7,6 +7,7 @@
 //   NEAR_LIGHTS          lights have a place: the light map of each shows the grain from one direction, but each point has its light from where it is
 //   LIGHTS_ABOUT         one of them is so near that it matters where its light comes in; the model looks about itself if it knows the grain inside
 //                        and light goes straight there (LAMP_IN_GRAIN)
+//   ENTRIES              it looks about by where the light's map shows that light enters (models/lamp_at_entries.glsl)
 //   STORED_LIGHTS        of some lights it is stored what they do in the grain (models/stored_lights.glsl)
 //   STORED_LAMPS         and of some that have a place
 //   CLEAR, WORLD         the model knows what crosses the grain unscattered, and there is a world to be seen through it
@@ -40,6 +41,9 @@
 void look_about(DeviceLight lamp, vec3 middle, vec2 lamp_random, SurfacePoint point, vec3 to_middle, inout LightSample light);
 #elif defined(LIGHTS_ABOUT)
 #include "models/light_about.glsl"
+#ifdef ENTRIES
+void look_about(DeviceLight lamp, vec3 middle, vec2 lamp_random, SurfacePoint point, vec3 to_middle, inout LightSample light);
+#endif
 #endif
 #include "heap/light_from_grains.glsl"
 #include "models/pixel_random.glsl"
@@ -185,7 +189,7 @@ vec3 locally_lit(SurfacePoint point, Outwards outwards) {
     look_about(local_lights[i], middle_of_grain(), random, point, light.to_light, light);
 #elif defined(LIGHTS_ABOUT) && defined(STORED_LAMPS)
     if (light_block < 0) look_about(local_lights[i], middle_of_grain(), random, point, light.to_light, light);
-#elif defined(LIGHTS_ABOUT)
+#elif defined(LIGHTS_ABOUT) && !defined(NEAR_LIGHTS)
     look_about(local_lights[i], middle_of_grain(), random, point, light.to_light, light);
 #endif
     sum += lit_by(point, outwards, light);

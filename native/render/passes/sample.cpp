@@ -23,7 +23,8 @@ glm::vec4 Sample::viewer(const glm::dvec3& origin) const {
 
 bool Sample::lights_about(std::size_t unit) const {
   const DeviceMaterial& material = this->material(unit);
-  const bool inside = scene::traits_of(material.model()).mesh;
+  const scene::ModelTraits traits = scene::traits_of(material.model());
+  const bool inside = traits.mesh || traits.taps;
   if (!material.light_maps() && !inside) return false;
   if (const Draw* draw = content.draw(unit)) return lighting.any_near(draw->centre, 0.0, draw->reach, inside);
   const Instances& instances = *content.instances();
