@@ -117,6 +117,9 @@ float is_sphere(LightFrame frame, LightMapTexel mapped, float height, float from
 const float LEAST_ROUND = 0.85;
 const float ROUND = 0.95;
 
+// Samples that tell what a lamp does over what a parallel light does: a ratio of fewer is off by more than a hundredth or two.
+const int LEAST_TAPS_OF_LAMP = 16;
+
 // How much of the grain is a ball.
 float ball_share() { return smoothstep(LEAST_ROUND, ROUND, body.radius / grain_reach); }
 
@@ -433,6 +436,9 @@ vec3 evaluate_model(SurfacePoint point, Outwards outwards, LightSample light) {
   int single_share = 0;
 #endif
   int multiple_share = share - single_share;
+#ifdef LIGHTS_ABOUT
+  if (entries_tell > 0.0) multiple_share = max(multiple_share, LEAST_TAPS_OF_LAMP);
+#endif
   // The sequence goes on from sample to sample; only its offset differs from pixel to pixel.
   uvec4 offset = pcg4d(uvec4(uvec2(gl_FragCoord.xy), 0u, uint(light.index)));
 
