@@ -12,10 +12,10 @@ struct LampAbout {
   vec3 middle;     // where grain space begins
   vec3 to_middle;  // from there to the lamp
   vec3 turned;     // from that direction to the one from which its map shows the grain
-  float near;      // how much all this counts, 0 to 1
 };
 LampAbout lamp_about;
 int lamp_about_index = -1;  // which light it is
+float lamp_near = 0.0;      // how much all this counts of the light that is shaded, 0 to 1
 
 // Where the surface is steeper to a light than this cosine, a map tells too little of it.
 const float LEAST_COSINE = 0.05;

@@ -125,15 +125,16 @@ float ball_share() { return smoothstep(LEAST_ROUND, ROUND, body.radius / grain_r
 
 void look_about(DeviceLight lamp, vec3 middle, vec2 lamp_random, SurfacePoint point, vec3 to_middle, inout LightSample light) {
   lamp_about_index = light.index;
-  lamp_about = LampAbout(lamp, lamp_random, middle, to_middle, vec3(0.0), nearness(lamp, middle, 0.0, grain_unit * grain_reach, true));
+  lamp_about = LampAbout(lamp, lamp_random, middle, to_middle, vec3(0.0));
+  lamp_near = nearness(lamp, middle, 0.0, grain_unit * grain_reach, true);
   if (ball_share() > 0.0) look_in_ball(lamp, middle, lamp_random, point, light);
 }
 
 // How much of what the light does is told by where it enters.
 float by_entries(LightSample light, LightFrame frame) {
-  if (light.index != lamp_about_index) lamp_about.near = 0.0;
+  if (light.index != lamp_about_index) lamp_near = 0.0;
   lamp_about.turned = frame.z_axis - lamp_about.to_middle;
-  return lamp_about.near * (1.0 - ball_share());
+  return lamp_near * (1.0 - ball_share());
 }
 #endif
 
@@ -211,7 +212,7 @@ Gathered gather(Seen seen, Draws draws) {
       lit *= light_reaches_tap(frame, body.radius * vec3(place, entry_height));
       sum.grain += lit * min(weight * SPECTRUM(kernel_at(apart, entry_normal.z)), Spectrum(MOST_A_SAMPLE_COUNTS));
 #ifdef LIGHTS_ABOUT
-      if (lamp_about.near > 0.0) {
+      if (lamp_near > 0.0) {
         LampThere there = lamp_there(frame, body.radius * vec3(place, entry_height));
         Spectrum sent = SPECTRUM(kernel_at(apart, max(dot(entry_normal, there.to_lamp), 0.0)));
         sum.lamp += lit * lamp_enters(there, entry_normal) * min(weight * sent, Spectrum(MOST_A_SAMPLE_COUNTS));
@@ -392,7 +393,7 @@ ScatteredOnce single_scattering(Seen seen, vec3 inwards, Draws draws) {
     // Where the light's way in hardly grows, far samples are too rare for what they find; each may count as many, but not as any number.
     sum += lit * scattered_towards(light, inwards) * drawn * min(exp(rate * t - sigma_t * (t + light.way_in)), Spectrum(MOST_A_SAMPLE_COUNTS));
 #ifdef LIGHTS_ABOUT
-    if (lamp_about.near > 0.0) {
+    if (lamp_near > 0.0) {
       light = lamp_inside(seen, entry, point, centre);
       of_lamp += lit * scattered_towards(light, inwards) * drawn * min(exp(rate * t - sigma_t * (t + light.way_in)), Spectrum(MOST_A_SAMPLE_COUNTS));
     }
@@ -469,7 +470,7 @@ vec3 evaluate_model(SurfacePoint point, Outwards outwards, LightSample light) {
   inside *= turned_to_light(fit);
 #endif
 #ifdef LIGHTS_ABOUT
-  inside = mix(inside, once.lamp * lamp_about.lamp.emission.rgb, lamp_about.near);
+  inside = mix(inside, once.lamp * lamp_about.lamp.emission.rgb, lamp_near);
 #endif
   radiance += portion(SINGLE_SCATTERING_PORTION, fit.transmittance / (body.eta * body.eta) * inside);
 #endif
