@@ -58,9 +58,9 @@ Heap ball_in_glass(const Optics& ball, const Glass& glass) {
   return heap;
 }
 
-HeapLight solved(const Heap& heap) {
+HeapLight solved(const Heap& heap, int rays = 1 << 14) {
   Quality quality;
-  quality.rays = quality.light_rays = 1 << 14;
+  quality.rays = quality.light_rays = rays;
   return solve_exchange(heap, quality, {}, {});
 }
 
@@ -117,7 +117,8 @@ TEST(Panes, ColourWhatStandsInThem) {
 TEST(Panes, AreNumbersAtTheExtremes) {
   for (const float eta : {0.6F, 1.0F, 1.0000001F, 1e4F})
     for (const float sigma_a : {0.0F, 1e-12F, 1e12F}) {
-      const HeapLight light = solved(ball_in_glass(lambert(0.5), {glm::vec3(sigma_a), eta}));
+      // Fewer rays tell as well whether it is a number, and in such glass they are followed for long.
+      const HeapLight light = solved(ball_in_glass(lambert(0.5), {glm::vec3(sigma_a), eta}), 1 << 11);
       const float sent = light.sent[0].channels[0].w;
       EXPECT_TRUE(std::isfinite(sent) && sent >= 0.0F && sent < 0.52F) << eta << ", " << sigma_a << ": " << sent;
     }

@@ -27,9 +27,9 @@ constexpr int size = 12;
 bool all_extremes() { return std::getenv("MESOGRAIN_ALL_EXTREMES") != nullptr; }
 
 #if defined(__SANITIZE_ADDRESS__)
-constexpr int some = 20;
+constexpr int some = 10;
 #else
-constexpr int some = 120;
+constexpr int some = 60;
 #endif
 
 int grain_count() { return all_extremes() ? 10000 : some; }

@@ -222,7 +222,7 @@ double largest_albedo_allowed(const Material& material) {
 #if defined(__SANITIZE_ADDRESS__)
 constexpr int material_count = 500;  // an order of magnitude slower
 #else
-constexpr int material_count = 10000;
+constexpr int material_count = 5000;
 #endif
 
 TEST(Models, SendBackFiniteLightAndNoMoreThanCameIn) {
