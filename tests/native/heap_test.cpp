@@ -126,7 +126,7 @@ void expect_array_as_one_by_one(const scene::MeshPointer& mesh, scene::Model mod
   const scene::Scene array = array_of(mesh, material, eight_places(), lights);
   const scene::Camera camera = scene::Camera::look_at({0, 0, 16}, {0, 0, 0}, {0, 1, 0}, 30.0, 2.0);
   const Difference found =
-      difference(picture(array, camera, 256, 128, 48, visibility), picture(one_by_one, camera, 256, 128, 48), 256, 128);
+      difference(picture(array, camera, 256, 128, 12, visibility), picture(one_by_one, camera, 256, 128, 12), 256, 128);
   EXPECT_LT(found.blocks, most_in_blocks);
   EXPECT_NEAR(found.total, 1.0, 0.01);
 }
@@ -180,8 +180,8 @@ TEST_F(HeapTest, WhatIsCastIsWhatIsDrawn) {
   const auto ball = std::make_shared<scene::Mesh>(scene::unit_sphere(48, 24));
   const auto found = [&](const scene::MeshPointer& mesh, scene::Model model) {
     const scene::Scene scene = small_heap(mesh, model);
-    return difference(picture(scene, camera, 256, 128, 16, Visibility::cast),
-                      picture(scene, camera, 256, 128, 16, Visibility::drawn), 256, 128);
+    return difference(picture(scene, camera, 256, 128, 4, Visibility::cast),
+                      picture(scene, camera, 256, 128, 4, Visibility::drawn), 256, 128);
   };
   // Rays to the lights from each pixel; a shadow map tells of a hollow grain's own shadow as finely as its texels are.
   for (const scene::Model model : {scene::Model::lambert, scene::Model::model_1}) {
@@ -202,8 +202,8 @@ TEST_F(HeapTest, WhatIsCastIsWhatIsDrawn) {
 TEST_F(HeapTest, WhatTheDevicesRaysFindIsWhatIsDrawn) {
   const scene::Camera camera = scene::Camera::look_at({0, -9, 16}, {0, 0, 0}, {0, 1, 0}, 35.0, 2.0);
   const auto expect_same = [&](const scene::Scene& scene, double most_in_blocks) {
-    const Difference found = difference(picture(scene, camera, 128, 64, 16, Visibility::device_rays),
-                                        picture(scene, camera, 128, 64, 16, Visibility::drawn), 128, 64);
+    const Difference found = difference(picture(scene, camera, 128, 64, 4, Visibility::device_rays),
+                                        picture(scene, camera, 128, 64, 4, Visibility::drawn), 128, 64);
     EXPECT_LT(found.blocks, most_in_blocks);
     EXPECT_NEAR(found.total, 1.0, 0.004);
   };
