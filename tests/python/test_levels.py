@@ -84,13 +84,13 @@ def blocks(picture):
     return picture[..., :3].reshape(SIZE // 8, 8, SIZE // 8, 8, 3).mean(axis=(1, 3))
 
 
-# Sand, 24 samples of each way, whose own noise of 1 % is in it.
+# Sand, 12 samples of each way, whose own noise is in it.
 @pytest.mark.parametrize("pixels, level, error", [(3.0, "told", 0.05), (6.0, "ball", 0.04)])
 @pytest.mark.parametrize("shines", ["sun", "sky"])
 def test_small_grains_send_as_much_light_as_looked_at_closely(pixels, level, error, shines):
     arrays = heap("sand", medium((0.999, 0.97, 0.8), (1.0, 3.0, 5.0)), medium(0.9, 8.0))
-    close, _ = looked_at(arrays, pixels, False, 24, shines=shines)
-    found, counts = looked_at(arrays, pixels, True, 24, shines=shines)
+    close, _ = looked_at(arrays, pixels, False, 12, shines=shines)
+    found, counts = looked_at(arrays, pixels, True, 12, shines=shines)
     assert counts[level] > 500 and sum(counts.values()) == counts[level]
     assert numpy.isfinite(found).all()
     assert found[..., :3].sum((0, 1)) == pytest.approx(close[..., :3].sum((0, 1)), rel=0.02)
@@ -99,8 +99,8 @@ def test_small_grains_send_as_much_light_as_looked_at_closely(pixels, level, err
 
 def test_what_is_seen_through_thin_ones_is_as_bright():
     arrays = heap("cubes", medium(0.9, 0.5))
-    close, _ = looked_at(arrays, 3.0, False, 24)
-    found, counts = looked_at(arrays, 3.0, True, 24)
+    close, _ = looked_at(arrays, 3.0, False, 12)
+    found, counts = looked_at(arrays, 3.0, True, 12)
     assert counts["told"] > 500
     assert found[..., :3].sum() == pytest.approx(close[..., :3].sum(), rel=0.02)
     assert numpy.abs(blocks(found) - blocks(close)).sum() < 0.05 * blocks(close).sum()
@@ -112,7 +112,7 @@ def test_what_is_seen_through_thin_ones_is_as_bright():
 def test_a_viewports_first_sample_looks_closely_at_large_ones_alone(grains, pixels, told):
     """Whose noise is no less than what numbers lack; its next sample looks as closely as others do."""
     arrays = heap(grains, medium(0.9, 3.0))
-    right, _ = looked_at(arrays, pixels, False, 24)
+    right, _ = looked_at(arrays, pixels, False, 12)
     found, counts = looked_at(arrays, pixels, True, 1, patient=False)
     assert (counts["told"] > 0) == told and (counts["own_shape"] + counts["ball"] > 0) != told
     assert numpy.abs(blocks(found) - blocks(right)).sum() < 0.07 * blocks(right).sum()
@@ -149,7 +149,7 @@ BROWN = (0.99, 0.97, 0.9)
 
 
 @pytest.mark.parametrize("grains, eta", [("sand", 1.5), ("balls", 1.3)])
-@pytest.mark.parametrize("shines, samples", [("sun", 24), ("sky", 24), ("image", 48)])
+@pytest.mark.parametrize("shines, samples", [("sun", 10), ("sky", 10), ("image", 24)])
 def test_of_small_ones_that_refract_numbers_tell_what_has_entered(grains, eta, shines, samples):
     """The noise of so many samples of each way is in it; a material of each channel its own, and another."""
     arrays = heap(grains, refracting(BROWN, 5.0, eta), refracting((0.999,) * 3, 9.0, 1.5, "model_2"))
@@ -191,10 +191,10 @@ def test_nothing_else_is_shaded_by_its_surface_alone(exchange, model, albedo, ra
 def test_what_a_drag_shows_of_larger_ones_is_told_too(pixels, told, shines):
     """In a sky that is nearer than what one sample of directions shows, beneath a sun about as near."""
     arrays = heap("sand", refracting(BROWN, 5.0))
-    right, _ = looked_at(arrays, pixels, False, 24, shines=shines)
     found, counts = looked_at(arrays, pixels, True, 1, shines=shines, patient=False)
     assert (counts["surface"] > 300) == told
     if told:
+        right, _ = looked_at(arrays, pixels, False, 12, shines=shines)
         assert numpy.abs(blocks(found) - blocks(right)).sum() < 0.06 * blocks(right).sum()
     _, further = looked_at(arrays, pixels, True, 2, shines=shines, patient=False)
     assert (further["surface"] > 0) == (pixels < 4.5)
