@@ -262,7 +262,7 @@ def test_a_sun_behind_a_rough_crystal_is_no_specks(roughness, most):
     view.set_camera(native.Camera.look_at((5.0, -4.0, 3.5), (0.0, 0.0, 0.0), (0.0, 0.0, 1.0), 26.0))
     view.render(64)
     some = view.read()
-    view.render(960)
+    view.render(448)
     many = view.read()
     inside = many[..., 3] > 0.99
     assert numpy.abs(some - many)[inside].sum() < most * many[inside].sum()
