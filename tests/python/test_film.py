@@ -288,7 +288,7 @@ def slab(thickness, half):
 
 # Light comes into the second grain as if the first, which is grey and stands across all of its way, were none, times
 # exp(-sigma_t d): none of it did. What models see past what is opaque, up to 5 %, they see past this, too. Measured:
-# within .5 %.
+# within .8 %.
 @pytest.mark.parametrize("model", ["model_2", "model_3", "transport"])
 @pytest.mark.parametrize("count", [1, 2])
 def test_a_lone_thin_grain_lets_light_through_to_another(model, count):
@@ -304,7 +304,7 @@ def test_a_lone_thin_grain_lets_light_through_to_another(model, count):
     dark = native.World(radiance=(0.0,) * 3)
     sun = native.DirectionalLight(tuple(TO_LIGHT), (3.0, 2.0, 1.0))
     alone, shaded, hidden = (picture(dark, [native.Instance(ROUND, medium(model)), *others], lights=[sun],
-                                     samples=64)[..., :3].sum(axis=(0, 1)) for others in ([], slabs, opaque))
+                                     samples=16)[..., :3].sum(axis=(0, 1)) for others in ([], slabs, opaque))
     assert (hidden < 0.06 * alone).all()
     left = math.exp(-0.7 * count)
     print((shaded - hidden) / (alone - hidden), left)
