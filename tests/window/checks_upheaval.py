@@ -11,7 +11,7 @@ from mesograin.ui.bake_panel import session as baking
 from mesograin.ui.compare_panel import session as comparing
 
 ENDLESS = 1 << 16
-RENDERS = 40
+RENDERS = 24
 
 
 def settle(window, area):
