@@ -46,9 +46,10 @@ SHAPES = {"sphere": lambda: native.Mesh(*sphere_mesh.sphere(96, 48)), "cube": cu
 # Measured .990 to 1.000, pixels .90 to 1.02. With what was scattered linear between nodes, and nothing seen through
 # thin rims and edges of thick grains, a cube's total was .90 of the world and its edges .59; where light is refracted,
 # they were .83. A rough surface's total was .973 to .984 while what left it was balanced for a half-space.
-@pytest.mark.parametrize("shape, boundary, radius, roughness", [
-    ("sphere", "index_matched", 1.0, 0.0), ("cube", "index_matched", 6.0, 0.0), ("sphere", "index_matched", 10.0, 0.0),
-    ("cube", "dielectric", 10.0, 0.0), ("cube", "dielectric", 1.0, 0.4), ("sphere", "dielectric", 6.0, 0.6)])
+@pytest.mark.parametrize("boundary, radius, roughness", [
+    ("index_matched", 1.0, 0.0), ("index_matched", 6.0, 0.0), ("index_matched", 10.0, 0.0), ("dielectric", 10.0, 0.0),
+    ("dielectric", 1.0, 0.4), ("dielectric", 6.0, 0.6)])
+@pytest.mark.parametrize("shape", SHAPES)
 def test_a_grain_without_absorption_is_not_seen_in_an_even_world(shape, boundary, radius, roughness):
     medium = native.Material(model="transport", sigma_s=(radius,) * 3, sigma_a=(0.0,) * 3, boundary=boundary,
                              eta=1.5 if roughness else 1.3, roughness=roughness)
