@@ -3,7 +3,10 @@
 // Not physical: what the lamp sees of the grain and the parallel light does not, beyond the edge of a hollow, stays dark.
 #include "lights/light.glsl"
 #include "lights/near.glsl"
+#include "models/body_light.glsl"
+#include "models/interface.glsl"
 #include "models/light_map.glsl"
+#include "models/lit_surface.glsl"
 #include "scene/grain.glsl"
 
 struct LampAbout {
@@ -35,3 +38,29 @@ LampThere lamp_there(LightFrame frame, vec3 place) {
 
 // The light that enters a surface, per emission, over that of a parallel light of irradiance 1, whose cosine is `normal.z`.
 float lamp_enters(LampThere there, vec3 normal) { return there.irradiance * max(dot(normal, there.to_lamp), 0.0) / max(normal.z, LEAST_COSINE); }
+
+#ifdef LIGHTS_ABOUT
+// Grains whose sphere is as large as this, over how far they reach, are balls: in those walks tell more of a lamp than diffusion does.
+const float LEAST_ROUND = 0.85;
+const float ROUND = 0.95;
+
+// Samples that tell what a lamp does over what a parallel light does: a ratio of fewer is off by more than a hundredth or two.
+const int LEAST_TAPS_OF_LAMP = 16;
+
+// How much of the grain is a ball.
+float ball_share() { return smoothstep(LEAST_ROUND, ROUND, body.radius / grain_reach); }
+
+void look_about(DeviceLight lamp, vec3 middle, vec2 lamp_random, SurfacePoint point, vec3 to_middle, inout LightSample light) {
+  lamp_about_index = light.index;
+  lamp_about = LampAbout(lamp, lamp_random, middle, to_middle, vec3(0.0));
+  lamp_near = nearness(lamp, middle, 0.0, grain_unit * grain_reach, true);
+  if (ball_share() > 0.0) look_in_ball(lamp, middle, lamp_random, point, light);
+}
+
+// How much of what the light does is told by where it enters.
+float by_entries(LightSample light, LightFrame frame) {
+  if (light.index != lamp_about_index) lamp_near = 0.0;
+  lamp_about.turned = frame.z_axis - lamp_about.to_middle;
+  return lamp_near * (1.0 - ball_share());
+}
+#endif
