@@ -90,6 +90,8 @@ Spectrum scattered_towards(LightInside light, vec3 inwards) {
 }
 
 #ifdef LIGHTS_ABOUT
+// A third look comes nearer to the place, and no nearer to the truth: the spreading of the lamp's light on its way in is left out, too
+// (docs/scenes.md). A ball under a spot is 5.3 % off with it, not 3.4, an irregular grain 5.8, not 6.1.
 const int LOOKS_FOR_ENTRY = 2;
 
 // Of a lamp that is near, per emission. `entry`: above the point, as the light's map has it; where the lamp's light came in is looked for from there.
