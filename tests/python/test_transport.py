@@ -257,13 +257,16 @@ def coloured(scale, **parameters):
     ((1.0, 1.0, 0.02), material(11.0), 400_000, 500_000),
     ((1.0, 1.0, 1.0), material(3.0, **FORWARDS), 400_000, 500_000),
     ((1.0, 1.0, 1.0), material(1.0, **THIN_FORWARDS), 400_000, 500_000),
+    ((1.0, 1.0, 0.02), material(1.0, **THIN_FORWARDS), 400_000, 500_000),
     ((1.0, 1.0, 1.0), coloured(3.0), 400_000, 500_000),
+    ((1.0, 0.33, 0.33), coloured(6.3), 400_000, 500_000),
+    ((1.0, 1.0, 0.02), coloured(11.0), 400_000, 500_000),
     ((1.0, 1.0, 1.0), coloured(3.0, g=0.3), 400_000, 500_000),
     ((1.0, 1.0, 1.0), coloured(1.0), 400_000, 500_000),
     ((1.0, 1.0, 0.02), coloured(1.0, g=0.3), 400_000, 500_000),
     ((1.0, 1.0, 1.0), coloured(6.0), 400_000, 500_000),
-], ids=["cube", "long", "flat", "forwards", "thin forwards", "coloured", "coloured forwards", "coloured thin",
-        "coloured thin flat forwards", "coloured thickest"])
+], ids=["cube", "long", "flat", "forwards", "thin forwards", "flat forwards", "coloured", "coloured long",
+        "coloured flat", "coloured forwards", "coloured thin", "coloured thin flat forwards", "coloured thickest"])
 def test_what_a_grain_is_stored_in_takes_half_a_megabyte(cube, stretch, grain, least, most):
     transform = numpy.diag((*stretch, 1.0))
     light = native.DirectionalLight(LIGHTS["side"], (1.0,) * 3)
@@ -345,8 +348,8 @@ def ellipsoid():
 
 
 # Too thick to be stored it is model 3's.
-@pytest.mark.parametrize("shape, radius", [(salt, 0.01), (ellipsoid, 1.0), (salt, 10.0), (salt, 1e4),
-                                           (ellipsoid, 1e4)])
+@pytest.mark.parametrize("radius", [0.01, 1.0, 10.0, 1e4])
+@pytest.mark.parametrize("shape", [salt, ellipsoid])
 def test_what_absorbs_nothing_sends_out_what_comes_in(shape, radius):
     sigma_t = SIGMA_T * radius / 3.0
     white = material(sigma_s=(sigma_t,) * 3, sigma_a=(0.0,) * 3, specular=True)

@@ -116,7 +116,7 @@ def test_colours_of_an_array_share_functions_of_the_place_and_are_as_near_as_alo
         right = picture(ball, sigma_t, albedo, to_light, False, boundary)
         return differences(picture(ball, sigma_t, albedo, to_light, True, boundary), right)
 
-    for to_light in (TO_LIGHT["front"], TO_LIGHT["aside"]):
+    for to_light in TO_LIGHT.values():
         together = off(sigma_t, albedo, to_light)
         alone = numpy.array([off((sigma_t[i],) * 3, (albedo[i],) * 3, to_light)[i] for i in range(3)])
         assert (together - alone).max() < less_near
