@@ -19,6 +19,7 @@ struct LampAbout {
 LampAbout lamp_about;
 int lamp_about_index = -1;  // which light it is
 float lamp_near = 0.0;      // how much all this counts of the light that is shaded, 0 to 1
+float lamp_entries = 0.0;   // and how much where it enters tells of what is scattered more than once: in balls nothing
 
 // Where the surface is steeper to a light than this cosine, a map tells too little of it.
 const float LEAST_COSINE = 0.05;
@@ -57,10 +58,11 @@ void look_about(DeviceLight lamp, vec3 middle, vec2 lamp_random, SurfacePoint po
   if (ball_share() > 0.0) look_in_ball(lamp, middle, lamp_random, point, light);
 }
 
-// How much of what the light does is told by where it enters.
-float by_entries(LightSample light, LightFrame frame) {
+// Before the light is shaded: what enters is told over what a parallel light does that comes along the map's axis.
+void turn_to_entries(inout LightSample light, LightFrame frame) {
   if (light.index != lamp_about_index) lamp_near = 0.0;
+  lamp_entries = lamp_near * (1.0 - ball_share());
   lamp_about.turned = frame.z_axis - lamp_about.to_middle;
-  return lamp_near * (1.0 - ball_share());
+  light.to_light = normalize(mix(light.to_light, frame.z_axis, lamp_entries));
 }
 #endif

@@ -129,7 +129,7 @@ Gathered gather(Seen seen, Draws draws) {
       lit *= light_reaches_tap(frame, body.radius * vec3(place, entry_height));
       sum.grain += lit * min(weight * SPECTRUM(kernel_at(apart, entry_normal.z)), Spectrum(MOST_A_SAMPLE_COUNTS));
 #ifdef LIGHTS_ABOUT
-      if (lamp_near > 0.0) {
+      if (lamp_entries > 0.0) {
         LampThere there = lamp_there(frame, body.radius * vec3(place, entry_height));
         Spectrum sent = SPECTRUM(kernel_at(apart, max(dot(entry_normal, there.to_lamp), 0.0)));
         sum.lamp += lit * lamp_enters(there, entry_normal) * min(weight * sent, Spectrum(MOST_A_SAMPLE_COUNTS));
@@ -165,10 +165,7 @@ Outwards look_outwards(SurfacePoint point) { return through_surface(point); }
 vec3 evaluate_model(SurfacePoint point, Outwards outwards, LightSample light) {
   LightFrame frame = light_frame(light);
 #ifdef LIGHTS_ABOUT
-  // What enters is told over what a parallel light does that comes along the map's axis.
-  float entries_tell = by_entries(light, frame);
-  vec3 own_direction = light.to_light;
-  light.to_light = normalize(mix(light.to_light, frame.z_axis, entries_tell));
+  turn_to_entries(light, frame);
 #endif
   BodyFit fit = fit_body(point, outwards, light, frame);
   vec3 position = to_light_space(frame, point.position) / body.radius;
@@ -182,7 +179,7 @@ vec3 evaluate_model(SurfacePoint point, Outwards outwards, LightSample light) {
 #endif
   int multiple_share = share - single_share;
 #ifdef LIGHTS_ABOUT
-  if (entries_tell > 0.0) multiple_share = max(multiple_share, LEAST_TAPS_OF_LAMP);
+  if (lamp_entries > 0.0) multiple_share = max(multiple_share, LEAST_TAPS_OF_LAMP);
 #endif
   // The sequence goes on from sample to sample; only its offset differs from pixel to pixel.
   uvec4 offset = pcg4d(uvec4(uvec2(gl_FragCoord.xy), 0u, uint(light.index)));
@@ -202,7 +199,7 @@ vec3 evaluate_model(SurfacePoint point, Outwards outwards, LightSample light) {
   Seen seen = Seen(frame, light.map, fit, position, fit_normal);
   Gathered gathered = gather(seen, Draws(multiple_share, uint(sample_index * multiple_share), offset.xy));
 #ifdef LIGHTS_ABOUT
-  light.entering = mix(light.entering, lamp_about.lamp.emission.rgb * (gathered.lamp / max(gathered.grain, Spectrum(1e-6))), entries_tell);
+  light.entering = mix(light.entering, lamp_about.lamp.emission.rgb * (gathered.lamp / max(gathered.grain, Spectrum(1e-30))), lamp_entries);
 #endif
   vec3 radiance = portion(SUBSURFACE_PORTION, light.entering * on_the_grain(gathered, sphere, lobe, fit.radius));
 #ifdef SINGLE_MARCHED
@@ -219,9 +216,6 @@ vec3 evaluate_model(SurfacePoint point, Outwards outwards, LightSample light) {
   radiance += portion(SINGLE_SCATTERING_PORTION, fit.transmittance / (body.eta * body.eta) * inside);
 #endif
   if (entered >= 0.0) radiance *= entered;
-#ifdef LIGHTS_ABOUT
-  light.to_light = own_direction;
-#endif
 #ifdef SPECULAR
   radiance += portion(SPECULAR_PORTION, fit.visible * fit.reached * specular_reflection(point, outwards, light));
 #endif
