@@ -139,10 +139,13 @@ bool Content::facets(const std::function<bool(std::size_t unit)>& of) const {
   return false;
 }
 
-void Content::complete(DeviceCache& cache, const std::function<bool(std::size_t)>& of) const {
+void Content::complete(DeviceCache& cache,
+                       const std::function<const DeviceMaterial*(std::size_t unit)>& asked_of) const {
   std::vector<const DeviceMaterial*> asked;
-  for (std::size_t unit = 0; unit < units(); ++unit)
-    if (!material(unit).complete() && of(unit)) asked.push_back(&material(unit));
+  for (std::size_t unit = 0; unit < units(); ++unit) {
+    const DeviceMaterial* material = asked_of(unit);
+    if (material != nullptr && !material->complete()) asked.push_back(material);
+  }
   if (!asked.empty()) cache.complete(asked);
 }
 

@@ -111,8 +111,8 @@ class Content {
   /// Whether any does, and there may be something behind it.
   bool any_shows_behind() const;
 
-  /// Has what waits of these units' materials computed; DeviceCache::complete.
-  void complete(DeviceCache& cache, const std::function<bool(std::size_t unit)>& of) const;
+  /// Has what waits of the materials that units ask for computed (null: none); DeviceCache::complete.
+  void complete(DeviceCache& cache, const std::function<const DeviceMaterial*(std::size_t unit)>& asked_of) const;
 
   /// Whether any of these units has facets that mirror.
   bool facets(const std::function<bool(std::size_t unit)>& of) const;

@@ -17,19 +17,20 @@ Draw::Draw(DeviceCache& cache, const scene::Instance& from, std::size_t index)
       source(from.mesh),
       mesh(cache.mesh(from.mesh)),
       look(from.material),
+      // The cube root takes a mirrored or stretched grain for the one of the same volume.
+      size(std::max(
+          from.mesh->equivalent_radius() * std::cbrt(std::abs(glm::determinant(glm::dmat3(from.object_to_world)))),
+          1e-30)),
       object_to_world(from.object_to_world),
       convex(cache.convex(from.mesh)) {
-  const glm::dmat3 linear(from.object_to_world);
   measure();
   settled = centre;
   if (scene::traits_of(from.material.model).mesh) {
-    const models::TurnAndStretch parts = models::turn_and_stretch(linear);
+    const models::TurnAndStretch parts = models::turn_and_stretch(glm::dmat3(from.object_to_world));
     grain_to_prototype = glm::transpose(parts.turn);
     material = cache.material(from.material, from.mesh, parts.stretch);
   } else {
-    // The cube root takes a mirrored or stretched grain for the one of the same volume.
-    material = cache.material(
-        from.material, std::max(from.mesh->equivalent_radius() * std::cbrt(std::abs(glm::determinant(linear))), 1e-30));
+    material = cache.material(from.material, size);
   }
   const scene::Material& medium = from.material;
   const glm::dvec3 reduced = medium.scale * (medium.sigma_a + (1.0 - medium.g) * medium.sigma_s);
@@ -85,6 +86,17 @@ double Draw::pixels_across(const scene::Camera& camera, int width, int height) c
   const double half_image = radius / w;
   return std::min(largest, std::max(half_image * std::abs(camera.camera_to_clip[0][0]) * width,
                                     half_image * std::abs(camera.camera_to_clip[1][1]) * height));
+}
+
+const DeviceMaterial* Draw::near_lamps(DeviceCache& cache) const {
+  const std::string_view model = scene::traits_of(look.model).near_lamps;
+  if (model.empty()) return nullptr;
+  if (!near_lamps_) {
+    scene::Material other = look;
+    other.model = scene::parse_choice<scene::Model>(model);
+    near_lamps_ = cache.material(other, size);
+  }
+  return near_lamps_.get();
 }
 
 void Draw::take_light_maps(std::vector<Draw>& others) {

@@ -28,6 +28,7 @@ struct Draw {
   std::shared_ptr<gl::VertexArray> mesh;
   std::shared_ptr<DeviceMaterial> material;
   scene::Material look;  // of the material
+  double size;           // of the sphere of its volume, for which the material's tables are
   glm::dmat4 object_to_world;
   glm::dvec3 centre;                      // middle of its bounds, world space
   glm::dvec3 settled;                     // the same where light between grains was found
@@ -51,12 +52,17 @@ struct Draw {
   /// How many pixels its bounds' diameter takes of a picture.
   double pixels_across(const scene::Camera& camera, int width, int height) const;
 
+  /// What draws it near a lamp, if its own model has another for that; else null. Made when it is asked for first.
+  const DeviceMaterial* near_lamps(DeviceCache& cache) const;
+
   /// Light maps for it: those of one of `others`, which then has none, if they serve, so that a change elsewhere costs
   /// no light map.
   void take_light_maps(std::vector<Draw>& others);
 
  private:
   void measure();
+
+  mutable std::shared_ptr<DeviceMaterial> near_lamps_;
 };
 
 }  // namespace mesograin::render

@@ -182,6 +182,7 @@ Sample Frame::begin_sample(const GoOn& go_on, bool hurried) {
                           exchange_.gather()->tells_any_inner_light(),
                 .pixels_at_once = pixels_at_once_,
                 .go_on = go_on};
+  sample.near_lamps = near_lamps(sample);
   if (unwrapping_) return sample;
   if (levels_ && (cast || sample.device_rays)) sample.told = told_units(sample);
   // Of what light goes between it is known otherwise what is seen behind.
@@ -199,7 +200,8 @@ bool Frame::add_sample(const GoOn& go_on, bool hurried) {
   hurried = hurried && samples_ == 0 && arrays_.casts_on_device(*content_);
   const Sample sample = begin_sample(go_on, hurried);
   arrays_.prepare(sample);
-  content_->complete(cache_, [&](std::size_t unit) { return sample.asks_model(unit); });
+  content_->complete(cache_,
+                     [&](std::size_t unit) { return sample.asks_model(unit) ? &sample.material(unit) : nullptr; });
   timers_.light_maps.start();
   if (!light_maps_.run(sample, arrays_)) return false;
   timers_.light_maps.stop();

@@ -101,10 +101,11 @@ std::vector<ShadowEye> Lighting::eyes(const SampledLights& sampled, const glm::d
   return eyes;
 }
 
-bool Lighting::any_near(const glm::dvec3& middle, double within, double radius, bool inside) const {
-  return std::any_of(local_.begin(), local_.end(), [&](const scene::Light& light) {
-    return lights::nearness(lights::pack(light, middle), glm::dvec3(0.0), within, radius, inside) > 0.0;
-  });
+double Lighting::nearness(const glm::dvec3& middle, double within, double radius, bool inside) const {
+  double nearest = 0.0;
+  for (const scene::Light& light : local_)
+    nearest = std::max(nearest, lights::nearness(lights::pack(light, middle), glm::dvec3(0.0), within, radius, inside));
+  return nearest;
 }
 
 std::vector<lights::DeviceLight> Lighting::local(const glm::dvec3& origin) const {

@@ -52,9 +52,9 @@ class Lighting {
   /// Whether any light has a place.
   bool any_local() const { return !local_.empty(); }
 
-  /// Whether any of them is near one of some grains, no larger than `radius`, whose middles are as far as `within` from
-  /// `middle` at most: shaders/lights/near.glsl. `inside`: their model knows the grain inside.
-  bool any_near(const glm::dvec3& middle, double within, double radius, bool inside) const;
+  /// How near any of them is to one of some grains, no larger than `radius`, whose middles are as far as `within` from
+  /// `middle` at most, 0 to 1: shaders/lights/near.glsl. `inside`: their model knows the grain inside.
+  double nearness(const glm::dvec3& middle, double within, double radius, bool inside) const;
 
   /// Whether a surface of this radiance, within a ball, is an area light as well: its light on others is the light's.
   bool is_light(const glm::dvec3& middle, double radius, const glm::dvec3& radiance) const;

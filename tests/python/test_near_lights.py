@@ -183,6 +183,33 @@ def test_model_3_knows_where_a_lamp_enters_a_grain_with_edges(kind):
     assert error < 0.08
 
 
+def test_a_grain_of_model_2_near_a_lamp_is_drawn_by_model_3():
+    """And less and less of it the farther the lamp is away; in a bake as in a picture."""
+    positions, normals, triangles = sphere_mesh.sphere(48, 24)
+    positions = positions * numpy.float32(HALF_AXES)
+    unwrapped = native.Mesh(positions, normals, triangles, numpy.float32(0.5 + 0.4 * positions[:, :2]))
+
+    def drawn_by(model, radii, baked=False):
+        view = view_from_above()
+        medium = native.Material(model=model, sigma_s=(4.5, 4.0, 3.5), sigma_a=(0.5, 1.0, 1.5),
+                                 boundary="index_matched")
+        lamp = native.PointLight(numpy.array((0.8, 0.0, 0.6)) * radii, (radii * radii,) * 3)
+        view.set_scene(native.Scene(instances=[native.Instance(unwrapped, medium)], lights=[lamp]))
+        if baked:
+            view.set_bake([0])
+        return drawn(view, 16)
+    for baked in (False, True):
+        near = drawn_by("model_2", 3.0, baked)
+        assert near.sum() > 1.0 and (near == drawn_by("model_3", 3.0, baked)).all()
+        far, by_model_3 = drawn_by("model_2", 6.8, baked), drawn_by("model_3", 6.8, baked)
+        assert apart(far, by_model_3) > 0.05
+        # Halfway between; as bright there as model 3 is.
+        nearer = drawn_by("model_3", 5.875, baked)
+        rest = far * nearer.sum() / by_model_3.sum()
+        share = ((drawn_by("model_2", 5.875, baked) - rest) * (nearer - rest)).sum() / ((nearer - rest) ** 2).sum()
+        assert 0.2 < share < 0.8
+
+
 def refracting(**changed):
     return native.Material(model="transport", boundary="dielectric", eta=1.4, specular=False,
                            **{"sigma_s": (3.0, 2.5, 2.0), "sigma_a": (0.1, 0.2, 0.5), **changed})

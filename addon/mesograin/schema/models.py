@@ -16,6 +16,7 @@ class Model:
     named. profiles: of the parameter `profile`, that it knows; empty for all. grain_radius: its inputs depend on the
     grain's size. light_maps: it asks what the light sees of the grain. taps: it takes samples of the lit surface, whose
     number may be chosen. mesh: light's way through the grain's own mesh is its input, which knows no cosine lobes.
+    near_lamps: the model that draws a single grain of it where a lamp is near; empty for itself.
     """
 
     name: str
@@ -30,6 +31,7 @@ class Model:
     light_maps: bool = False
     taps: bool = False
     mesh: bool = False
+    near_lamps: str = ""
 
 
 def _model(entry):

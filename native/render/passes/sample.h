@@ -64,6 +64,7 @@ struct Sample {
   const GoOn& go_on;
   std::optional<Portion> portion{};  ///< of its light, that is shaded alone
   std::vector<bool> told{};          ///< of units: numbers tell what has entered its grains
+  std::vector<bool> near_lamps{};    ///< of units: Draw::near_lamps shades it
 
   /// The camera from `origin` and 1; for a parallel projection the direction towards it and 0.
   glm::vec4 viewer(const glm::dvec3& origin) const;
@@ -93,7 +94,9 @@ struct Sample {
 
   /// What shades a unit.
   const DeviceMaterial& material(std::size_t unit) const {
-    return tells(unit) ? *content.instances()->groups()[unit].surface(cache) : content.material(unit);
+    if (tells(unit)) return *content.instances()->groups()[unit].surface(cache);
+    const bool near = unit < near_lamps.size() && near_lamps[unit];
+    return near ? *content.draw(unit)->near_lamps(cache) : content.material(unit);
   }
 
   /// Whether any pixel asks a unit's model, and so for the light maps and the shadows that it knows.
@@ -101,5 +104,8 @@ struct Sample {
     return !tells(unit) && (mirrors == Mirrors::hindered || !gathers_all_of(content.first_number(unit)));
   }
 };
+
+/// For Sample::near_lamps: in how many samples a draw is so goes by how near a lamp is to it.
+std::vector<bool> near_lamps(const Sample& sample);
 
 }  // namespace mesograin::render

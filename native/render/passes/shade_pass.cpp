@@ -182,8 +182,10 @@ bool ShadePass::shade_mirrored(const Sample& sample, const ShadowPass& shadows, 
 
 bool ShadePass::shade_mirrored_units(const Sample& sample, const ShadowPass& shadows, const MirroredBy& by,
                                      const std::vector<PixelBox>& boxes, std::size_t first) {
-  const auto shown = [&](std::size_t unit) { return unit < boxes.size() && boxes[unit].first != boxes[unit].end; };
-  sample.content.complete(sample.cache, shown);
+  sample.content.complete(sample.cache, [&](std::size_t unit) {
+    const bool shown = unit < boxes.size() && boxes[unit].first != boxes[unit].end;
+    return shown ? &sample.material(unit) : nullptr;
+  });
   for (std::size_t unit = first; unit < std::min(first + most_in_stencil, boxes.size()); ++unit) {
     const PixelBox& box = boxes[unit];
     if (box.first == box.end) continue;
@@ -241,9 +243,11 @@ void ShadePass::shade_unwrapped(const Sample& sample, const ShadowPass& shadows)
   glDepthFunc(GL_LESS);
   for (const std::size_t baked : sample.unwrapping->draws) {
     const Draw& draw = sample.content.draws()[baked];
-    const gl::Program& program = prepare(sample, sample.content.unit(baked),
-                                         {.unwrapped = true, .shadows = shadows.kind(sample.content, *draw.material)});
-    shadows.bind(program, *draw.material);
+    const std::size_t unit = sample.content.unit(baked);
+    const DeviceMaterial& material = sample.material(unit);
+    const gl::Program& program =
+        prepare(sample, unit, {.unwrapped = true, .shadows = shadows.kind(sample.content, material)});
+    shadows.bind(program, material);
     set_draw(sample, program, draw);
     const glm::dmat4 object_to_grain = draw.object_to_grain();
     program.set("jitter", sample.jitter);
