@@ -71,8 +71,8 @@ def model(entry):
     arrays = "".join(names(f"{name}_{key}", entry.get(key, [])) for key in LISTS)
     flags = ", ".join(f".{flag} = true" for flag in FLAGS if entry.get(flag))
     lists = ", ".join(f".{key} = {name}_{key}" for key in LISTS)
-    near_lamps = f", .near_lamps = {quoted(entry['near_lamps'])}" if "near_lamps" in entry else ""
-    return arrays, f"    {{.name = {quoted(name)}, {lists}{', ' + flags if flags else ''}{near_lamps}}},\n"
+    near_lamps = f".near_lamps = {quoted(entry.get('near_lamps', ''))}"
+    return arrays, f"    {{.name = {quoted(name)}, {lists}{', ' + flags if flags else ''}, {near_lamps}}},\n"
 
 
 def header(text):

@@ -27,7 +27,7 @@ struct ModelTraits {
   bool light_maps = false;                       ///< it reads shaders/models/light_map.glsl
   bool taps = false;                             ///< it takes samples of the lit surface, whose number may be chosen
   bool mesh = false;                             ///< its inputs depend on the grain's mesh: models::prototype_inputs
-  std::string_view near_lamps = "";              ///< the model that draws a single grain there, alike; empty for itself
+  std::string_view near_lamps;                   ///< the model that draws a single grain there, alike; empty for itself
 };
 
 }  // namespace mesograin::scene
