@@ -61,7 +61,7 @@ bool Lighting::is_light(const glm::dvec3& middle, double radius, const glm::dvec
 SampledLights Lighting::sample(std::uint32_t index, std::uint32_t seed, int world_directions) {
   SampledLights sampled;
   for (std::size_t i = 0; i < suns_.size(); ++i) {
-    const glm::dvec2 random = r4_point(index, seeded_offset(seed + sun_seeds + static_cast<std::uint32_t>(i)));
+    const glm::dvec2 random = scrambled_point(index, seed + sun_seeds + static_cast<std::uint32_t>(i));
     const lights::LightDraw drawn = lights::sample(suns_[i], glm::dvec3(0.0), random);
     sampled.distant.push_back({drawn.to_light, drawn.irradiance, suns_[i].angle});
   }
@@ -74,7 +74,7 @@ SampledLights Lighting::sample(std::uint32_t index, std::uint32_t seed, int worl
                                world_directions * world_light_->density(drawn.to_light)});
   }
   for (std::size_t i = 0; i < local_.size(); ++i)
-    sampled.randoms.push_back(r4_point(index, seeded_offset(seed + local_seeds + static_cast<std::uint32_t>(i))));
+    sampled.randoms.push_back(scrambled_point(index, seed + local_seeds + static_cast<std::uint32_t>(i)));
   return sampled;
 }
 

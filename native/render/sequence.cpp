@@ -1,15 +1,13 @@
-// Additive recurrences with the generalised golden ratios, and Sobol's first two dimensions, scrambled as Owen does.
+// The additive recurrence with the plastic number, and Sobol's first two dimensions, scrambled as Owen does.
 #include "render/sequence.h"
 
-#include <cmath>
 #include <glm/common.hpp>
 
 namespace mesograin::render {
 namespace {
 
-// The real root above 1 of x^(d+1) = x + 1 for d = 2 and d = 4.
+// The real root above 1 of x^3 = x + 1.
 constexpr double plastic_number = 1.32471795724474602596;
-constexpr double four_dimensional_ratio = 1.16730397826141868426;
 
 // splitmix64 (Steele, Lea and Flood, "Fast splittable pseudorandom number generators", 2014).
 std::uint64_t mix(std::uint64_t value) {
@@ -43,11 +41,6 @@ std::uint32_t scrambled(std::uint32_t bits, std::uint32_t seed) {
 
 glm::dvec2 r2_point(std::uint32_t index, glm::dvec2 offset) {
   const glm::dvec2 step(1.0 / plastic_number, 1.0 / (plastic_number * plastic_number));
-  return glm::fract(offset + static_cast<double>(index) * step);
-}
-
-glm::dvec2 r4_point(std::uint32_t index, glm::dvec2 offset) {
-  const glm::dvec2 step(std::pow(four_dimensional_ratio, -3.0), std::pow(four_dimensional_ratio, -4.0));
   return glm::fract(offset + static_cast<double>(index) * step);
 }
 

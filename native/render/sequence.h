@@ -1,4 +1,4 @@
-// Low-discrepancy points for antialiasing, for the sun's disc, for the world and for lenses.
+// Low-discrepancy points for antialiasing, for lights with extent, for the world and for lenses.
 #pragma once
 
 #include <cstdint>
@@ -10,13 +10,10 @@ namespace mesograin::render {
 /// Quasirandom Sequences", 2018: the plastic number), rotated by `offset`; in [0, 1)^2.
 glm::dvec2 r2_point(std::uint32_t index, glm::dvec2 offset);
 
-/// Dimensions 3 and 4 of the same construction in four dimensions, to be paired with r2_point without correlation.
-glm::dvec2 r4_point(std::uint32_t index, glm::dvec2 offset);
-
 /// Point `index` of a (0,2)-sequence: any run of 2^k points from a multiple of 2^k on is stratified in every way
 /// (Kollig and Keller, "Efficient Multidimensional Sampling", 2002, section 3.2), scrambled by `seed` as Owen does, by
 /// which the mean of a smooth function over such a run is off by its length to the power of -1.5; in [0, 1)^2. Without
-/// correlation to the recurrences.
+/// correlation to the recurrence.
 glm::dvec2 scrambled_point(std::uint32_t index, std::uint32_t seed);
 
 /// A pair in [0, 1)^2 that depends on nothing but `seed`.
