@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <functional>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
@@ -19,6 +20,9 @@ constexpr float mixed_from = 0.75F;
 constexpr float cell_depth = 2.0F;  // in its lengths: a surface that faces an axis most rises by less than this
 constexpr int most_levels = 24;
 constexpr int most_probes = 8;
+
+// Across half of a hollow grain.
+constexpr float cells_of_hollow = 12.0F;
 
 // Cells are found for what lies so near to them, in their lengths, that rounding may take it for theirs.
 constexpr float margin = 0.02F;
@@ -271,23 +275,35 @@ class Patches::Builder {
 };
 
 Patches::Patches(const Grains& grains, std::size_t most_nodes) {
-  if (grains.walls.empty() || grains.grains.empty()) return;
+  const bool any_hollow = std::any_of(grains.walls.begin(), grains.walls.end(), std::mem_fn(&Wall::hollow));
+  if (grains.walls.empty() || (grains.grains.empty() && !any_hollow)) return;
   glm::vec3 lower(std::numeric_limits<float>::max());
   glm::vec3 upper(-lower);
   for (const Grain& grain : grains.grains) {
     lower = glm::min(lower, grain.middle - grain.radius);
     upper = glm::max(upper, grain.middle + grain.radius);
   }
-  for (const Pane& pane : grains.panes)
-    for (const glm::vec3& place : places_of(*pane.mesh, pane.to_heap)) {
-      lower = glm::min(lower, place);
-      upper = glm::max(upper, place);
+  // Returns half of the longest side.
+  const auto take = [&](const scene::Mesh& mesh, const glm::dmat4& to_heap) {
+    glm::vec3 least(std::numeric_limits<float>::max());
+    glm::vec3 most(-least);
+    for (const glm::vec3& place : places_of(mesh, to_heap)) {
+      least = glm::min(least, place);
+      most = glm::max(most, place);
     }
+    lower = glm::min(lower, least);
+    upper = glm::max(upper, most);
+    return 0.5F * std::max({most.x - least.x, most.y - least.y, most.z - least.z});
+  };
+  for (const Pane& pane : grains.panes) take(*pane.mesh, pane.to_heap);
+  float shaded = grains.grains.empty() ? std::numeric_limits<float>::max() : 0.5F * median_radius(grains);
+  for (const Wall& wall : grains.walls)
+    if (wall.hollow) shaded = std::min(shaded, take(*wall.mesh, wall.to_heap) / cells_of_hollow);
   middle_ = 0.5F * (lower + upper);
   half_ = 0.5F * (upper - lower);
-  // As fine as grains shade what they lie on, but for a few too many.
+  // As fine as grains shade what they lie on, and parts of a hollow one each other, but for a few too many.
   const float largest = std::max({half_.x, half_.y, half_.z});
-  spacing_ = std::max({0.5F * median_radius(grains), 1e-4F * largest, 1e-30F});
+  spacing_ = std::max({shaded, 1e-4F * largest, 1e-30F});
   for (;; spacing_ *= 1.5F, most_nodes += most_nodes / 4) {
     nodes_.clear();
     Builder builder(*this, most_nodes);

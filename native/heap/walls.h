@@ -17,6 +17,7 @@ struct Wall {
   std::uint32_t kind;        ///< which of Grains::kinds
   glm::vec3 radiance{0.0F};  ///< of its own; lights tell what that does to grains
   bool has_lights = false;   ///< by which most looks through clear grains see it
+  bool hollow = false;       ///< a thick grain, whose own parts send each other light
 
   bool operator==(const Wall&) const = default;
 

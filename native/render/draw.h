@@ -28,7 +28,7 @@ struct Draw {
   std::shared_ptr<gl::VertexArray> mesh;
   std::shared_ptr<DeviceMaterial> material;
   scene::Material look;  // of the material
-  double size;           // of the sphere of its volume, for which the material's tables are
+  double size;           // radius of the sphere with its mean chord, for which the material's tables are
   glm::dmat4 object_to_world;
   glm::dvec3 centre;                      // middle of its bounds, world space
   glm::dvec3 settled;                     // the same where light between grains was found
@@ -42,6 +42,9 @@ struct Draw {
   std::unique_ptr<LightMaps> light_maps;  // only if its material reads them
 
   glm::dmat4 object_to_grain() const;
+
+  /// Reduced mean free paths to that radius, in the densest channel.
+  double thickness() const { return 0.5 * mean_free_paths_across * size / radius; }
 
   /// Its transform as Instances::rows has those of instances.
   std::array<glm::vec4, 3> rows(const glm::dvec3& anchor) const;

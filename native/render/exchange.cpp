@@ -84,6 +84,21 @@ double rounded(double radius, double an_octave) {
 // thick, a spoon.
 constexpr float wall_over_grain = 6.0F;
 
+// Mean free paths to its radius from which on light that leaves a part of a grain and enters another leaves it about
+// where it has entered.
+constexpr double least_thick = 10.0;
+
+// Below it stored transport can be had of any shape.
+constexpr double least_not_stored = 13.0;
+
+/// Whether parts of a draw send others light that its model knows nothing of, as a surface does. Of stored transport,
+/// which knows it, that is so where a grain is too thick to have any.
+bool is_hollow(const Content& content, const Draw& draw) {
+  const scene::ModelTraits& traits = scene::traits_of(draw.look.model);
+  return content.instances() == nullptr && (!traits.mesh || content.alone()) && traits.translucent && !draw.convex &&
+         draw.thickness() >= (traits.mesh ? least_not_stored : least_thick);
+}
+
 glm::dmat4 to_heap_of(const Draw& draw, const glm::dvec3& anchor) {
   glm::dmat4 to_heap = draw.object_to_world;
   to_heap[3] -= glm::dvec4(anchor, 0.0);
@@ -113,7 +128,9 @@ class Gatherer {
     for (const Draw& draw : content.draws()) {
       const bool large = is_plain(draw.look) && radius_of(draw) > wall_over_grain * usual;
       const glm::vec4 ball(glm::vec3(draw.centre - content.anchor()), static_cast<float>(draw.reach));
-      if (may_be_grain(draw) && !large)
+      if (is_hollow(content, draw))
+        add_wall(draw, content.anchor(), true);
+      else if (may_be_grain(draw) && !large)
         add(shape(draw), draw.look, ball);
       else if (is_pane(draw))
         add_pane(draw, ball, content.anchor());
@@ -212,14 +229,15 @@ class Gatherer {
     }
   }
 
-  void add_wall(const Draw& draw, const glm::dvec3& anchor) {
+  void add_wall(const Draw& draw, const glm::dvec3& anchor, bool hollow = false) {
     roles.emplace_back();
     if (!(draw.reach > 0.0)) return;
     roles.back().wall = static_cast<std::uint32_t>(grains.walls.size());
+    roles.back().hollow = hollow;
     const glm::dmat4 to_heap = to_heap_of(draw, anchor);
     const std::uint32_t kind = grains.kind(heap::optics_of(draw.look, rounded(draw.reach, radii_an_octave)));
     const bool has_lights = draw.look.finish && draw.look.finish->faces_are_lights;
-    grains.walls.push_back({draw.source, to_heap, kind, glm::vec3(radiance_of(draw)), has_lights});
+    grains.walls.push_back({draw.source, to_heap, kind, glm::vec3(radiance_of(draw)), has_lights, hollow});
   }
 
   /// Grains that are about as thick.
@@ -302,8 +320,11 @@ void Exchange::set(DeviceCache& cache, const Content& content, const scene::Scen
   const bool clear = exchanges && std::any_of(gathered.grains.kinds.begin(), gathered.grains.kinds.end(),
                                               std::mem_fn(&heap::Optics::clear));
   const bool beside = !arrays && beside_others(gathered.grains);
+  const bool hollow =
+      std::any_of(gathered.grains.walls.begin(), gathered.grains.walls.end(), std::mem_fn(&heap::Wall::hollow));
   // A grain alone is its model's, but for what is seen through it.
-  if (heaps && !arrays && !beside && !(clear && shows_through(gathered.grains, scene))) gathered = Gatherer(cache);
+  if (heaps && !arrays && !hollow && !beside && !(clear && shows_through(gathered.grains, scene)))
+    gathered = Gatherer(cache);
   alike_.clear();
   if (const Instances* instances = content.instances())
     for (const InstanceGroup& group : instances->groups()) alike_.emplace_back(group.first, group.first + group.count);
@@ -313,7 +334,7 @@ void Exchange::set(DeviceCache& cache, const Content& content, const scene::Scen
   const bool transparent = std::any_of(grains.kinds.begin(), grains.kinds.end(), std::mem_fn(&heap::Optics::followed));
   const bool follows = follows_ && transparent;
   const bool lit = exchanges ? heaped || beside || clear || !grains.walls.empty() : heaped && follows;
-  if (grains.grains.empty() || !lit) {
+  if ((grains.grains.empty() && !hollow) || !lit) {
     solving_.reset();
     known_.reset();
     told_.reset();

@@ -17,6 +17,7 @@ struct RoleInHeap {
   std::optional<std::uint32_t> grain;  ///< which of its grains
   std::optional<std::uint32_t> wall;   ///< which of its walls
   bool ball = false;                   ///< of a grain: it is about as round as a sphere
+  bool hollow = false;                 ///< of a wall: a grain whose own parts send each other light
   bool pane = false;                   ///< of a grain: clear and thin all over, and others may stand within it
 
   bool operator==(const RoleInHeap&) const = default;

@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <glm/geometric.hpp>
 #include <numbers>
 
@@ -114,6 +116,27 @@ TEST(Walls, LightAGrainHighAboveFromBelow) {
   const HeapLight light = solve_exchange(heap, quality, {}, {});
   EXPECT_NEAR(light.answer[0].channels[0].w, 0.5F * 0.6F * 0.5F, 0.004F);
   EXPECT_NEAR(light.answer[0].channels[0].z, -0.5F * 0.6F * 0.5F, 0.008F);
+}
+
+// Inside a half sphere of reflectance .8 half of what is seen is sky and half the bowl: it sends .8 (1 / 2 + 1 / 2 of
+// what it sends), of which .4 of the sky's; what faces outwards sees no part of it.
+TEST(Walls, OfAHollowGrainAloneSendEachOtherLight) {
+  Heap heap;
+  heap.grains.kinds = {lambert(0.8)};
+  heap.grains.walls.push_back({bowl(), glm::dmat4(1.0), 0});
+  heap.world.radiance = glm::dvec3(1.0);
+  EXPECT_TRUE(solve_exchange(heap, {}, {}, {}).answer.empty());
+  heap.grains.walls[0].hollow = true;
+  const HeapLight light = solve_exchange(heap, {}, {}, {});
+  ASSERT_GT(light.answer.size(), 500U);
+  const auto near = [&](float expected) {
+    return std::count_if(light.answer.begin(), light.answer.end(),
+                         [&](const Coefficients& answer) { return std::abs(answer.channels[0].w - expected) < 0.05F; });
+  };
+  const auto third = static_cast<std::ptrdiff_t>(light.answer.size() / 3);
+  EXPECT_GT(near(0.0F), third);
+  EXPECT_GT(near(0.4F / 0.6F - 0.4F), third);
+  EXPECT_GT(near(0.0F) + near(0.4F / 0.6F - 0.4F), 5 * third / 2);
 }
 
 TEST(Walls, AreKnownWhereverTheirSurfaceIs) {

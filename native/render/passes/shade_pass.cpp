@@ -263,7 +263,10 @@ void ShadePass::shade_unwrapped(const Sample& sample, const ShadowPass& shadows)
 const gl::Program& ShadePass::prepare(const Sample& sample, std::size_t unit, Shading shading) {
   const DeviceMaterial& material = sample.material(unit);
   const bool world = sample.lighting.world().shines();
-  shading.exchange = sample.exchange.any();
+  // Stored transport knows what parts of its grain send each other.
+  const bool knows = sample.exchange.any() && scene::traits_of(material.model()).mesh &&
+                     sample.exchange.roles()[sample.content.first_number(unit)].hollow;
+  shading.exchange = sample.exchange.any() && !knows;
   shading.told = sample.tells(unit);
   shading.world = world;
   shading.alone = sample.content.alone();
