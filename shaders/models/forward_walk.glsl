@@ -126,39 +126,54 @@ Radiance walked_radiance(vec3 place, vec3 direction, vec3 to_light, int light, f
 #endif
   float sharpness = SUN_SHARPNESS * sqrt(1.0 + float(sample_index) / SHARPENED_BY);
   int i = 0;
+  bool told = false;  // the stored source function tells the rest
   bool again_inside;
+  // Software renderers follow several walks at once, each of which waits for the others wherever any of them goes: what walks come upon when they
+  // meet the surface is looked for when all have, and what those that have left may enter again when all are done.
   do {
     float leaving = 0.0;  // the grain: what counts of it
 #ifdef WALKS_END_IN_WORLD
     float seen_outside = 1.0;
     vec3 outside;
 #endif
-    for (; i < MOST_STEPS; ++i) {
-      vec4 random = vec4(pcg4d(seed + uvec4(0u, 0u, 0u, uint(i + 1) << 8u)) >> 8u) * (1.0 / 16777216.0);
-      if (i == 0) random.xy = low_discrepancy_beside_pixel(uint(sample_index), pcg4d(uvec4(seed.xy, 5u, seed.w)).xy);
+    bool reflected;
+    do {
+      bool at_surface = false;
+      vec4 random;
+      float flight;
+      float way;
       Spectrum sigma_t = sigma_s + sigma_a;
+      for (; i < MOST_STEPS; ++i) {
+        random = vec4(pcg4d(seed + uvec4(0u, 0u, 0u, uint(i + 1) << 8u)) >> 8u) * (1.0 / 16777216.0);
+        if (i == 0) random.xy = low_discrepancy_beside_pixel(uint(sample_index), pcg4d(uvec4(seed.xy, 5u, seed.w)).xy);
+        sigma_t = sigma_s + sigma_a;
 #ifdef GREY
-      float flown_at = sigma_t;
+        float flown_at = sigma_t;
 #else
-      // As one of the channels, drawn for each step, would fly: all count by how likely they would, together, have done so.
-      random.w *= 3.0;
-      float flown_at = sigma_t[int(random.w)];
-      random.w = fract(random.w);
+        // As one of the channels, drawn for each step, would fly: all count by how likely they would, together, have done so.
+        random.w *= 3.0;
+        float flown_at = sigma_t[int(random.w)];
+        random.w = fract(random.w);
 #endif
-      float flight = max(-log(1.0 - random.x), LEAST_FLIGHT) / max(flown_at, LEAST_EXTINCTION);
-      float way = way_through(place, direction, flight);
-      place += way * direction;
+        flight = max(-log(1.0 - random.x), LEAST_FLIGHT) / max(flown_at, LEAST_EXTINCTION);
+#ifdef CONVEX
+        at_surface = !ends_inside(place, direction, flight);
+#else
+        way = way_through(place, direction, flight);
+        at_surface = way < flight;
+#endif
+        if (at_surface) break;
+        place += flight * direction;
 #ifndef GREY
-      vec3 passed = exp(-sigma_t * way);
+        vec3 passed = exp(-sigma_t * flight);
 #endif
-      if (way >= flight) {
 #ifdef GREY
         left *= sigma_s / sigma_t;
 #else
         left *= 3.0 * sigma_s * passed / dot(sigma_t, passed);
 #endif
         if (kept < LEAST_KEPT) {
-          sum += left * source_at(place) / SPECTRUM(forward.similar_albedo);
+          told = true;
           break;
         }
         mirrored = false;
@@ -218,9 +233,15 @@ Radiance walked_radiance(vec3 place, vec3 direction, vec3 to_light, int light, f
           g = mean_cosine * mean_cosine;
           one_minus_g = 1.0 - g;
         }
-        continue;
       }
+      reflected = false;
+      if (!at_surface) break;
+#ifdef CONVEX
+      way = way_through(place, direction, flight);
+#endif
+      place += way * direction;
 #ifndef GREY
+      vec3 passed = exp(-sigma_t * way);
       left *= 3.0 * passed / (passed.r + passed.g + passed.b);
 #endif
 #ifdef REFRACTION
@@ -250,6 +271,8 @@ Radiance walked_radiance(vec3 place, vec3 direction, vec3 to_light, int light, f
         break;
       }
       left *= again / followed;
+      reflected = true;
+      ++i;
       direction = direction - 2.0 * cosine * normal;
       mirrored = true;
 #if defined(WALKS_END_IN_WORLD) && !defined(TRACED)
@@ -260,10 +283,8 @@ Radiance walked_radiance(vec3 place, vec3 direction, vec3 to_light, int light, f
 #ifdef WALKS_END_IN_WORLD
       outside = direction;
 #endif
-      break;
 #endif
-    }
-    // Software renderers follow several walks at once: what those that have left may enter again is looked for when all are done.
+    } while (reflected);
     again_inside = false;
     if (leaving > 0.0) {
 #ifndef CONVEX
@@ -285,5 +306,6 @@ Radiance walked_radiance(vec3 place, vec3 direction, vec3 to_light, int light, f
 #endif
     }
   } while (again_inside);
+  if (told) sum += left * source_at(place) / SPECTRUM(forward.similar_albedo);
   return sum;
 }

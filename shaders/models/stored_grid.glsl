@@ -45,6 +45,7 @@ float way_to_box(vec3 place, vec3 direction) {
 
 const float FAR = 1e6;
 const float SHORTEST_STEP = 0.3;  // of the way between nodes
+const float NEAR_ENOUGH = 0.002;  // to the surface, of the way between nodes
 const float ROUNDED_OFF = 2.0;    // ways between nodes: as far into a sharp edge the grid may tell that a place is outside
 
 #ifdef CONVEX
@@ -53,7 +54,7 @@ const float ROUNDED_OFF = 2.0;    // ways between nodes: as far into a sharp edg
 float way_out(vec3 place, vec3 direction, float longest) {
   float far = min(way_to_box(place, direction), longest);  // beyond the box the grid tells nothing
   float above_far = distance_at(place + far * direction);
-  float near_enough = 0.002 * shortest_spacing();
+  float near_enough = NEAR_ENOUGH * shortest_spacing();
   if (above_far <= near_enough) return far;  // a flat side lies on the box's but for rounding
   float way = far - above_far;
   for (int i = 0; i < 8 && way > 0.0; ++i) {
@@ -66,6 +67,14 @@ float way_out(vec3 place, vec3 direction, float longest) {
     if (abs(above) < near_enough) break;
   }
   return max(way, 0.0);
+}
+#endif
+
+#ifdef CONVEX
+// Whether way_through is as long as that.
+bool ends_inside(vec3 place, vec3 direction, float way) {
+  return way <= SHORTEST_STEP * shortest_spacing() ||
+         (way <= way_to_box(place, direction) && distance_at(place + way * direction) <= NEAR_ENOUGH * shortest_spacing());
 }
 #endif
 
