@@ -66,8 +66,7 @@ float density_found;
 
 // Of all the light in the place's cell, some at random.
 Unscattered unscattered_found(vec3 place, int light) {
-  ivec3 cell = cell_at(place);
-  ivec3 texel = cell_texel(cell, light);
+  ivec3 texel = cell_texel(cell_at(place), light);
   uint count = texelFetch(tracks, texel, 0).r;
   if (count == 0u) return Unscattered(vec3(0.0, 0.0, 1.0), 0.0, 0.0);
   ivec3 piece = texel_of(texelFetch(drawn_rays, texel, 0).r);
@@ -79,7 +78,7 @@ Unscattered unscattered_found(vec3 place, int light) {
   density_found = found.w;
 #endif
   float way = begin.w + max(dot(place - begin.xyz, direction), 0.0);
-  return Unscattered(-direction, way, float(count) / (TRACK_UNIT * share_inside(cell)) * exp(tracked_sigma_t() * way));
+  return Unscattered(-direction, way, float(count) / TRACK_UNIT * exp(tracked_sigma_t() * way));
 }
 #endif
 

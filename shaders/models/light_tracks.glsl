@@ -12,7 +12,7 @@ const int RAYS_ACROSS = 64;
 const int PIECES = 8;        // of a ray: as many times it is met inside, reflected
 const int CELLS_A_NODE = 2;  // along each side
 const float TRACK_UNIT =
-    262144;  // counts of a cell through which light of irradiance 1 passes; a flat grain's edge may gather thousands of times as much
+    16384;  // counts of a cell through which light of irradiance 1 passes; a flat grain's edge may gather thousands of times as much
 const float LEAST_INSIDE = 0.05;  // of a cell: the light in less of it is hardly ever asked for
 
 ivec3 cells() { return CELLS_A_NODE * ivec3(stored.last_node) + 1; }

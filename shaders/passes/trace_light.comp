@@ -77,12 +77,13 @@ void leave_track(int ray, int piece, int light, vec3 place, vec3 direction, floa
   for (int i = 0; i < steps; ++i) {
     vec4 random = random_numbers(ray, light, 1 + piece * MOST_TRACK_STEPS + i);
     float at = (float(i) + random.x) * step;
-    float amount = flux * step / volume * exp(-tracked_sigma_t() * at);
+    ivec3 cell = cell_at(place + at * direction);
+    float amount = flux * step / (volume * share_inside(cell)) * exp(-tracked_sigma_t() * at);
     uint count = uint(amount * TRACK_UNIT + random.y);
     if (count == 0u) continue;
-    ivec3 cell = cell_texel(cell_at(place + at * direction), light);
-    imageAtomicAdd(tracks, cell, count);
-    imageAtomicMax(drawn_rays, cell, draw_key(amount, random.z, who(ray, piece, light)));
+    ivec3 texel = cell_texel(cell, light);
+    imageAtomicAdd(tracks, texel, count);
+    imageAtomicMax(drawn_rays, texel, draw_key(amount, random.z, who(ray, piece, light)));
   }
 }
 
