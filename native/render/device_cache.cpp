@@ -14,6 +14,7 @@
 #include "models/prototype_inputs.h"
 #include "scene/advice.h"
 #include "scene/convexity.h"
+#include "transport/convexity.h"
 #include "transport/effort.h"
 
 namespace mesograin::render {
@@ -85,6 +86,20 @@ std::shared_ptr<const gl::Texture> sent_picture(const scene::TextureMap& map) {
   return texture;
 }
 
+bool nearly_convex(const scene::Mesh& mesh) {
+  const auto unit = static_cast<float>(std::max(mesh.reach(), 1e-30));
+  std::vector<glm::vec3> positions(mesh.positions());
+  for (glm::vec3& position : positions) position /= unit;
+  std::vector<glm::vec3> normals;
+  normals.reserve(mesh.triangles().size());
+  for (const glm::uvec3& triangle : mesh.triangles()) {
+    const glm::vec3& corner = positions[triangle.x];
+    const glm::vec3 normal = glm::cross(positions[triangle.y] - corner, positions[triangle.z] - corner);
+    normals.push_back(normal / std::max(glm::length(normal), 1e-30F));
+  }
+  return transport::nearly_convex(positions, mesh.triangles(), normals);
+}
+
 }  // namespace
 
 DeviceMaterial::DeviceMaterial(scene::Model model, models::MaterialInputs inputs, Pictures pictures)
@@ -152,7 +167,10 @@ void DeviceMaterial::bind(const gl::Program& program) const {
 DeviceCache::MeshEntry& DeviceCache::mesh_entry(const scene::MeshPointer& mesh) {
   MeshEntry& entry = meshes_[mesh.get()];
   // A new mesh may have been given the address of one that is gone.
-  if (entry.source.expired()) entry = {mesh, nullptr, nullptr, nullptr, std::nullopt, std::nullopt};
+  if (entry.source.expired()) {
+    entry = MeshEntry();
+    entry.source = mesh;
+  }
   return entry;
 }
 
@@ -189,6 +207,12 @@ bool DeviceCache::closed(const scene::MeshPointer& mesh) {
   MeshEntry& entry = mesh_entry(mesh);
   if (!entry.closed) entry.closed = scene::shape_of(*mesh, glm::dmat3(1.0)).closed;
   return *entry.closed;
+}
+
+bool DeviceCache::hollow(const scene::MeshPointer& mesh) {
+  MeshEntry& entry = mesh_entry(mesh);
+  if (!entry.hollow) entry.hollow = !convex(mesh) && !(closed(mesh) && nearly_convex(*mesh));
+  return *entry.hollow;
 }
 
 std::shared_ptr<DeviceMaterial> DeviceCache::material(const scene::Material& material, double grain_radius) {

@@ -161,6 +161,9 @@ class DeviceCache {
   /// As scene::shape_of has it, found once.
   bool closed(const scene::MeshPointer& mesh);
 
+  /// Whether a part of it may noticeably light another from outside, found once.
+  bool hollow(const scene::MeshPointer& mesh);
+
   /// `grain_radius` as in models::material_inputs; materials are shared by grains within half a percent.
   std::shared_ptr<DeviceMaterial> material(const scene::Material& material, double grain_radius);
 
@@ -233,6 +236,7 @@ class DeviceCache {
     std::shared_ptr<const casting::MeshTree> tree;
     std::optional<bool> convex;
     std::optional<bool> closed;
+    std::optional<bool> hollow;
   };
   MeshEntry& mesh_entry(const scene::MeshPointer& mesh);
 

@@ -93,10 +93,10 @@ constexpr double least_not_stored = 13.0;
 
 /// Whether parts of a draw send others light that its model knows nothing of, as a surface does. Of stored transport,
 /// which knows it, that is so where a grain is too thick to have any.
-bool is_hollow(const Content& content, const Draw& draw) {
+bool is_hollow(DeviceCache& cache, const Content& content, const Draw& draw) {
   const scene::ModelTraits& traits = scene::traits_of(draw.look.model);
-  return content.instances() == nullptr && (!traits.mesh || content.alone()) && traits.translucent && !draw.convex &&
-         draw.thickness() >= (traits.mesh ? least_not_stored : least_thick);
+  return content.instances() == nullptr && (!traits.mesh || content.alone()) && traits.translucent &&
+         draw.thickness() >= (traits.mesh ? least_not_stored : least_thick) && cache.hollow(draw.source);
 }
 
 glm::dmat4 to_heap_of(const Draw& draw, const glm::dvec3& anchor) {
@@ -128,7 +128,7 @@ class Gatherer {
     for (const Draw& draw : content.draws()) {
       const bool large = is_plain(draw.look) && radius_of(draw) > wall_over_grain * usual;
       const glm::vec4 ball(glm::vec3(draw.centre - content.anchor()), static_cast<float>(draw.reach));
-      if (is_hollow(content, draw))
+      if (is_hollow(*cache_, content, draw))
         add_wall(draw, content.anchor(), true);
       else if (may_be_grain(draw) && !large)
         add(shape(draw), draw.look, ball);
